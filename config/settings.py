@@ -1,0 +1,249 @@
+"""Settings from the environment (twelve-factor); every variable is described in docs/operations.md."""
+
+import os
+import secrets
+from pathlib import Path
+from typing import Any
+
+import dj_database_url
+
+from config.private_servers import private_database_url, private_redis_url, state_directory
+from inspection.graph.rules import LinkingRules
+from missions.flight_plan.rules import FlightRules
+from missions.routing.rules import RoutingRules
+
+BASE_DIR = Path(__file__).resolve().parent.parent
+STATE_DIR = state_directory()
+
+
+def _flag(name: str, default: bool) -> bool:
+    return os.environ.get(name, "1" if default else "0").lower() in {"1", "true", "yes", "on"}
+
+
+def _list(name: str, default: str) -> list[str]:
+    return [entry.strip() for entry in os.environ.get(name, default).split(",") if entry.strip()]
+
+
+def _float(name: str, default: float) -> float:
+    return float(os.environ.get(name, default))
+
+
+def _secret_key() -> str:
+    """SPANWISE_SECRET_KEY, else a key made once and kept in the state folder, readable by its owner alone."""
+    if key := os.environ.get("SPANWISE_SECRET_KEY"):
+        return key
+    path = STATE_DIR / "secret_key"
+    if not path.exists():
+        STATE_DIR.mkdir(parents=True, exist_ok=True)
+        draft = STATE_DIR / f"secret_key.{os.getpid()}"
+        draft.touch(mode=0o600)
+        draft.write_text(secrets.token_urlsafe(64))
+        try:
+            os.link(draft, path)  # the first of several processes wins
+        except FileExistsError:
+            pass
+        draft.unlink()
+    return path.read_text()
+
+
+SECRET_KEY = _secret_key()
+DEBUG = _flag("SPANWISE_DEBUG", default=False)
+ALLOWED_HOSTS = _list("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
+CSRF_TRUSTED_ORIGINS = _list("SPANWISE_TRUSTED_ORIGINS", "")
+
+# Plain HTTP is for one machine: SPANWISE_HTTPS=1 switches on what a public host needs.
+HTTPS = _flag("SPANWISE_HTTPS", default=False)
+SECURE_SSL_REDIRECT = HTTPS
+SESSION_COOKIE_SECURE = HTTPS
+CSRF_COOKIE_SECURE = HTTPS
+SECURE_HSTS_SECONDS = 31_536_000 if HTTPS else 0
+SECURE_HSTS_INCLUDE_SUBDOMAINS = HTTPS
+SECURE_HSTS_PRELOAD = HTTPS
+SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
+SECURE_REFERRER_POLICY = "same-origin"
+SESSION_COOKIE_HTTPONLY = True
+SESSION_COOKIE_SAMESITE = "Lax"
+X_FRAME_OPTIONS = "DENY"
+# Debian's GDAL is older than 3.9. GDAL reads terrain files alone, from the command line, with its driver named (GTiff, SRTMHGT).
+SILENCED_SYSTEM_CHECKS = ["gis.W001"]
+
+INSTALLED_APPS = [
+    "django.contrib.admin",
+    "django.contrib.auth",
+    "django.contrib.contenttypes",
+    "django.contrib.sessions",
+    "django.contrib.messages",
+    "django.contrib.staticfiles",
+    "django.contrib.gis",
+    "django.contrib.postgres",
+    "rest_framework",
+    "drf_spectacular",
+    "drf_spectacular_sidecar",
+    "workspace",
+    "inspection",
+    "missions",
+]
+
+MIDDLEWARE = [
+    "django.middleware.security.SecurityMiddleware",
+    "django.contrib.sessions.middleware.SessionMiddleware",
+    "django.middleware.common.CommonMiddleware",
+    "django.middleware.csrf.CsrfViewMiddleware",
+    "django.contrib.auth.middleware.AuthenticationMiddleware",
+    "django.contrib.messages.middleware.MessageMiddleware",
+    "django.middleware.clickjacking.XFrameOptionsMiddleware",
+]
+
+ROOT_URLCONF = "config.urls"
+WSGI_APPLICATION = "config.wsgi.application"
+APPEND_SLASH = False
+
+TEMPLATES = [
+    {
+        "BACKEND": "django.template.backends.django.DjangoTemplates",
+        "DIRS": [BASE_DIR / "templates"],
+        "APP_DIRS": True,
+        "OPTIONS": {
+            "context_processors": [
+                "django.template.context_processors.request",
+                "django.contrib.auth.context_processors.auth",
+                "django.contrib.messages.context_processors.messages",
+            ],
+        },
+    },
+]
+
+DATABASES = {
+    "default": dj_database_url.parse(
+        os.environ.get("DATABASE_URL") or private_database_url(STATE_DIR),
+        engine="django.contrib.gis.db.backends.postgis",
+        conn_max_age=60,
+        conn_health_checks=True,
+    ),
+}
+DEFAULT_AUTO_FIELD = "django.db.models.BigAutoField"
+
+REDIS_URL = os.environ.get("REDIS_URL") or private_redis_url(STATE_DIR)
+CACHES = {
+    "default": {
+        "BACKEND": "django.core.cache.backends.redis.RedisCache",
+        "LOCATION": REDIS_URL,
+        "KEY_PREFIX": "spanwise",
+    },
+}
+
+AUTH_USER_MODEL = "workspace.User"
+AUTH_PASSWORD_VALIDATORS = [
+    {"NAME": f"django.contrib.auth.password_validation.{name}"}
+    for name in (
+        "UserAttributeSimilarityValidator",
+        "MinimumLengthValidator",
+        "CommonPasswordValidator",
+        "NumericPasswordValidator",
+    )
+]
+LOGIN_URL = "sign-in"
+LOGIN_REDIRECT_URL = "missions"
+LOGOUT_REDIRECT_URL = "sign-in"
+
+LANGUAGE_CODE = "en-gb"
+TIME_ZONE = "UTC"
+USE_I18N = True
+USE_TZ = True
+
+STATIC_URL = "/static/"
+STATIC_ROOT = STATE_DIR / "static"
+STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".spanwise")]
+
+# What users may send in one request; files come in through commands until uploads have their own door.
+DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
+
+REST_FRAMEWORK: dict[str, Any] = {
+    "DEFAULT_AUTHENTICATION_CLASSES": [
+        "workspace.authentication.BearerTokenAuthentication",
+        "rest_framework.authentication.SessionAuthentication",
+    ],
+    "DEFAULT_PERMISSION_CLASSES": ["workspace.permissions.RolePermission"],
+    "DEFAULT_RENDERER_CLASSES": ["rest_framework.renderers.JSONRenderer"],
+    "DEFAULT_PARSER_CLASSES": ["workspace.parsers.StrictJSONParser"],
+    "DEFAULT_SCHEMA_CLASS": "drf_spectacular.openapi.AutoSchema",
+    "DEFAULT_THROTTLE_RATES": {"plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second")},
+    "EXCEPTION_HANDLER": "workspace.errors.error_response",
+    "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
+}
+
+SPECTACULAR_SETTINGS = {
+    "TITLE": "Spanwise",
+    "DESCRIPTION": "Planning, rehearsing, flying and reviewing UAV inspections of power lines, bridges and railways.",
+    "VERSION": "1",
+    "SERVE_INCLUDE_SCHEMA": False,
+    "SWAGGER_UI_DIST": "SIDECAR",
+    "SWAGGER_UI_FAVICON_HREF": "SIDECAR",
+    "SCHEMA_PATH_PREFIX": r"/api/v1",
+    "COMPONENT_SPLIT_REQUEST": True,
+}
+
+# Celery: rows in PostgreSQL are the truth, Redis is a hint (findings: late acknowledgement and a fast sweep, or work is lost).
+CELERY_BROKER_URL = f"redis+socket://{REDIS_URL.removeprefix('unix://')}" if REDIS_URL.startswith("unix://") else REDIS_URL
+CELERY_TASK_IGNORE_RESULT = True
+CELERY_TASK_ACKS_LATE = True
+CELERY_TASK_REJECT_ON_WORKER_LOST = True
+CELERY_WORKER_PREFETCH_MULTIPLIER = 1
+CELERY_TASK_SERIALIZER = "json"
+CELERY_ACCEPT_CONTENT = ["json"]
+CELERY_TASK_TIME_LIMIT = 900
+CELERY_TASK_SOFT_TIME_LIMIT = 870
+CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 10
+CELERY_BROKER_TRANSPORT_OPTIONS = {
+    "visibility_timeout": 1_000,  # longer than the longest task
+    "unacked_restore_interval": 2,
+    "unacked_restore_throttle": 1,
+    "socket_timeout": 10,
+    "socket_connect_timeout": 2,
+    "health_check_interval": 5,
+}
+CELERY_TASK_DEFAULT_QUEUE = "data"
+CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}
+CELERY_BEAT_SCHEDULE = {
+    "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
+    "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 10.0, "options": {"expires": 10}},
+}
+CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
+
+# The field's own rules, each with a unit in its name.
+GRAPH_RULES = LinkingRules(
+    bridge_to_tower_m=_float("SPANWISE_BRIDGE_TO_TOWER_M", LinkingRules.bridge_to_tower_m),
+    bridge_to_bridge_m=_float("SPANWISE_BRIDGE_TO_BRIDGE_M", LinkingRules.bridge_to_bridge_m),
+    railway_to_tower_m=_float("SPANWISE_RAILWAY_TO_TOWER_M", LinkingRules.railway_to_tower_m),
+    crossing_m=_float("SPANWISE_CROSSING_M", LinkingRules.crossing_m),
+    railway_spacing_m=_float("SPANWISE_RAILWAY_SPACING_M", LinkingRules.railway_spacing_m),
+    off_network_factor=_float("SPANWISE_OFF_NETWORK_FACTOR", LinkingRules.off_network_factor),
+    zone_clearance_m=_float("SPANWISE_ZONE_CLEARANCE_M", LinkingRules.zone_clearance_m),
+)
+ROUTING_RULES = RoutingRules(
+    access_leg_m=_float("SPANWISE_ACCESS_LEG_M", RoutingRules.access_leg_m),
+    small_plan_targets=int(_float("SPANWISE_SMALL_PLAN_TARGETS", RoutingRules.small_plan_targets)),
+    large_plan_search_s=_float("SPANWISE_LARGE_PLAN_SEARCH_S", RoutingRules.large_plan_search_s),
+)
+FLIGHT_RULES = FlightRules(
+    clearance_m=_float("SPANWISE_CLEARANCE_M", FlightRules.clearance_m),
+    transit_agl_m=_float("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
+    max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
+    cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
+)
+GRAPH_CACHE_DIR = STATE_DIR / "graphs"
+
+# Raster tiles under the map: addresses only; the page works without them on a quiet background.
+BASE_MAP_TILES = os.environ.get("SPANWISE_BASE_MAP_TILES", "https://tile.openstreetmap.org/{z}/{x}/{y}.png")
+BASE_MAP_ATTRIBUTION = os.environ.get("SPANWISE_BASE_MAP_ATTRIBUTION", "© OpenStreetMap contributors")
+SATELLITE_TILES = os.environ.get("SPANWISE_SATELLITE_TILES", "")
+SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
+
+LOGGING = {
+    "version": 1,
+    "disable_existing_loggers": False,
+    "formatters": {"line": {"format": "{asctime} {levelname} {name} {message}", "style": "{"}},
+    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "line"}},
+    "root": {"handlers": ["console"], "level": os.environ.get("SPANWISE_LOG_LEVEL", "INFO")},
+}

@@ -1,0 +1,1 @@
+"""The inspection graph: how infrastructure connects, clear of no-fly zones."""

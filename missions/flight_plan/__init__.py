@@ -1,0 +1,1 @@
+"""From a route to waypoints with heights, checked leg by leg."""

@@ -1,0 +1,13 @@
+"""Heights and speeds that a plan keeps."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FlightRules:
+    clearance_m: float = 15.0  # above the asset
+    transit_agl_m: float = 60.0  # least height between targets: a common 380 kV tower (45 m) plus clearance
+    max_agl_m: float = 120.0  # EASA open category, Regulation (EU) 2019/947, UAS.OPEN.010
+    cruise_speed_mps: float = 12.0
+    climb_speed_mps: float = 2.5
+    terrain_tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints before one is put in

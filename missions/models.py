@@ -1,0 +1,196 @@
+"""What is to be flown, by whom, in which order."""
+
+import uuid
+
+from django.conf import settings
+from django.contrib.gis.db import models
+from django.db.models import Q
+from django.db.models.functions import Now
+
+from inspection.models import Asset
+from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
+
+
+class EndAction(models.TextChoices):
+    HOVER = "hover", "Hover at the last target"
+    RETURN = "return", "Return to start"
+    LAND = "land", "Land at the last target"
+
+
+class Uav(models.Model):
+    """An uncrewed aircraft of an organisation. `location` is where it stands or was last reported."""
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uavs")
+    name = models.CharField(max_length=100)
+    base_name = models.CharField(max_length=100, blank=True)
+    location = models.PointField(srid=4326)
+    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
+    cruise_speed_mps = models.FloatField(default=12.0)
+    battery_percent = models.FloatField(null=True, blank=True)
+    sensor = models.CharField(max_length=100, blank=True)
+    end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    updated_at = models.DateTimeField(auto_now=True)
+
+    class Meta:
+        ordering = ["name"]
+        verbose_name = "UAV"
+        verbose_name_plural = "UAVs"
+        constraints = [
+            models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
+            models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
+            models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
+            models.CheckConstraint(condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="uav_battery_percent"),
+        ]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class MissionState(models.TextChoices):
+    DRAFT = "draft", "Draft"
+    PLANNED = "planned", "Planned"
+    APPROVED = "approved", "Approved"
+    DISPATCHED = "dispatched", "Dispatched"
+    ACTIVE = "active", "Active"
+    COMPLETED = "completed", "Completed"
+    ABORTED = "aborted", "Aborted"
+    FAILED = "failed", "Failed"
+
+
+class Objective(models.TextChoices):
+    TOTAL = "total", "Fly least"
+    MAKESPAN = "makespan", "Finish soonest"
+
+
+class Mission(models.Model):
+    """Targets, UAVs and options, and the plan made from them on one version of the graph."""
+
+    id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="missions")
+    name = models.CharField(max_length=200)
+    author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="missions")
+    state = models.CharField(max_length=20, choices=MissionState.choices, default=MissionState.DRAFT)
+    objective = models.CharField(max_length=10, choices=Objective.choices, default=Objective.TOTAL)
+    return_to_start = models.BooleanField(default=False)
+    revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
+    planned_at = models.DateTimeField(null=True, blank=True)
+    graph_version = models.BigIntegerField(null=True, blank=True, help_text="the graph that the routes were planned on")
+    ground_revision = models.PositiveBigIntegerField(null=True, blank=True, help_text="the ground that the routes were checked against")
+    flat_ground_assumed = models.BooleanField(null=True, blank=True)
+    total_length_m = models.FloatField(null=True, blank=True)
+    longest_route_m = models.FloatField(null=True, blank=True)
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    updated_at = models.DateTimeField(auto_now=True)
+    deleted_at = models.DateTimeField(null=True, blank=True, help_text="deleted missions can be brought back")
+
+    class Meta:
+        ordering = ["-updated_at"]
+        constraints = [
+            models.CheckConstraint(condition=Q(state__in=MissionState.values), name="mission_state_known"),
+            models.CheckConstraint(
+                condition=Q(state=MissionState.DRAFT) | Q(planned_at__isnull=False, graph_version__isnull=False), name="mission_plan_stated"
+            ),
+        ]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class MissionUav(models.Model):
+    """A UAV's place in a mission; `sequence` gives its letter and colour, `start` where it takes off."""
+
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="mission_uavs")
+    uav = models.ForeignKey(Uav, on_delete=models.PROTECT, null=True, blank=True, related_name="mission_uavs")
+    sequence = models.PositiveSmallIntegerField()
+    name = models.CharField(max_length=100)
+    start = models.PointField(srid=4326)
+    max_range_m = models.FloatField(null=True, blank=True)
+    cruise_speed_mps = models.FloatField()
+    end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
+
+    class Meta:
+        ordering = ["sequence"]
+        constraints = [models.UniqueConstraint(fields=["mission", "sequence"], name="mission_uav_sequence")]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class TargetState(models.TextChoices):
+    PENDING = "pending", "Pending"
+    IN_PROGRESS = "in-progress", "In progress"
+    COMPLETE = "complete", "Complete"
+    SKIPPED = "skipped", "Skipped"
+    FAILED = "failed", "Failed"
+
+
+class InspectionTarget(models.Model):
+    """What is to be inspected: an asset, a point or stretch on one, or a bare position. It outlives a vanished asset."""
+
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="targets")
+    sequence = models.PositiveIntegerField(help_text="place in the operator's list, from 0")
+    asset = models.ForeignKey(Asset, on_delete=models.SET_NULL, null=True, blank=True, related_name="targets")
+    label = models.CharField(max_length=255, help_text="the asset's name when it was picked")
+    position = models.PointField(srid=4326, null=True, blank=True, help_text="empty: the asset's centre, or the whole line")
+    stretch = models.LineStringField(srid=4326, null=True, blank=True, help_text="two points on the asset; empty = not a stretch")
+    task = models.JSONField(default=dict, help_text="see missions/routing/problem.py, Task")
+    state = models.CharField(max_length=20, choices=TargetState.choices, default=TargetState.PENDING)
+    unassigned_reason = models.CharField(max_length=40, blank=True)
+    unassigned_message = models.CharField(max_length=500, blank=True)
+
+    class Meta:
+        ordering = ["sequence"]
+        constraints = [
+            models.UniqueConstraint(fields=["mission", "sequence"], name="target_sequence", deferrable=models.Deferrable.DEFERRED),
+            models.CheckConstraint(condition=Q(state__in=TargetState.values), name="target_state_known"),
+        ]
+
+    def __str__(self) -> str:
+        return self.label
+
+
+class Route(models.Model):
+    """One UAV's part of a mission's plan."""
+
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="routes")
+    mission_uav = models.OneToOneField(MissionUav, on_delete=models.CASCADE, related_name="route")
+    graph_version = models.BigIntegerField(help_text="equals the mission's: a mission is never mixed from two plans")
+    length_m = models.FloatField()
+    duration_s = models.FloatField()
+    geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
+
+    class Meta:
+        ordering = ["mission_uav__sequence"]
+
+    def __str__(self) -> str:
+        return f"{self.mission_uav} in {self.mission}"
+
+
+class WaypointKind(models.TextChoices):
+    START = "start", "Start"
+    PASS = "pass", "Pass"
+    TARGET = "target", "Target"
+    END = "end", "End"
+
+
+class Waypoint(models.Model):
+    """One point of a route with its height over three references; relative is above the take-off point."""
+
+    route = models.ForeignKey(Route, on_delete=models.CASCADE, related_name="waypoints")
+    sequence = models.PositiveIntegerField()
+    kind = models.CharField(max_length=10, choices=WaypointKind.choices)
+    position = models.PointField(srid=4326)
+    asset = models.ForeignKey(Asset, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    target = models.ForeignKey(InspectionTarget, on_delete=models.CASCADE, null=True, blank=True, related_name="waypoints")
+    task = models.JSONField(null=True, blank=True)
+    altitude_agl_m = models.FloatField()
+    altitude_amsl_m = models.FloatField(null=True, blank=True, help_text="empty without terrain data")
+    altitude_relative_m = models.FloatField()
+
+    class Meta:
+        ordering = ["sequence"]
+        constraints = [models.UniqueConstraint(fields=["route", "sequence"], name="waypoint_sequence")]
+
+    def __str__(self) -> str:
+        return f"{self.sequence} {self.kind}"

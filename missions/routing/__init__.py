@@ -1,0 +1,1 @@
+"""Which UAV inspects which target in which order."""

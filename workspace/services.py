@@ -1,0 +1,130 @@
+"""Writes of the workspace: jobs from request to result, tokens, history."""
+
+import hashlib
+import secrets
+from datetime import datetime, timedelta
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.db.models import F, Q
+from django.utils import timezone
+
+from workspace.models import ApiToken, AuditEntry, Job, JobState, Organisation, User
+
+LEASE_S = 60  # a worker that says nothing for so long is taken for dead
+QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
+MAX_ATTEMPTS = 3
+
+
+class JobCancelled(Exception):
+    """The job was cancelled by a user, or another worker finished it."""
+
+
+def hash_token(token: str) -> str:
+    return hashlib.sha256(token.encode()).hexdigest()
+
+
+def create_api_token(*, user: User, name: str, expires_at: datetime) -> str:
+    """Make a bearer token and return it; it cannot be shown again."""
+    token = f"spw_{secrets.token_urlsafe(32)}"
+    ApiToken.objects.create(user=user, name=name, token_sha256=hash_token(token), expires_at=expires_at)
+    return token
+
+
+def record_change(
+    *, organisation: Organisation, actor: User | None, action: str, subject_type: str, subject_id: object, before: Any = None, after: Any = None
+) -> AuditEntry:
+    return AuditEntry.objects.create(
+        organisation=organisation, actor=actor, action=action, subject_type=subject_type, subject_id=str(subject_id), before=before, after=after
+    )
+
+
+def create_job(*, organisation: Organisation, created_by: User | None, task: str, parameters: dict[str, Any], message: str = "") -> Job:
+    return Job.objects.create(organisation=organisation, created_by=created_by, task=task, parameters=parameters, message=message)
+
+
+def start_job(*, job_id: UUID | str) -> Job | None:
+    """Take the job for this worker, or return None if it is finished, cancelled or held by another worker."""
+    now = timezone.now()
+    with transaction.atomic():
+        job = Job.objects.select_for_update().filter(pk=job_id).first()
+        if job is None or not job.is_open:
+            return None
+        if job.state == JobState.RUNNING and job.lease_expires_at is not None and job.lease_expires_at > now:
+            return None
+        job.state = JobState.RUNNING
+        job.attempts += 1
+        job.started_at = now
+        job.lease_expires_at = now + timedelta(seconds=LEASE_S)
+        job.save()
+    return job
+
+
+def report_progress(*, job: Job, progress: float, message: str = "") -> None:
+    """Store how far the job is and renew its lease. Raises JobCancelled when the user has asked to stop."""
+    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None)
+    changed = held.update(
+        progress=min(max(progress, 0.0), 1.0), message=message[:300], lease_expires_at=timezone.now() + timedelta(seconds=LEASE_S)
+    )
+    if not changed:
+        raise JobCancelled
+
+
+def cancel_is_requested(*, job: Job) -> bool:
+    return not Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None).exists()
+
+
+def finish_job(*, job: Job, result: Any = None, message: str = "") -> bool:
+    """Store the result once. False if another worker finished the job, or the user cancelled it, in the meantime."""
+    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
+    return bool(
+        held.update(state=JobState.DONE, progress=1.0, result=result, message=message[:300], finished_at=timezone.now(), lease_expires_at=None)
+    )
+
+
+def fail_job(*, job: Job, code: str, message: str) -> None:
+    Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts).update(
+        state=JobState.FAILED, error={"code": code, "message": message}, message=message[:300], finished_at=timezone.now(), lease_expires_at=None
+    )
+
+
+def confirm_cancelled(*, job: Job) -> None:
+    """A worker has seen the request to stop and has stopped."""
+    Job.objects.filter(pk=job.pk, state=JobState.RUNNING).update(
+        state=JobState.CANCELLED, message="Cancelled", finished_at=timezone.now(), lease_expires_at=None
+    )
+
+
+def cancel_job(*, job: Job) -> Job:
+    """Ask the job to stop: at once if nobody works on it yet, else at the worker's next look."""
+    now = timezone.now()
+    with transaction.atomic():
+        locked = Job.objects.select_for_update().get(pk=job.pk)
+        if locked.state == JobState.QUEUED:
+            locked.state = JobState.CANCELLED
+            locked.message = "Cancelled"
+            locked.finished_at = now
+        if locked.is_open or locked.state == JobState.CANCELLED:
+            locked.cancel_requested_at = locked.cancel_requested_at or now
+            locked.save()
+    return locked
+
+
+def requeue_lost_jobs() -> list[Job]:
+    """Put back what a dead worker held and find what was never picked up; the caller sends these to the queue again."""
+    now = timezone.now()
+    lost = Q(state=JobState.RUNNING, lease_expires_at__lt=now)
+    with transaction.atomic():
+        for job in Job.objects.select_for_update(skip_locked=True).filter(lost, cancel_requested_at__isnull=False):
+            confirm_cancelled(job=job)
+        for job in Job.objects.select_for_update(skip_locked=True).filter(lost, attempts__gte=MAX_ATTEMPTS):
+            fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
+        Job.objects.filter(lost).update(state=JobState.QUEUED, lease_expires_at=None)
+        waiting = Q(lease_expires_at=None) | Q(lease_expires_at__lt=now)
+        forgotten = Job.objects.select_for_update(skip_locked=True).filter(
+            waiting, state=JobState.QUEUED, created_at__lt=now - timedelta(seconds=QUEUE_PATIENCE_S)
+        )
+        jobs = list(forgotten)
+        forgotten.update(lease_expires_at=now + timedelta(seconds=QUEUE_PATIENCE_S), attempts=F("attempts"))
+    return jobs

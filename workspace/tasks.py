@@ -1,0 +1,32 @@
+"""Doors to the queue: sending a job, and sending lost ones again."""
+
+import logging
+from functools import partial
+
+from celery import current_app, shared_task
+from django.db import transaction
+from kombu.exceptions import OperationalError
+from redis.exceptions import RedisError
+
+from workspace import services
+from workspace.models import Job
+
+logger = logging.getLogger(__name__)
+
+
+def send_job(job: Job) -> None:
+    """Send the job to its queue. A queue that is away loses nothing: the row stays, and the sweep sends it again."""
+    try:
+        current_app.send_task(job.task, args=[str(job.pk)], retry=False)
+    except (OperationalError, RedisError, OSError) as error:
+        logger.warning("job %s stays queued in the database, the queue is away: %s", job.pk, error)
+
+
+def send_job_on_commit(job: Job) -> None:
+    transaction.on_commit(partial(send_job, job))
+
+
+@shared_task(time_limit=30)
+def requeue_lost_jobs() -> None:
+    for job in services.requeue_lost_jobs():
+        send_job(job)
