@@ -1,0 +1,137 @@
+"""No-fly zones, indexed to be asked whether legs meet them."""
+
+from collections.abc import Sequence
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from shapely import STRtree
+from shapely.geometry.base import BaseGeometry
+
+from inspection.geodesy import LonLat
+from inspection.graph.inspection_graph import InspectionGraph
+
+# The fewest metres in a degree of latitude, and of longitude on the equator (WGS84): a clearance is never narrower than asked.
+METRES_PER_DEGREE_LAT = 110_574.0
+METRES_PER_DEGREE_LON = 111_319.0
+NEAREST_POLE_DEG = 89.9  # nearer to a pole a degree of longitude no longer shrinks here
+CORNER_SEGMENTS = 8  # per quarter circle of a widened corner
+CORNER_EXCESS = 1.005  # makes the chords of such a quarter circle clear the true one: 1 / cos(90 deg / 16) = 1.0048
+
+BoolArray = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
+
+
+class ZoneIndex:
+    """The zones as polygons in the lon/lat plane. A leg is the straight line there; touching a zone is meeting it."""
+
+    def __init__(self, polygons: Sequence[BaseGeometry] | NDArray[np.object_], ids: ArrayLike, names: Sequence[str]) -> None:
+        self.polygons: NDArray[np.object_] = np.array(polygons, dtype=object)
+        self.ids: NDArray[np.int64] = np.asarray(ids, dtype=np.int64).reshape(-1)
+        self.names = tuple(names)
+        if not len(self.polygons) == len(self.ids) == len(self.names):
+            raise ValueError("polygons, ids and names must be of the same length")
+        self._parts, self._zone_of_part = shapely.get_parts(self.polygons, return_index=True)
+        self._widened: dict[float, tuple[NDArray[np.object_], STRtree]] = {}
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    def meets(self, start: ArrayLike, end: ArrayLike, clearance_m: float = 0.0) -> BoolArray:
+        """Whether each leg touches a zone or comes nearer to one than the clearance.
+
+        start and end have shape (n, 2), columns lon, lat [deg]. Without clearance the answer is exact in the plane;
+        with one it errs on the far side by up to 0.5 %, more for a zone that spans many degrees of latitude.
+        """
+        start, end = _rows(start), _rows(end)
+        met = np.zeros(len(start), dtype=bool)
+        if len(self._parts) and len(start):
+            leg_index, _ = self._meetings(_legs(start, end), clearance_m)
+            met[leg_index] = True
+        return met
+
+    def contains(self, position: ArrayLike, clearance_m: float = 0.0) -> BoolArray:
+        """Whether each position, shape (n, 2), lies in a zone, on its border, or nearer to it than the clearance."""
+        position = _rows(position)
+        inside = np.zeros(len(position), dtype=bool)
+        if len(self._parts) and len(position):
+            point_index, _ = self._meetings(_points(position), clearance_m)
+            inside[point_index] = True
+        return inside
+
+    def zone_at(self, position: LonLat) -> tuple[int, str] | None:
+        """Id and name of the first zone that holds the position, its border included."""
+        if not len(self._parts):
+            return None
+        _, part_index = self._meetings(_points(_rows(position)), 0.0)
+        return self._describe(self._zone_of_part[part_index].min()) if len(part_index) else None
+
+    def first_met(self, start: LonLat, end: LonLat) -> tuple[int, str] | None:
+        """Id and name of the zone that the leg meets first on its way."""
+        if not len(self._parts):
+            return None
+        leg = _legs(_rows(start), _rows(end))
+        _, part_index = self._meetings(leg, 0.0)
+        if not len(part_index):
+            return None
+        shared = shapely.intersection(self._parts[part_index], leg[0])
+        way_deg = shapely.distance(shared, _points(_rows(start))[0])
+        order = np.lexsort((self._zone_of_part[part_index], way_deg))
+        return self._describe(self._zone_of_part[part_index[order[0]]])
+
+    def _describe(self, zone: np.integer) -> tuple[int, str]:
+        return int(self.ids[zone]), self.names[int(zone)]
+
+    def _meetings(self, shapes: NDArray[np.object_], clearance_m: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Pairs (shape, zone part) that touch. The box search comes first; prepared polygons then answer exactly."""
+        parts, tree = self._widened_by(clearance_m)
+        shape_index, part_index = tree.query(shapes)
+        touching = shapely.intersects(parts[part_index], shapes[shape_index])
+        return shape_index[touching], part_index[touching]
+
+    def _widened_by(self, clearance_m: float) -> tuple[NDArray[np.object_], STRtree]:
+        if clearance_m not in self._widened:
+            parts = widen(self._parts, clearance_m) if clearance_m > 0 else self._parts
+            shapely.prepare(parts)
+            self._widened[clearance_m] = parts, STRtree(parts)
+        return self._widened[clearance_m]
+
+
+def widen(polygons: NDArray[np.object_], clearance_m: float) -> NDArray[np.object_]:
+    """The polygons, wider by at least the clearance on every side, in lon/lat."""
+    bounds = shapely.bounds(polygons)
+    farthest_lat = np.minimum(np.maximum(np.abs(bounds[:, 1]), np.abs(bounds[:, 3])), NEAREST_POLE_DEG)
+    scale = np.column_stack([METRES_PER_DEGREE_LON * np.cos(np.radians(farthest_lat)), np.full(len(polygons), METRES_PER_DEGREE_LAT)])
+    in_metres = _scaled(polygons, scale)
+    wider = shapely.buffer(in_metres, clearance_m * CORNER_EXCESS, quad_segs=CORNER_SEGMENTS)
+    return _scaled(wider, 1.0 / scale)
+
+
+def _scaled(polygons: NDArray[np.object_], scale: FloatArray) -> NDArray[np.object_]:
+    vertices, owner = shapely.get_coordinates(polygons, return_index=True)
+    scaled: NDArray[np.object_] = shapely.set_coordinates(polygons.copy(), vertices * scale[owner])
+    return scaled
+
+
+def _rows(positions: ArrayLike) -> FloatArray:
+    return np.asarray(positions, dtype=np.float64).reshape(-1, 2)
+
+
+def _points(positions: FloatArray) -> NDArray[np.object_]:
+    return np.asarray(shapely.points(positions), dtype=object)
+
+
+def _legs(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
+    return np.asarray(shapely.linestrings(np.stack([start, end], axis=1)), dtype=object)
+
+
+_index_of_graph: WeakKeyDictionary[InspectionGraph, ZoneIndex] = WeakKeyDictionary()
+
+
+def zones_of_graph(graph: InspectionGraph) -> ZoneIndex:
+    """The zones that the graph was cleared of; made once per graph."""
+    if graph not in _index_of_graph:
+        polygons = shapely.from_wkb(np.array(graph.zone_wkb, dtype=object))
+        _index_of_graph[graph] = ZoneIndex(polygons, graph.zone_id, graph.zone_name)
+    return _index_of_graph[graph]

@@ -1,0 +1,1 @@
+"""Reads of the ground: what views, commands and the other apps call."""

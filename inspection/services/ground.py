@@ -1,0 +1,16 @@
+"""The ground's revision: counted up with every change to assets or zones."""
+
+from django.db.models import F
+from django.utils import timezone
+
+from inspection.models import Ground
+
+
+def mark_ground_changed() -> int:
+    """Count one change of assets or zones and return the new revision.
+
+    Call it in the transaction that makes the change: the row stays locked until that ends, so revisions become visible in order.
+    """
+    Ground.objects.get_or_create(pk=Ground.SINGLE_ID)
+    Ground.objects.filter(pk=Ground.SINGLE_ID).update(revision=F("revision") + 1, changed_at=timezone.now())
+    return Ground.objects.values_list("revision", flat=True).get(pk=Ground.SINGLE_ID)

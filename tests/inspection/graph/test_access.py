@@ -1,0 +1,76 @@
+"""Legs from a position onto the graph."""
+
+import numpy as np
+import pytest
+from shapely import box
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.graph.access import clear_legs
+from inspection.graph.zone_index import ZoneIndex
+from tests.inspection.graph.drawn_graphs import drawn_graph
+
+NO_ZONES = ZoneIndex([], [], [])
+ROW = [(10.0 + 0.001 * number, 50.0) for number in range(100)]
+CHAIN = drawn_graph(ROW, [(number, number + 1, 72.0) for number in range(99)])
+
+
+def legs(graph=CHAIN, zones=NO_ZONES, position=LonLat(10.0, 50.001), *, radius_m=2_000.0, want=24):  # noqa: B008  # LonLat is immutable
+    return clear_legs(graph, zones, position, radius_m=radius_m, factor=2.0, clearance_m=5.0, want=want)
+
+
+def test_the_nearest_nodes_come_first_with_their_geodesic_length():
+    found = legs(want=3)
+    assert [leg.node for leg in found] == [0, 1, 2]
+    expected = distance_m(np.array([(10.0, 50.001)] * 3), CHAIN.position[:3])
+    assert [leg.length_m for leg in found] == pytest.approx(expected.tolist(), abs=1e-9)
+    assert [leg.cost for leg in found] == pytest.approx((2 * expected).tolist(), abs=1e-9)
+
+
+def test_at_a_node_the_leg_is_0_m():
+    assert legs(position=LonLat(10.005, 50.0), want=1)[0] == (legs(position=LonLat(10.005, 50.0))[0])
+    assert legs(position=LonLat(10.005, 50.0), want=1)[0].node == 5
+    assert legs(position=LonLat(10.005, 50.0), want=1)[0].length_m == 0.0
+
+
+def test_no_leg_is_longer_than_the_radius():
+    found = legs(radius_m=300.0, want=100)
+    assert [leg.node for leg in found] == [0, 1, 2, 3]
+    assert max(leg.length_m for leg in found) <= 300.0
+
+
+def test_the_search_widens_past_nodes_behind_a_zone():
+    """The wall stands between the position and the first forty nodes."""
+    wall = ZoneIndex([box(9.99, 50.0004, 10.02, 50.0006)], [7], ["wall"])
+    found = legs(zones=wall, want=3, radius_m=10_000)
+    assert len(found) == 3
+    assert found[0].node > 35
+    here = np.array([(10.0, 50.001)] * 3)
+    assert not wall.meets(here, CHAIN.position[[leg.node for leg in found]], 5.0).any()
+
+
+def test_a_leg_too_near_to_a_zone_is_not_offered():
+    """The zone ends 4 m (south) and 6 m (north) short of the leg to node 0; 5 m are kept."""
+    four_m, six_m = 4 / 71_687, 6 / 71_687
+    near, far = (ZoneIndex([box(9.9, 50.0004, 10.0 - gap, 50.0006)], [1], ["near"]) for gap in (four_m, six_m))
+    assert 0 not in [leg.node for leg in legs(zones=near)]
+    assert 0 in [leg.node for leg in legs(zones=far)]
+
+
+def test_a_position_inside_a_zone_has_no_legs():
+    assert legs(zones=ZoneIndex([box(9.999, 50.0005, 10.001, 50.0015)], [1], ["around"])) == []
+
+
+def test_a_component_beyond_the_nearest_nodes_is_offered_too():
+    """A long row near by, and one tower across the field that is joined to nothing."""
+    graph = drawn_graph([*ROW, (10.0, 50.01)], [(number, number + 1, 72.0) for number in range(99)])
+    found = legs(graph, position=LonLat(10.0, 50.001), want=3)
+    assert [leg.node for leg in found] == [0, 1, 2, 100]
+
+
+def test_no_leg_crosses_the_antimeridian():
+    graph = drawn_graph([(179.999, 0.0), (-179.999, 0.0)], [])
+    assert [leg.node for leg in legs(graph, position=LonLat(179.998, 0.0))] == [0]
+
+
+def test_an_empty_graph_offers_nothing():
+    assert legs(drawn_graph([], [])) == []

@@ -1,0 +1,126 @@
+"""Zones against legs: touching counts, and the answers equal exact arithmetic."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from shapely import MultiPolygon, Polygon, box
+from shapely.affinity import translate
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import WGS84
+from inspection.graph.zone_index import ZoneIndex
+from tests.exact_geometry import segment_meets_polygon
+
+SQUARE = box(10.0, 50.0, 10.1, 50.1)
+RING = Polygon(SQUARE.exterior.coords, [box(10.02, 50.02, 10.08, 50.08).exterior.coords])
+
+
+def index(*polygons) -> ZoneIndex:
+    return ZoneIndex(polygons, range(1, len(polygons) + 1), [f"zone {number + 1}" for number in range(len(polygons))])
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "is_met"),
+    [
+        ((9.9, 50.05), (10.2, 50.05), True),  # across
+        ((10.04, 50.04), (10.06, 50.06), True),  # within
+        ((9.9, 50.1), (10.2, 50.1), True),  # along the border
+        ((10.1, 50.1), (10.2, 50.2), True),  # touches a corner
+        ((9.95, 50.15), (10.15, 50.15), False),  # beside
+        ((10.2, 50.0), (10.3, 50.1), False),
+        ((10.05, 50.05), (10.05, 50.05), True),  # a point within
+        ((10.1, 50.05), (10.1, 50.05), True),  # a point on the border
+        ((10.2, 50.05), (10.2, 50.05), False),
+    ],
+)
+def test_a_leg_meets_a_zone_that_it_touches(start, end, is_met):
+    assert index(SQUARE).meets([start], [end]).tolist() == [is_met]
+
+
+def test_a_leg_inside_a_hole_meets_nothing():
+    assert index(RING).meets([(10.03, 50.03), (10.03, 50.03)], [(10.07, 50.07), (10.09, 50.07)]).tolist() == [False, True]
+
+
+def test_an_overlap_of_1_cm_is_met():
+    one_cm = 0.01 / 71_500
+    met = index(SQUARE).meets([(10.1 - one_cm, 50.05), (10.1 + one_cm, 50.05)], [(10.2, 50.05), (10.2, 50.05)])
+    assert met.tolist() == [True, False]
+
+
+@pytest.mark.parametrize("lat", [0.0, 47.0, -69.0])
+@pytest.mark.parametrize(
+    ("bearing_deg", "east", "north"),
+    [(0, 0, 1), (45, 1, 1), (90, 1, 0), (135, 1, -1), (180, 0, -1), (225, -1, -1), (270, -1, 0), (315, -1, 1)],
+)
+def test_the_clearance_is_kept_in_metres_in_every_direction(lat, bearing_deg, east, north):
+    """From the middle of each side straight out, and from each corner slantwise."""
+    half_deg = 0.001
+    square = translate(box(-half_deg, -half_deg, half_deg, half_deg), 10.0, lat)
+    border = (10.0 + east * half_deg, lat + north * half_deg)
+    too_near, clear = (WGS84.fwd(*border, bearing_deg, metres)[:2] for metres in (49.9, 51.5))
+    assert index(square).meets([too_near, clear], [too_near, clear], 50.0).tolist() == [True, False]
+
+
+def test_parts_of_a_multipolygon_are_one_zone():
+    pair = MultiPolygon([SQUARE, translate(SQUARE, 1.0)])
+    zones = index(box(0, 0, 1, 1), pair)
+    assert zones.zone_at(LonLat(11.05, 50.05)) == (2, "zone 2")
+    assert zones.meets([(11.05, 50.05)], [(11.5, 50.5)]).tolist() == [True]
+
+
+def test_the_zone_met_first_on_the_way_is_named():
+    zones = index(translate(SQUARE, 1.0), SQUARE)
+    assert zones.first_met(LonLat(9.0, 50.05), LonLat(12.0, 50.05)) == (2, "zone 2")
+    assert zones.first_met(LonLat(12.0, 50.05), LonLat(9.0, 50.05)) == (1, "zone 1")
+    assert zones.first_met(LonLat(9.0, 50.5), LonLat(12.0, 50.5)) is None
+
+
+def test_the_border_belongs_to_the_zone():
+    zones = index(SQUARE)
+    assert zones.zone_at(LonLat(10.1, 50.05)) == (1, "zone 1")
+    assert zones.zone_at(LonLat(10.1000001, 50.05)) is None
+    assert zones.contains([(10.05, 50.05), (10.1, 50.1), (10.2, 50.0)]).tolist() == [True, True, False]
+    assert zones.contains([(10.1 + 40 / 71_700, 50.05), (10.1 + 60 / 71_700, 50.05)], 50.0).tolist() == [True, False]
+
+
+def test_without_zones_nothing_is_met():
+    zones = index()
+    assert zones.meets([(0, 0)], [(1, 1)], 5.0).tolist() == [False]
+    assert zones.contains([(0, 0)]).tolist() == [False]
+    assert zones.zone_at(LonLat(0, 0)) is None
+    assert zones.first_met(LonLat(0, 0), LonLat(1, 1)) is None
+
+
+def test_lists_of_different_length_are_refused():
+    with pytest.raises(ValueError, match="same length"):
+        ZoneIndex([SQUARE], [1, 2], ["a", "b"])
+
+
+coordinates = st.integers(-8, 8)
+
+
+@st.composite
+def zones_and_legs(draw: st.DrawFn):
+    """Triangles on a coarse lattice and legs between lattice points: touches and collinear sides are common."""
+    triangles = draw(st.lists(st.lists(st.tuples(coordinates, coordinates), min_size=3, max_size=3, unique=True), min_size=1, max_size=5))
+    polygons = [polygon for polygon in map(Polygon, triangles) if polygon.area > 0]
+    legs = draw(st.lists(st.tuples(st.tuples(coordinates, coordinates), st.tuples(coordinates, coordinates)), min_size=1, max_size=10))
+    scale = draw(st.sampled_from([1.0, 0.1, 1 / 3]))
+    return [Polygon(np.array(polygon.exterior.coords) * scale) for polygon in polygons], np.array(legs) * scale
+
+
+@given(zones_and_legs())
+def test_answers_equal_exact_arithmetic(case):
+    polygons, legs = case
+    met = index(*polygons).meets(legs[:, 0], legs[:, 1])
+    for (start, end), is_met in zip(legs.tolist(), met.tolist(), strict=True):
+        rings_of = [[list(polygon.exterior.coords)] for polygon in polygons]
+        assert is_met == any(segment_meets_polygon(start, end, rings) for rings in rings_of)
+
+
+@given(zones_and_legs())
+def test_what_meets_a_zone_is_never_clear_of_it(case):
+    polygons, legs = case
+    zones = index(*polygons)
+    assert (zones.meets(legs[:, 0], legs[:, 1], 5.0) >= zones.meets(legs[:, 0], legs[:, 1])).all()
