@@ -1,5 +1,6 @@
 """Settings from the environment (twelve-factor); every variable is described in docs/operations.md."""
 
+import contextlib
 import os
 import secrets
 from pathlib import Path
@@ -38,10 +39,8 @@ def _secret_key() -> str:
         draft = STATE_DIR / f"secret_key.{os.getpid()}"
         draft.touch(mode=0o600)
         draft.write_text(secrets.token_urlsafe(64))
-        try:
+        with contextlib.suppress(FileExistsError):
             os.link(draft, path)  # the first of several processes wins
-        except FileExistsError:
-            pass
         draft.unlink()
     return path.read_text()
 
@@ -129,10 +128,13 @@ CACHES = {
         "BACKEND": "django.core.cache.backends.redis.RedisCache",
         "LOCATION": REDIS_URL,
         "KEY_PREFIX": "spanwise",
+        "OPTIONS": {"socket_connect_timeout": 1, "socket_timeout": 1},  # what the cache holds can be done without
     },
 }
 
 AUTH_USER_MODEL = "workspace.User"
+AUTHENTICATION_BACKENDS = ["workspace.authentication.RoleBackend"]
+CURATED_APPS = ["inspection"]  # what curators may change in the admin; administrators may change everything
 AUTH_PASSWORD_VALIDATORS = [
     {"NAME": f"django.contrib.auth.password_validation.{name}"}
     for name in (
@@ -166,7 +168,10 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_PERMISSION_CLASSES": ["workspace.permissions.RolePermission"],
     "DEFAULT_RENDERER_CLASSES": ["rest_framework.renderers.JSONRenderer"],
     "DEFAULT_PARSER_CLASSES": ["workspace.parsers.StrictJSONParser"],
-    "DEFAULT_SCHEMA_CLASS": "drf_spectacular.openapi.AutoSchema",
+    "DEFAULT_THROTTLE_CLASSES": ["workspace.throttling.ScopedRate"],
+    "DEFAULT_METADATA_CLASS": None,
+    "URL_FORMAT_OVERRIDE": None,
+    "DEFAULT_SCHEMA_CLASS": "workspace.schema.SpanwiseSchema",
     "DEFAULT_THROTTLE_RATES": {"plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second")},
     "EXCEPTION_HANDLER": "workspace.errors.error_response",
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
@@ -208,6 +213,7 @@ CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 10.0, "options": {"expires": 10}},
+    "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 

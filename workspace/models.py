@@ -2,7 +2,8 @@
 
 import uuid
 
-from django.contrib.auth.models import AbstractUser, UserManager as DjangoUserManager
+from django.contrib.auth.models import AbstractUser
+from django.contrib.auth.models import UserManager as DjangoUserManager
 from django.db import models
 from django.db.models.functions import Now
 
@@ -31,14 +32,23 @@ class Role(models.TextChoices):
 
 
 class UserManager(DjangoUserManager["User"]):
-    def create_superuser(self, username, email=None, password=None, **extra_fields):  # type: ignore[no-untyped-def]
-        extra_fields.setdefault("role", Role.ADMINISTRATOR)
-        return super().create_superuser(username, email, password, **extra_fields)
+    """What Django calls staff and superuser follows from the role, so neither is stored or asked for."""
+
+    def create_user(self, username, email=None, password=None, **fields):  # type: ignore[no-untyped-def]
+        user = self.model(username=self.model.normalize_username(username), email=self.normalize_email(email), **fields)
+        user.set_password(password)
+        user.save(using=self._db)
+        return user
+
+    def create_superuser(self, username, email=None, password=None, **fields):  # type: ignore[no-untyped-def]
+        return self.create_user(username, email, password, **{"role": Role.ADMINISTRATOR, **fields})
 
 
 class User(AbstractUser):
     """Somebody who signs in. The role says what they may do: see workspace/permissions.py."""
 
+    groups = None
+    user_permissions = None
     organisation = models.ForeignKey(Organisation, on_delete=models.PROTECT, default=DEFAULT_ORGANISATION_ID, related_name="users")
     role = models.CharField(max_length=20, choices=Role.choices, default=Role.VIEWER)
 
@@ -46,6 +56,15 @@ class User(AbstractUser):
 
     class Meta:
         constraints = [models.CheckConstraint(condition=models.Q(role__in=Role.values), name="user_role_known")]
+
+    @property
+    def is_staff(self) -> bool:
+        """May enter the admin."""
+        return self.can_curate
+
+    @property
+    def is_superuser(self) -> bool:
+        return self.role == Role.ADMINISTRATOR
 
     @property
     def can_plan(self) -> bool:
@@ -139,3 +158,23 @@ class AuditEntry(models.Model):
 
     def __str__(self) -> str:
         return f"{self.action} {self.subject_type} {self.subject_id}"
+
+
+class IdempotencyKey(models.Model):
+    """What a POST with an `Idempotency-Key` was answered, so that the same request sent again creates nothing new."""
+
+    user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="idempotency_keys")
+    key = models.CharField(max_length=200)
+    request_sha256 = models.CharField(max_length=64, help_text="of method, path and body")
+    status = models.PositiveSmallIntegerField(null=True, help_text="empty only inside the transaction that makes the answer")
+    headers = models.JSONField(default=dict)
+    body = models.JSONField(null=True)
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["-created_at"]
+        constraints = [models.UniqueConstraint(fields=["user", "key"], name="idempotency_key_unique")]
+        indexes = [models.Index(fields=["created_at"], name="idempotency_age_idx")]
+
+    def __str__(self) -> str:
+        return f"{self.key} of {self.user}"

@@ -7,14 +7,15 @@ from typing import Any
 from uuid import UUID
 
 from django.db import transaction
-from django.db.models import F, Q
+from django.db.models import Q
 from django.utils import timezone
 
-from workspace.models import ApiToken, AuditEntry, Job, JobState, Organisation, User
+from workspace.models import ApiToken, AuditEntry, IdempotencyKey, Job, JobState, Organisation, User
 
 LEASE_S = 60  # a worker that says nothing for so long is taken for dead
 QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
 MAX_ATTEMPTS = 3
+IDEMPOTENCY_KEPT = timedelta(hours=48)
 
 
 class JobCancelled(Exception):
@@ -33,10 +34,23 @@ def create_api_token(*, user: User, name: str, expires_at: datetime) -> str:
 
 
 def record_change(
-    *, organisation: Organisation, actor: User | None, action: str, subject_type: str, subject_id: object, before: Any = None, after: Any = None
+    *,
+    organisation: Organisation,
+    actor: User | None,
+    action: str,
+    subject_type: str,
+    subject_id: object,
+    before: Any = None,
+    after: Any = None,
 ) -> AuditEntry:
     return AuditEntry.objects.create(
-        organisation=organisation, actor=actor, action=action, subject_type=subject_type, subject_id=str(subject_id), before=before, after=after
+        organisation=organisation,
+        actor=actor,
+        action=action,
+        subject_type=subject_type,
+        subject_id=str(subject_id),
+        before=before,
+        after=after,
     )
 
 
@@ -52,6 +66,9 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         if job is None or not job.is_open:
             return None
         if job.state == JobState.RUNNING and job.lease_expires_at is not None and job.lease_expires_at > now:
+            return None
+        if job.cancel_requested_at is not None:
+            confirm_cancelled(job=job)
             return None
         job.state = JobState.RUNNING
         job.attempts += 1
@@ -79,13 +96,19 @@ def finish_job(*, job: Job, result: Any = None, message: str = "") -> bool:
     """Store the result once. False if another worker finished the job, or the user cancelled it, in the meantime."""
     held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
     return bool(
-        held.update(state=JobState.DONE, progress=1.0, result=result, message=message[:300], finished_at=timezone.now(), lease_expires_at=None)
+        held.update(
+            state=JobState.DONE, progress=1.0, result=result, message=message[:300], finished_at=timezone.now(), lease_expires_at=None
+        )
     )
 
 
 def fail_job(*, job: Job, code: str, message: str) -> None:
     Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts).update(
-        state=JobState.FAILED, error={"code": code, "message": message}, message=message[:300], finished_at=timezone.now(), lease_expires_at=None
+        state=JobState.FAILED,
+        error={"code": code, "message": message},
+        message=message[:300],
+        finished_at=timezone.now(),
+        lease_expires_at=None,
     )
 
 
@@ -97,34 +120,44 @@ def confirm_cancelled(*, job: Job) -> None:
 
 
 def cancel_job(*, job: Job) -> Job:
-    """Ask the job to stop: at once if nobody works on it yet, else at the worker's next look."""
+    """Ask the job to stop: at once if nobody works on it yet, else at the worker's next look. A finished job stays as it is."""
     now = timezone.now()
     with transaction.atomic():
         locked = Job.objects.select_for_update().get(pk=job.pk)
-        if locked.state == JobState.QUEUED:
-            locked.state = JobState.CANCELLED
-            locked.message = "Cancelled"
-            locked.finished_at = now
-        if locked.is_open or locked.state == JobState.CANCELLED:
+        if locked.is_open:
             locked.cancel_requested_at = locked.cancel_requested_at or now
+            if locked.state == JobState.QUEUED:
+                locked.state = JobState.CANCELLED
+                locked.message = "Cancelled"
+                locked.finished_at = now
+                locked.lease_expires_at = None
             locked.save()
     return locked
 
 
 def requeue_lost_jobs() -> list[Job]:
-    """Put back what a dead worker held and find what was never picked up; the caller sends these to the queue again."""
+    """Put back what a dead worker held and find what nobody picked up; the caller sends these to the queue again.
+
+    The lease of a queued job is the time until which a message for it is believed to be on its way.
+    """
     now = timezone.now()
-    lost = Q(state=JobState.RUNNING, lease_expires_at__lt=now)
+    patience = timedelta(seconds=QUEUE_PATIENCE_S)
     with transaction.atomic():
-        for job in Job.objects.select_for_update(skip_locked=True).filter(lost, cancel_requested_at__isnull=False):
-            confirm_cancelled(job=job)
-        for job in Job.objects.select_for_update(skip_locked=True).filter(lost, attempts__gte=MAX_ATTEMPTS):
-            fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
-        Job.objects.filter(lost).update(state=JobState.QUEUED, lease_expires_at=None)
-        waiting = Q(lease_expires_at=None) | Q(lease_expires_at__lt=now)
-        forgotten = Job.objects.select_for_update(skip_locked=True).filter(
-            waiting, state=JobState.QUEUED, created_at__lt=now - timedelta(seconds=QUEUE_PATIENCE_S)
+        for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):
+            if job.cancel_requested_at is not None:
+                confirm_cancelled(job=job)
+            elif job.attempts >= MAX_ATTEMPTS:
+                fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
+            else:
+                Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=None)
+        waiting = Job.objects.select_for_update(skip_locked=True).filter(
+            Q(lease_expires_at=None) | Q(lease_expires_at__lt=now), state=JobState.QUEUED, created_at__lt=now - patience
         )
-        jobs = list(forgotten)
-        forgotten.update(lease_expires_at=now + timedelta(seconds=QUEUE_PATIENCE_S), attempts=F("attempts"))
+        jobs = list(waiting)
+        Job.objects.filter(pk__in=[job.pk for job in jobs]).update(lease_expires_at=now + patience)
     return jobs
+
+
+def forget_old_idempotency_keys() -> int:
+    deleted, _ = IdempotencyKey.objects.filter(created_at__lt=timezone.now() - IDEMPOTENCY_KEPT).delete()
+    return deleted

@@ -30,3 +30,8 @@ def send_job_on_commit(job: Job) -> None:
 def requeue_lost_jobs() -> None:
     for job in services.requeue_lost_jobs():
         send_job(job)
+
+
+@shared_task(time_limit=30)
+def forget_old_idempotency_keys() -> None:
+    services.forget_old_idempotency_keys()

@@ -1,0 +1,55 @@
+"""Answers to errors that no view has caught: JSON under /api/, a page elsewhere."""
+
+import sys
+from http import HTTPStatus
+
+from django.core.exceptions import RequestDataTooBig
+from django.http import HttpRequest, HttpResponse, JsonResponse
+from django.template import TemplateDoesNotExist
+from django.template.loader import render_to_string
+
+from workspace.errors import DATABASE_AWAY, RETRY_AFTER_S, error_body
+
+API_MESSAGES = {
+    400: ("bad_request", "The request cannot be read."),
+    403: ("permission_denied", "This is not allowed."),
+    404: ("not_found", "There is nothing at this address."),
+    413: ("too_large", "The request is larger than this address takes."),
+    500: ("server_error", "Something went wrong here. It has been logged."),
+    503: ("database_away", "The database cannot be reached. Try again in a moment."),
+}
+
+
+def bad_request(request: HttpRequest, exception: Exception | None = None) -> HttpResponse:
+    return _answer(request, 413 if isinstance(exception, RequestDataTooBig) else 400)
+
+
+def permission_denied(request: HttpRequest, exception: Exception | None = None) -> HttpResponse:
+    return _answer(request, 403)
+
+
+def not_found(request: HttpRequest, exception: Exception | None = None) -> HttpResponse:
+    return _answer(request, 404)
+
+
+def server_error(request: HttpRequest) -> HttpResponse:
+    """Django calls this while it handles the exception, so a database that is away can be told from our own fault."""
+    return _answer(request, 503 if isinstance(sys.exc_info()[1], DATABASE_AWAY) else 500)
+
+
+def _answer(request: HttpRequest, status: int) -> HttpResponse:
+    if request.path.startswith("/api/"):
+        response: HttpResponse = JsonResponse(error_body(*API_MESSAGES[status]), status=status)
+    else:
+        response = HttpResponse(_page(status), status=status)
+    if status == 503:
+        response["Retry-After"] = str(RETRY_AFTER_S)
+    return response
+
+
+def _page(status: int) -> str:
+    """The designed page, drawn without the request: context processors would ask the database, which may be the trouble."""
+    try:
+        return render_to_string(f"{status}.html")
+    except TemplateDoesNotExist:
+        return f"<!doctype html><html lang=en><title>{status}</title><p>{HTTPStatus(status).phrase}"

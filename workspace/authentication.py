@@ -1,0 +1,65 @@
+"""Who is asking: bearer tokens for programs, and what a role may do in the admin."""
+
+from typing import Any
+
+from django.conf import settings
+from django.contrib.auth.backends import ModelBackend
+from django.utils import timezone
+from drf_spectacular.extensions import OpenApiAuthenticationExtension
+from drf_spectacular.plumbing import build_bearer_security_scheme_object
+from rest_framework.authentication import BaseAuthentication, get_authorization_header
+from rest_framework.exceptions import AuthenticationFailed
+from rest_framework.request import Request
+
+from workspace.models import ApiToken, Role, User
+from workspace.services import hash_token
+
+LONGEST_TOKEN = 200
+
+
+class BearerTokenAuthentication(BaseAuthentication):
+    """`Authorization: Bearer spw_…`. The answer never tells whether a token is unknown, expired or revoked."""
+
+    def authenticate(self, request: Request) -> tuple[User, ApiToken] | None:
+        scheme, _, token = get_authorization_header(request).strip().partition(b" ")
+        if scheme.lower() != b"bearer":
+            return None
+        found = self._valid_token(token.strip())
+        if found is None:
+            raise AuthenticationFailed("The token is not valid.")
+        return found.user, found
+
+    def authenticate_header(self, request: Request) -> str:
+        return "Bearer"
+
+    @staticmethod
+    def _valid_token(token: bytes) -> ApiToken | None:
+        if not token.isascii() or len(token) > LONGEST_TOKEN:
+            return None
+        return (
+            ApiToken.objects.select_related("user__organisation")
+            .filter(token_sha256=hash_token(token.decode("ascii")), revoked_at=None, expires_at__gt=timezone.now(), user__is_active=True)
+            .first()
+        )
+
+
+class BearerTokenScheme(OpenApiAuthenticationExtension):
+    """Describes the bearer token in the OpenAPI document."""
+
+    target_class = BearerTokenAuthentication
+    name = "bearerToken"
+
+    def get_security_definition(self, auto_schema: Any) -> dict[str, Any]:
+        return build_bearer_security_scheme_object(header_name="Authorization", token_prefix="Bearer")  # noqa: S106 - the scheme's name
+
+
+class RoleBackend(ModelBackend):
+    """Signs in by name and password; permissions in the admin follow from the role and from nothing else."""
+
+    def has_perm(self, user_obj: Any, perm: str, obj: Any = None) -> bool:
+        return self.has_module_perms(user_obj, perm.partition(".")[0])
+
+    def has_module_perms(self, user_obj: Any, app_label: str) -> bool:
+        if not user_obj.is_active or user_obj.is_anonymous:
+            return False
+        return user_obj.role == Role.ADMINISTRATOR or (user_obj.role == Role.CURATOR and app_label in settings.CURATED_APPS)

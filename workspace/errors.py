@@ -1,0 +1,97 @@
+"""One shape for every error of the API: {"error": {"code", "message", "details"}}."""
+
+import logging
+from typing import Any
+
+from django.core.exceptions import PermissionDenied, RequestDataTooBig, SuspiciousOperation
+from django.core.exceptions import ValidationError as DjangoValidationError
+from django.db import DataError, InterfaceError, OperationalError
+from django.http import Http404
+from rest_framework import exceptions
+from rest_framework.response import Response
+from rest_framework.views import exception_handler
+
+logger = logging.getLogger(__name__)
+
+DATABASE_AWAY = (OperationalError, InterfaceError)  # also a statement that was cancelled or lost a deadlock: worth another try
+RETRY_AFTER_S = 2
+
+
+class ApiProblem(exceptions.APIException):
+    """An answer that says what went wrong: raised by views, which turn the errors of services into it."""
+
+    def __init__(self, status: int, code: str, message: str, *, details: Any = None, retry_after_s: int | None = None) -> None:
+        super().__init__(message, code)
+        self.status_code = status
+        self.code = code
+        self.message = message
+        self.details = details
+        self.retry_after_s = retry_after_s
+
+
+def error_body(code: str, message: str, details: Any = None) -> dict[str, Any]:
+    return {"error": {"code": code, "message": message, "details": details}}
+
+
+def database_away_problem() -> ApiProblem:
+    return ApiProblem(503, "database_away", "The database cannot be reached. Try again in a moment.", retry_after_s=RETRY_AFTER_S)
+
+
+def error_response(error: Exception, context: dict[str, Any]) -> Response | None:
+    """REST framework's exception handler. Errors that are nobody's fault but ours stay unhandled and reach handler500."""
+    error = _as_api_exception(error)
+    response = exception_handler(error, context)
+    if response is None:
+        return None
+    if isinstance(error, ApiProblem):
+        response.data = error_body(error.code, error.message, error.details)
+        if error.retry_after_s is not None:
+            response["Retry-After"] = str(error.retry_after_s)
+    elif isinstance(error, exceptions.ValidationError):
+        faults = _faults(error.detail)
+        place, messages = next(iter(faults.items()), ("", ["The input is not valid."]))
+        response.data = error_body("invalid", f"{place}: {messages[0]}" if place else messages[0], faults)
+    elif isinstance(error, exceptions.APIException):
+        response.data = error_body(_code(error), str(error.detail))
+    return response
+
+
+def _as_api_exception(error: Exception) -> Exception:
+    if isinstance(error, DATABASE_AWAY):
+        logger.warning("database away: %s", error)
+        return database_away_problem()
+    if isinstance(error, Http404):
+        return exceptions.NotFound("There is nothing here, or it belongs to another organisation.")
+    if isinstance(error, PermissionDenied):
+        return exceptions.PermissionDenied(str(error) or None)
+    if isinstance(error, DjangoValidationError):
+        return exceptions.ValidationError(error.message_dict if hasattr(error, "error_dict") else error.messages)
+    if isinstance(error, RequestDataTooBig):
+        return ApiProblem(413, "too_large", "The request is larger than this address takes.")
+    if isinstance(error, SuspiciousOperation):
+        return ApiProblem(400, "bad_request", "The request cannot be read.")
+    if isinstance(error, DataError):
+        logger.warning("a value does not fit its column: %s", error)
+        return ApiProblem(400, "invalid", "A value is out of the range that can be stored.")
+    return error
+
+
+def _code(error: exceptions.APIException) -> str:
+    codes = error.get_codes()
+    return codes if isinstance(codes, str) else error.default_code
+
+
+def _faults(detail: Any, place: str = "") -> dict[str, list[str]]:
+    """Flatten nested validation errors: {"targets.0.position": ["This field is required."]}; "" is the body as a whole."""
+    if isinstance(detail, dict):
+        nested = [(key, value) for key, value in detail.items() if value]
+    elif isinstance(detail, list) and any(isinstance(entry, dict | list) for entry in detail):
+        nested = [(str(index), entry) for index, entry in enumerate(detail) if entry]
+    else:
+        return {place: [str(message) for message in (detail if isinstance(detail, list) else [detail])]}
+    faults: dict[str, list[str]] = {}
+    for key, value in nested:
+        inner = place if key == "non_field_errors" else f"{place}.{key}" if place else str(key)
+        for where, messages in _faults(value, inner).items():
+            faults.setdefault(where, []).extend(messages)
+    return faults

@@ -1,0 +1,70 @@
+"""Cursor paging: a page continues after its last row, so that rows that come and go in between repeat or hide nothing."""
+
+import base64
+import binascii
+import json
+from dataclasses import dataclass
+from typing import Any
+
+from django.core.exceptions import ValidationError as DjangoValidationError
+from django.db.models import Model, Q, QuerySet
+from rest_framework.request import Request
+
+from workspace.errors import ApiProblem
+
+
+@dataclass(frozen=True)
+class Page:
+    rows: list[Any]
+    next: str | None  # path and query of the next page
+
+
+def page_of(
+    request: Request, queryset: QuerySet[Any], *, order: tuple[str, ...] = ("pk",), default_limit: int = 100, max_limit: int = 1000
+) -> Page:
+    """The page that `?limit=` and `?cursor=` ask for. `order` names model fields ("-" for descending); the last one must be unique."""
+    limit = _limit(request, default_limit, max_limit)
+    if cursor := request.query_params.get("cursor"):
+        queryset = queryset.filter(_rows_after(queryset.model, order, cursor))
+    rows = list(queryset.order_by(*order)[: limit + 1])
+    if len(rows) <= limit:
+        return Page(rows, None)
+    rows = rows[:limit]
+    query = request.query_params.copy()
+    query["cursor"] = _cursor_of(rows[-1], order)
+    return Page(rows, f"{request.path}?{query.urlencode()}")
+
+
+def _limit(request: Request, default_limit: int, max_limit: int) -> int:
+    text = request.query_params.get("limit", "")
+    if not text:
+        return default_limit
+    if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) > 0):
+        raise ApiProblem(400, "invalid", "limit: A whole number from 1 is needed.", details={"limit": ["A whole number from 1 is needed."]})
+    return min(int(text), max_limit)
+
+
+def _field(model: type[Model], name: str) -> Any:
+    name = name.removeprefix("-")
+    return model._meta.pk if name == "pk" else model._meta.get_field(name)
+
+
+def _cursor_of(row: Model, order: tuple[str, ...]) -> str:
+    values = [_field(type(row), name).value_to_string(row) for name in order]
+    return base64.urlsafe_b64encode(json.dumps(values).encode()).decode().rstrip("=")
+
+
+def _rows_after(model: type[Model], order: tuple[str, ...], cursor: str) -> Q:
+    """(a, b) > (x, y) written as a > x or (a = x and b > y), each column in its own direction."""
+    try:
+        texts = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
+        values = [_field(model, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]
+    except (binascii.Error, ValueError, TypeError, DjangoValidationError) as error:
+        raise ApiProblem(400, "invalid_cursor", "The cursor is not one that this address gave.") from error
+    after = Q()
+    equal = Q()
+    for name, value in zip(order, values, strict=True):
+        column = name.removeprefix("-")
+        after |= equal & Q(**{f"{column}__{'lt' if name.startswith('-') else 'gt'}": value})
+        equal &= Q(**{column: value})
+    return after

@@ -1,0 +1,69 @@
+"""Reading request bodies: JSON as the standard has it, and no more than a request needs."""
+
+import json
+import math
+from typing import IO, Any
+
+from django.conf import settings
+from rest_framework.exceptions import ParseError
+from rest_framework.parsers import BaseParser
+
+from workspace.errors import ApiProblem
+
+DEEPEST_NESTING = 32
+
+
+class StrictJSONParser(BaseParser):
+    """Refuses NaN and infinities, deep nesting, characters that cannot be stored, and bodies over the limit."""
+
+    media_type = "application/json"
+
+    def parse(self, stream: IO[bytes], media_type: str | None = None, parser_context: dict[str, Any] | None = None) -> Any:
+        limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
+        body = stream.read(limit + 1)
+        if len(body) > limit:
+            raise ApiProblem(413, "too_large", f"The request body is larger than {limit // 1024} kB.")
+        try:
+            value = json.loads(body.decode(), parse_constant=_refuse_constant, parse_float=_finite_float)
+        except UnicodeDecodeError as error:
+            raise ParseError(f"The body is not UTF-8 at byte {error.start}.") from error
+        except RecursionError as error:
+            raise ParseError(f"The body is nested deeper than {DEEPEST_NESTING} levels.") from error
+        except ValueError as error:
+            raise ParseError(f"The body is not JSON: {error}") from error
+        _check(value)
+        return value
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(f"{name} is not a number")
+
+
+def _finite_float(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:20]} is too large a number")
+    return value
+
+
+def _check(root: Any) -> None:
+    """Walk level by level, so that depth costs no stack."""
+    level = [root]
+    for _ in range(DEEPEST_NESTING + 1):
+        deeper: list[Any] = []
+        for value in level:
+            if isinstance(value, dict):
+                deeper.extend(value.keys())
+                deeper.extend(value.values())
+            elif isinstance(value, list):
+                deeper.extend(value)
+            elif isinstance(value, str) and ("\0" in value or not _is_encodable(value)):
+                raise ParseError("A text holds a NUL character or half a surrogate pair.")
+        if not deeper:
+            return
+        level = deeper
+    raise ParseError(f"The body is nested deeper than {DEEPEST_NESTING} levels.")
+
+
+def _is_encodable(text: str) -> bool:
+    return text.isascii() or not any("\ud800" <= character <= "\udfff" for character in text)

@@ -1,0 +1,33 @@
+"""Shapes of the workspace's API."""
+
+from rest_framework import serializers
+
+from workspace.models import Job, JobState
+
+
+class ErrorDetailSerializer(serializers.Serializer):
+    code = serializers.CharField(help_text="for programs: stays the same")
+    message = serializers.CharField(help_text="for people: one sentence")
+    details = serializers.JSONField(allow_null=True, help_text='for invalid input: {"place.in.the.body": ["what is wrong"]}')
+
+
+class ErrorSerializer(serializers.Serializer):
+    """Every error of the API has this shape."""
+
+    error = ErrorDetailSerializer()
+
+
+class JobSerializer(serializers.ModelSerializer):
+    """Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`."""
+
+    state = serializers.ChoiceField(choices=JobState.choices)
+
+    class Meta:
+        model = Job
+        fields = ["id", "task", "state", "progress", "message", "result", "error", "created_at", "started_at", "finished_at"]
+        read_only_fields = fields
+
+
+class JobPageSerializer(serializers.Serializer):
+    results = JobSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")

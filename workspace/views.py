@@ -1,0 +1,59 @@
+"""The API's doors to jobs."""
+
+from uuid import UUID
+
+from django.http import Http404
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from workspace import selectors, services
+from workspace.models import Job, JobState, User
+from workspace.paging import page_of
+from workspace.permissions import CURATORS, PLANNERS
+from workspace.schema import PAGE_PARAMETERS
+from workspace.serializers import JobPageSerializer, JobSerializer
+
+
+def _job(user: User, job_id: UUID) -> Job:
+    try:
+        return selectors.job_of_organisation(user.organisation, job_id)
+    except Job.DoesNotExist as error:
+        raise Http404 from error
+
+
+class JobList(APIView):
+    @extend_schema(
+        operation_id="list_jobs",
+        summary="Jobs of one's organisation, newest first",
+        parameters=[OpenApiParameter("state", str, enum=JobState.values), *PAGE_PARAMETERS],
+        responses=JobPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        jobs = selectors.jobs_of_organisation(request.user.organisation)
+        if state := request.query_params.get("state"):
+            jobs = jobs.filter(state=state)
+        page = page_of(request, jobs, order=("-created_at", "-pk"))
+        return Response({"results": JobSerializer(page.rows, many=True).data, "next": page.next})
+
+
+class JobDetail(APIView):
+    @extend_schema(operation_id="get_job", summary="One job: how far it is, and its result", responses=JobSerializer)
+    def get(self, request: Request, job_id: UUID) -> Response:
+        return Response(JobSerializer(_job(request.user, job_id)).data)
+
+
+class JobCancel(APIView):
+    write_roles = PLANNERS | CURATORS
+
+    @extend_schema(
+        operation_id="cancel_job",
+        summary="Ask a job to stop",
+        description="A queued job is cancelled at once, a running one at its next step; a finished one stays as it is.",
+        request=None,
+        responses=JobSerializer,
+    )
+    def post(self, request: Request, job_id: UUID) -> Response:
+        job = services.cancel_job(job=_job(request.user, job_id))
+        return Response(JobSerializer(job).data)
