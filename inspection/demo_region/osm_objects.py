@@ -1,0 +1,53 @@
+"""OSM nodes and ways of the demo region while it is being drawn."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from inspection.demo_region.place import FloatArray, lon_lat
+from inspection.geodesy import LonLat
+
+# OSM counts its ids upward and had reached about 1.4e10 for nodes in 2026. Made objects start far above, so that they never meet
+# a real id, and stay below 2**53, the last whole number that JavaScript keeps.
+FIRST_ID = 4_000_000_000_000
+
+Tags = Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class OsmNode:
+    id: int
+    position: LonLat
+    tags: Tags
+
+
+@dataclass(frozen=True)
+class OsmWay:
+    id: int
+    node_ids: tuple[int, ...]
+    tags: Tags
+
+
+@dataclass
+class OsmDrawing:
+    """Collects nodes and ways and numbers them in the order in which they are drawn."""
+
+    nodes: list[OsmNode] = field(default_factory=list)
+    ways: list[OsmWay] = field(default_factory=list)
+
+    def add_node(self, at: Sequence[float] | FloatArray, tags: Tags | None = None) -> int:
+        node = OsmNode(FIRST_ID + len(self.nodes), lon_lat(float(at[0]), float(at[1])), dict(tags or {}))
+        self.nodes.append(node)
+        return node.id
+
+    def add_way(self, node_ids: Iterable[int], tags: Tags) -> int:
+        way = OsmWay(FIRST_ID + len(self.ways), tuple(node_ids), dict(tags))
+        self.ways.append(way)
+        return way.id
+
+    def add_path(self, path: Iterable[FloatArray], tags: Tags) -> int:
+        return self.add_way([self.add_node(point) for point in path], tags)
+
+    def add_area(self, ring: Iterable[FloatArray], tags: Tags) -> int:
+        """A closed way; the ring is given without its repeated last point."""
+        node_ids = [self.add_node(point) for point in ring]
+        return self.add_way([*node_ids, node_ids[0]], tags)

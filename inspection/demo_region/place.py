@@ -1,0 +1,67 @@
+"""Where the demo region lies, how large it is, and who flies there. Every name is invented.
+
+It lies in the Great Sand Sea of Egypt's Western Desert: land without settlements, roads or power lines, so that no real tower
+can be mistaken for a made one and a base map under it stays empty (docs/decisions/0010-synthetic-demo-location.md).
+"""
+
+from dataclasses import dataclass
+from math import cos, radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat
+
+FloatArray = NDArray[np.float64]
+Point = tuple[float, float]  # east, north [m] of the region's centre
+
+REGION_NAME = "Elme Valley"
+DEFAULT_SEED = 20_260
+CENTRE = LonLat(26.6, 25.7)
+HALF_WIDTH_M = 20_000.0
+HALF_HEIGHT_M = 13_000.0
+
+# Metres in a degree at the centre's latitude (series of the WGS84 radii of curvature). A made region needs no better projection.
+_LATITUDE = radians(CENTRE.lat)
+METRES_PER_DEG_LON = 111_412.84 * cos(_LATITUDE) - 93.5 * cos(3 * _LATITUDE) + 0.118 * cos(5 * _LATITUDE)
+METRES_PER_DEG_LAT = 111_132.92 - 559.82 * cos(2 * _LATITUDE) + 1.175 * cos(4 * _LATITUDE)
+
+
+def lon_lat(east_m: float, north_m: float) -> LonLat:
+    """Position of a point of the region, on OSM's grid of 1e-7 degrees."""
+    return LonLat(round(CENTRE.lon + east_m / METRES_PER_DEG_LON, 7), round(CENTRE.lat + north_m / METRES_PER_DEG_LAT, 7))
+
+
+@dataclass(frozen=True)
+class BasedUav:
+    name: str
+    sensor: str
+    max_range_m: float
+    cruise_speed_mps: float
+
+
+@dataclass(frozen=True)
+class Base:
+    name: str
+    position: LonLat
+    uavs: tuple[BasedUav, ...]
+
+
+BASES = (
+    Base(
+        "Elmsgard depot",
+        lon_lat(-9_050.0, 2_450.0),
+        (
+            BasedUav("Kestrel 1", "RGB and thermal camera", 45_000.0, 12.0),
+            BasedUav("Kestrel 2", "RGB and thermal camera", 45_000.0, 12.0),
+        ),
+    ),
+    Base(
+        "Varneck depot",
+        lon_lat(10_900.0, 3_150.0),
+        (
+            BasedUav("Osprey 1", "RGB camera and lidar", 70_000.0, 15.0),
+            BasedUav("Osprey 2", "RGB camera and lidar", 70_000.0, 15.0),
+        ),
+    ),
+)
