@@ -1,0 +1,54 @@
+"""manage.py make_demo_region writes three files, the same each time."""
+
+import hashlib
+import json
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from django.contrib.gis.gdal import GDALRaster
+from django.core.management import call_command
+
+from inspection.demo_region import make_region
+
+NAMES = ["demo-terrain.tif", "demo-zones.json", "demo.osm.pbf"]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    directory = tmp_path_factory.mktemp("demo")
+    output = StringIO()
+    call_command("make_demo_region", str(directory), stdout=output)
+    return directory, output.getvalue()
+
+
+def test_it_writes_three_files_and_prints_their_paths(written: tuple[Path, str]) -> None:
+    directory, output = written
+    assert sorted(path.name for path in directory.iterdir()) == NAMES
+    assert all(str(directory / name) in output for name in NAMES)
+    assert "synthetic" in output
+
+
+def test_two_runs_write_the_same_bytes(written: tuple[Path, str], tmp_path: Path) -> None:
+    call_command("make_demo_region", str(tmp_path / "made" / "on the way"), stdout=StringIO())
+    for name in NAMES:
+        first, second = written[0] / name, tmp_path / "made" / "on the way" / name
+        assert hashlib.sha256(first.read_bytes()).digest() == hashlib.sha256(second.read_bytes()).digest(), name
+
+
+def test_the_zone_file_is_an_ed269_document_that_says_synthetic(written: tuple[Path, str]) -> None:
+    document = json.loads((written[0] / "demo-zones.json").read_text())
+    assert "synthetic" in document["title"]
+    assert len({feature["identifier"] for feature in document["features"]}) == 8
+    assert all(len(feature["identifier"]) == 7 for feature in document["features"])
+    assert sum("schedule" in feature["applicability"][0] for feature in document["features"]) == 1
+
+
+def test_the_terrain_file_holds_the_drawn_heights_where_they_were_drawn(written: tuple[Path, str]) -> None:
+    raster = GDALRaster(str(written[0] / "demo-terrain.tif"))
+    terrain = make_region().terrain
+    assert raster.srid == 4326
+    assert (raster.origin.x, raster.origin.y) == pytest.approx((terrain.west_deg, terrain.north_deg), abs=1e-12)
+    assert (raster.scale.x, raster.scale.y) == pytest.approx((terrain.step_deg, -terrain.step_deg), abs=1e-15)
+    assert np.array_equal(raster.bands[0].data(), terrain.heights_amsl_m)
