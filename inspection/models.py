@@ -70,6 +70,7 @@ class Asset(models.Model):
     is_flyable = models.BooleanField(default=True, help_text="part of the inspection graph: not underground, disused, a busbar or a bay")
     node_osm_ids = ArrayField(models.BigIntegerField(), default=list, blank=True, editable=False, help_text="OSM node of each vertex of a way")
     tags = models.JSONField(default=dict, blank=True)
+    parts = models.JSONField(default=list, blank=True, editable=False, help_text='the OSM ways on a bridge\'s area: [{"osm_id", "tags"}]')
     data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="assets")
     content_hash = models.CharField(max_length=64, blank=True, editable=False, help_text="of what the last import said")
     is_edited = models.BooleanField(default=False, help_text="changed by a curator; imports leave the row alone")

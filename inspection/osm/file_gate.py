@@ -1,0 +1,181 @@
+"""Looks an OSM file over before a parser sees it: which format it has, and that it is no bomb."""
+
+import bz2
+import gzip
+import re
+import zlib
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import BinaryIO
+
+MAX_BLOB_HEADER_BYTES = 64 * 1024  # OSM wiki, PBF format: "should be less than 32 KiB and must be less than 64 KiB"
+MAX_BLOB_BYTES = 32 * 1024 * 1024  # same page, for the uncompressed size
+MAX_UNPACKED_BYTES = 64 * 1024**3
+MAX_RATIO = 100  # OSM XML packs about 10:1, bzip2 up to 20:1; a bomb 1,000:1 and more
+FREE_UNPACKED_BYTES = 4 * 1024 * 1024  # a small file may pack as well as it likes
+_CHUNK = 1024 * 1024
+_BLOB_TYPES = {b"OSMHeader", b"OSMData"}
+
+Progress = Callable[[str, float], None]
+
+
+class OsmFileError(ValueError):
+    """The file cannot be taken for OSM data; the message says why, in one sentence for its user."""
+
+
+class OsmFormat(StrEnum):
+    """The values are libosmium's names, but for JSON, which it does not read."""
+
+    PBF = "pbf"
+    XML = "osm"
+    XML_GZIP = "osm.gz"
+    XML_BZIP2 = "osm.bz2"
+    JSON = "json"
+    JSON_GZIP = "json.gz"
+    JSON_BZIP2 = "json.bz2"
+
+
+def open_unpacked(path: Path, file_format: OsmFormat) -> BinaryIO:
+    if file_format in {OsmFormat.XML_GZIP, OsmFormat.JSON_GZIP}:
+        return gzip.open(path)  # type: ignore[return-value]
+    if file_format in {OsmFormat.XML_BZIP2, OsmFormat.JSON_BZIP2}:
+        return bz2.open(path)  # type: ignore[return-value]
+    return path.open("rb")
+
+
+def examine(path: Path, progress: Progress | None = None) -> OsmFormat:
+    """Tell the file's format by its content and walk through it once; raises OsmFileError for what no honest file has."""
+    try:
+        file_format = _format_of(path)
+        if file_format is OsmFormat.PBF:
+            _examine_pbf(path)
+        else:
+            _examine_stream(path, file_format, progress)
+    except (OSError, EOFError, zlib.error) as error:
+        raise OsmFileError(f"The file cannot be read: {error}") from error
+    return file_format
+
+
+def _format_of(path: Path) -> OsmFormat:
+    with path.open("rb") as file:
+        start = file.read(16)
+    if not start:
+        raise OsmFileError("The file is empty.")
+    if start[:2] == b"\x1f\x8b":
+        return _format_inside(path, OsmFormat.XML_GZIP, OsmFormat.JSON_GZIP)
+    if start[:3] == b"BZh":
+        return _format_inside(path, OsmFormat.XML_BZIP2, OsmFormat.JSON_BZIP2)
+    if start[:2] == b"\x00\x00" or b"OSMHeader" in start:
+        return OsmFormat.PBF
+    return _format_inside(path, OsmFormat.XML, OsmFormat.JSON)
+
+
+def _format_inside(path: Path, xml: OsmFormat, json: OsmFormat) -> OsmFormat:
+    with open_unpacked(path, xml) as file:
+        text = file.read(256).removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text.startswith(b"<"):
+        return xml
+    if text.startswith(b"{"):
+        return json
+    raise OsmFileError("This is neither OSM XML, OSM PBF nor Overpass JSON.")
+
+
+def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | None) -> None:
+    """Unpack the text once, keeping nothing: how large it becomes, and that no XML token is endless."""
+    packed_bytes = path.stat().st_size
+    is_packed = file_format not in {OsmFormat.XML, OsmFormat.JSON}
+    is_xml = file_format in {OsmFormat.XML, OsmFormat.XML_GZIP, OsmFormat.XML_BZIP2}
+    if not is_packed and not is_xml:
+        return  # the JSON reader bounds each element itself
+    unpacked = 0
+    with open_unpacked(path, file_format) as file:
+        while chunk := file.read(_CHUNK):
+            unpacked += len(chunk)
+            if is_packed and unpacked > FREE_UNPACKED_BYTES and unpacked > MAX_RATIO * packed_bytes:
+                raise OsmFileError(f"The file unpacks to more than {MAX_RATIO} times its size; refused as a decompression bomb.")
+            if unpacked > MAX_UNPACKED_BYTES:
+                raise OsmFileError(f"The file unpacks to more than {MAX_UNPACKED_BYTES // 1024**3} GiB.")
+            if is_xml and len(chunk) == _CHUNK and b">" not in chunk:
+                raise OsmFileError("The XML has a tag of more than 1 MiB.")
+            if progress is not None and unpacked % (64 * _CHUNK) < _CHUNK:
+                progress(f"looking the file over, {unpacked // 1024**2} MiB", 0.0)
+
+
+def _examine_pbf(path: Path) -> None:
+    """Walk from blob to blob by their headers, unpacking none."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        offset = 0
+        while offset < size:
+            file.seek(offset)
+            prefix = file.read(4)
+            header_bytes = int.from_bytes(prefix, "big")
+            if len(prefix) < 4 or header_bytes == 0:
+                raise OsmFileError(f"The PBF is cut off or damaged at byte {offset}.")
+            if header_bytes > MAX_BLOB_HEADER_BYTES:
+                raise OsmFileError(f"The PBF has a blob header of {header_bytes} bytes at byte {offset}; the format allows 64 KiB.")
+            blob_type, blob_bytes = _blob_header(file.read(header_bytes), offset)
+            if offset == 0 and blob_type != b"OSMHeader":
+                raise OsmFileError("The PBF does not begin with an OSM header.")
+            if blob_type not in _BLOB_TYPES and not re.fullmatch(rb"[\x20-\x7e]{1,64}", blob_type):
+                raise OsmFileError(f"The PBF has a blob of no known type at byte {offset}.")
+            start = offset + 4 + header_bytes
+            if not 0 < blob_bytes <= MAX_BLOB_BYTES:
+                raise OsmFileError(f"The PBF has a blob of {blob_bytes} bytes at byte {offset}; the format allows 32 MiB.")
+            if start + blob_bytes > size:
+                raise OsmFileError(f"The PBF is cut off: the blob at byte {offset} goes past the end of the file.")
+            _examine_blob(file, start, start + blob_bytes)
+            offset = start + blob_bytes
+
+
+def _blob_header(data: bytes, offset: int) -> tuple[bytes, int]:
+    """The type (field 1) and datasize (field 3) of a BlobHeader message."""
+    blob_type, blob_bytes, at = b"", -1, 0
+    try:
+        while at < len(data):
+            key, at = _varint(data, at)
+            value, at = _varint(data, at)
+            if key & 7 == 2:
+                if key >> 3 == 1:
+                    blob_type = data[at : at + value]
+                at += value
+            elif key & 7 != 0:
+                raise IndexError
+            elif key >> 3 == 3:
+                blob_bytes = value
+    except IndexError as error:
+        raise OsmFileError(f"The PBF is damaged: no blob header can be read at byte {offset}.") from error
+    return blob_type, blob_bytes
+
+
+def _examine_blob(file: BinaryIO, start: int, end: int) -> None:
+    """Find raw_size (field 2) of a Blob message, skipping over its data."""
+    at = start
+    while at < end:
+        file.seek(at)
+        data = file.read(min(24, end - at))
+        try:
+            key, used = _varint(data, 0)
+            value, used = _varint(data, used)
+        except IndexError as error:
+            raise OsmFileError(f"The PBF is damaged: no blob can be read at byte {start}.") from error
+        if key & 7 == 2:
+            used += value
+        elif key & 7 != 0:
+            raise OsmFileError(f"The PBF is damaged: no blob can be read at byte {start}.")
+        elif key >> 3 == 2 and value > MAX_BLOB_BYTES:
+            raise OsmFileError(f"The PBF has a blob that unpacks to {value} bytes at byte {start}; the format allows 32 MiB.")
+        at += used
+
+
+def _varint(data: bytes, at: int) -> tuple[int, int]:
+    """A protobuf varint and the offset after it; IndexError when there is none."""
+    value = 0
+    for shift in range(0, 70, 7):
+        byte = data[at]
+        at += 1
+        value |= (byte & 0x7F) << shift
+        if byte < 0x80:
+            return value, at
+    raise IndexError

@@ -1,0 +1,323 @@
+"""Reads an OSM file into asset records: a few filtered passes in C++, so that memory holds the infrastructure and not the file."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import osmium
+from numpy.typing import NDArray
+from osmium.filter import IdFilter, KeyFilter
+from shapely import LineString, Point
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.osm import tags as meaning
+from inspection.osm.areas import BrokenArea, polygon_of_relation, polygon_of_ring
+from inspection.osm.bridges import BridgeArea, BridgeWay, bridges_of
+from inspection.osm.file_gate import OsmFileError, OsmFormat, Progress, examine
+from inspection.osm.overpass_json import rewrite_as_pbf
+from inspection.osm.records import AssetRecord, Extent, OsmContent
+
+MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure
+MAX_NODES_PER_WAY = 10_000  # OSM itself stops at 2,000
+_LENGTH_DECIMALS = 6
+
+
+@dataclass(frozen=True)
+class _Way:
+    osm_id: int
+    tags: dict[str, str]
+    refs: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class _Relation:
+    osm_id: int
+    tags: dict[str, str]
+    outer: tuple[int, ...]
+    inner: tuple[int, ...]
+
+
+def read_osm(path: Path, progress: Progress | None = None) -> OsmContent:
+    """The assets of an .osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON file; raises OsmFileError if it cannot be read whole."""
+    file_format = examine(path, progress)
+    try:
+        if file_format not in {OsmFormat.JSON, OsmFormat.JSON_GZIP, OsmFormat.JSON_BZIP2}:
+            return _Reader(osmium.io.File(str(path), file_format.value), progress).content(None)
+        with TemporaryDirectory() as folder:
+            rewritten = Path(folder) / "overpass.osm.pbf"
+            timestamp = rewrite_as_pbf(path, file_format, rewritten)
+            return _Reader(osmium.io.File(str(rewritten), "pbf"), progress).content(timestamp)
+    except (RuntimeError, ValueError, OSError, EOFError) as error:
+        if isinstance(error, OsmFileError):
+            raise
+        raise OsmFileError(f"The file is damaged: {error}") from error
+
+
+class _Reader:
+    """The passes over one file, in order; each keeps only what a later one or a record needs."""
+
+    def __init__(self, file: Any, progress: Progress | None) -> None:
+        self.file = file
+        self.progress = progress or (lambda stage, share: None)
+        self.counts: Counter[str] = Counter()
+        self.skipped: Counter[str] = Counter()
+        self.node_ids: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self.positions: FloatArray = np.zeros((0, 2))
+
+    def content(self, timestamp: str | None) -> OsmContent:
+        header = osmium.FileProcessor(self.file, osmium.osm.NOTHING).header
+        self.progress("relations", 0.05)
+        relations = self._read_relations()
+        self.progress("ways", 0.15)
+        ways = self._read_ways()
+        members = self._read_members(relations, ways)
+        self.progress("way nodes", 0.4)
+        self._read_positions([way.refs for way in (*ways.values(), *members.values())])
+        self.progress("towers and poles", 0.7)
+        records = self._supports()
+        self.progress("geometry", 0.8)
+        records += self._ways_and_bridges(ways, relations, members)
+        self.progress("read", 1.0)
+        return OsmContent(
+            records=records, counts=self._counts(records), extent=_extent(records), stated_extent=_stated_extent(header.box()),
+            data_timestamp=timestamp or header.get("osmosis_replication_timestamp") or header.get("timestamp") or None,
+        )  # fmt: skip
+
+    def _objects(self, entities: Any, filter_: Any) -> Iterator[Any]:
+        items: Iterable[Any] = osmium.FileProcessor(self.file, entities).with_filter(filter_)
+        for item in items:
+            if item.deleted:
+                self.skipped["deleted"] += 1
+            elif item.id <= 0:
+                self.skipped["without_osm_id"] += 1
+            else:
+                yield item
+
+    def _read_relations(self) -> list[_Relation]:
+        relations = []
+        for item in self._objects(osmium.osm.RELATION, KeyFilter("man_made")):
+            tags = dict(item.tags)
+            if tags.get("man_made") != "bridge" or tags.get("type") != "multipolygon":
+                continue
+            members = [(member.ref, member.role) for member in item.members if member.type == "w" and member.ref > 0]
+            outer = tuple(ref for ref, role in members if role != "inner")
+            relations.append(_Relation(item.id, tags, outer, tuple(ref for ref, role in members if role == "inner")))
+        return relations
+
+    def _read_ways(self) -> dict[int, _Way]:
+        ways: dict[int, _Way] = {}
+        total = 0
+        for item in self._objects(osmium.osm.WAY, KeyFilter("power", "railway", "bridge", "man_made")):
+            tags = dict(item.tags)
+            if not (
+                meaning.power_way_kind(tags) or meaning.railway_kind(tags) or meaning.is_bridge(tags) or tags.get("man_made") == "bridge"
+            ):
+                continue
+            way = _way(item, tags)
+            total += len(way.refs)
+            if total > MAX_NODES_KEPT:
+                raise OsmFileError(f"The file has lines, railways and bridges of more than {MAX_NODES_KEPT} nodes.")
+            ways[way.osm_id] = way
+        return ways
+
+    def _read_members(self, relations: Sequence[_Relation], ways: dict[int, _Way]) -> dict[int, _Way]:
+        """The ways that outline bridge areas, among them untagged ones."""
+        wanted = {ref for relation in relations for ref in relation.outer + relation.inner}
+        found = {ref: ways[ref] for ref in wanted if ref in ways}
+        if missing := wanted - found.keys():
+            found.update((item.id, _way(item, dict(item.tags))) for item in self._objects(osmium.osm.WAY, IdFilter(missing)))
+        return found
+
+    def _read_positions(self, refs: list[NDArray[np.int64]]) -> None:
+        if not refs:
+            return
+        wanted = np.unique(np.concatenate(refs))
+        wanted = wanted[wanted > 0]
+        positions = np.full((len(wanted), 2), np.nan)
+        if len(wanted):
+            for node in self._objects(osmium.osm.NODE, IdFilter(wanted.tolist())):
+                if node.location.valid():
+                    positions[np.searchsorted(wanted, node.id)] = node.location.lon, node.location.lat
+                else:
+                    self.skipped["node_not_on_earth"] += 1
+        found = ~np.isnan(positions[:, 0])
+        self.node_ids, self.positions = wanted[found], positions[found]
+
+    def _located(self, way: _Way) -> tuple[NDArray[np.int64], FloatArray, int]:
+        """The way's nodes that are in the file, their positions, and how many are not."""
+        if len(self.node_ids) == 0:
+            return way.refs[:0], np.zeros((0, 2)), len(way.refs)
+        places = np.minimum(np.searchsorted(self.node_ids, way.refs), len(self.node_ids) - 1)
+        found = self.node_ids[places] == way.refs
+        return way.refs[found], self.positions[places[found]], int(len(way.refs) - found.sum())
+
+    def _supports(self) -> list[AssetRecord]:
+        records: dict[int, AssetRecord] = {}
+        for node in self._objects(osmium.osm.NODE, KeyFilter("power")):
+            tags = dict(node.tags)
+            kind = tags["power"]
+            if kind not in meaning.SUPPORT_KINDS:
+                continue
+            if not node.location.valid():
+                self.skipped["node_not_on_earth"] += 1
+                continue
+            place = LonLat(node.location.lon, node.location.lat)
+            records[node.id] = AssetRecord(
+                kind="tower", subtype=kind, osm_type="n", osm_id=node.id, geometry=Point(place), centre=place, tags=tags,
+                voltages_v=meaning.voltages_v(tags.get("voltage")), circuits=meaning.circuits(tags.get("circuits")),
+                height_m=meaning.height_m(tags),
+            )  # fmt: skip
+        self.counts.update(record.subtype for record in records.values())
+        return list(records.values())
+
+    def _ways_and_bridges(self, ways: dict[int, _Way], relations: Sequence[_Relation], members: dict[int, _Way]) -> list[AssetRecord]:
+        located = [self._located(way) for way in ways.values()]
+        lengths = _lengths_m([points for _, points, _ in located])
+        records: list[AssetRecord] = []
+        bridge_ways: list[BridgeWay] = []
+        areas: list[BridgeArea] = []
+        for way, (refs, points, missing), length_m in zip(ways.values(), located, lengths, strict=True):
+            line, railway = meaning.power_way_kind(way.tags), meaning.railway_kind(way.tags)
+            is_bridge = meaning.is_bridge(way.tags)
+            self._count(line, railway, is_bridge, length_m)
+            self.counts["missing_nodes"] += missing
+            if way.tags.get("man_made") == "bridge":
+                self._add_closed_area(way, missing, points, areas)
+            reason = _why_no_line(points, length_m)
+            for wanted, name in ((line, "line"), (railway, "railway"), (is_bridge, "bridge")):
+                if wanted and reason:
+                    self.skipped[f"{name}_{reason}"] += 1
+            if reason:
+                continue
+            length_m = round(length_m, _LENGTH_DECIMALS)
+            node_ids = tuple(refs.tolist())
+            if line:
+                records.append(_line_record(way, line, points, length_m, node_ids))
+            if railway:
+                records.append(_railway_record(way, railway, points, length_m, node_ids))
+            if is_bridge and np.abs(np.diff(points[:, 0])).max() <= 180.0:
+                bridge_ways.append(BridgeWay(way.osm_id, way.tags, points, node_ids, length_m))
+            elif is_bridge:
+                self.skipped["bridge_across_antimeridian"] += 1
+        self._add_relation_areas(relations, members, areas)
+        return records + bridges_of(bridge_ways, areas)
+
+    def _count(self, line: str | None, railway: str | None, is_bridge: bool, length_m: float) -> None:
+        if line:
+            self.counts[line] += 1
+            self.counts[f"{line}_km"] += length_m / 1_000  # type: ignore[assignment]
+        if railway:
+            own = "railway" if railway == "rail" else railway if railway in meaning.RAILWAYS_IN_USE else f"railway_{railway}"
+            self.counts[own] += 1
+            self.counts[f"{own}_km"] += length_m / 1_000  # type: ignore[assignment]
+        if is_bridge:
+            self.counts["bridge_ways"] += 1
+            self.counts["railway_bridge_ways"] += railway == "rail"
+
+    def _add_closed_area(self, way: _Way, missing: int, points: FloatArray, areas: list[BridgeArea]) -> None:
+        if len(way.refs) < 4 or way.refs[0] != way.refs[-1]:
+            self.skipped["bridge_area_not_closed"] += 1
+            return
+        self.counts["bridge_areas"] += 1
+        if missing:
+            self.skipped["bridge_area_incomplete"] += 1
+            return
+        try:
+            areas.append(BridgeArea("w", way.osm_id, way.tags, polygon_of_ring(points)))
+        except BrokenArea:
+            self.skipped["bridge_area_invalid"] += 1
+
+    def _add_relation_areas(self, relations: Sequence[_Relation], members: dict[int, _Way], areas: list[BridgeArea]) -> None:
+        for relation in relations:
+            self.counts["bridge_areas"] += 1
+            lines: list[list[FloatArray]] = []
+            missing = 0
+            for refs in (relation.outer, relation.inner):
+                located = [self._located(members[ref]) if ref in members else None for ref in refs]
+                missing += sum(1 for item in located if item is None or item[2])
+                lines.append([item[1] for item in located if item is not None])
+            if missing:
+                self.skipped["bridge_area_incomplete"] += 1
+                continue
+            try:
+                areas.append(BridgeArea("r", relation.osm_id, relation.tags, polygon_of_relation(*lines)))
+            except BrokenArea:
+                self.skipped["bridge_area_invalid"] += 1
+
+    def _counts(self, records: Sequence[AssetRecord]) -> dict[str, Any]:
+        counts: dict[str, Any] = dict.fromkeys(
+            ("tower", "pole", "portal", "line", "minor_line", "cable", "railway", "bridge_ways", "railway_bridge_ways", "bridge_areas"), 0
+        )
+        counts |= {"bridge": sum(record.kind == "bridge" for record in records), "missing_nodes": 0}
+        counts |= dict.fromkeys(("line_km", "minor_line_km", "railway_km"), 0.0)
+        counts |= {key: round(value, 3) if key.endswith("_km") else int(value) for key, value in sorted(self.counts.items())}
+        return counts | {"skipped": dict(sorted(self.skipped.items()))}
+
+
+def _way(item: Any, tags: dict[str, str]) -> _Way:
+    nodes = item.nodes
+    return _Way(item.id, tags, np.fromiter((node.ref for node in nodes), dtype=np.int64, count=len(nodes)))
+
+
+def _lengths_m(paths: Sequence[FloatArray]) -> FloatArray:
+    """The geodesic length of each path, all of them measured in one call."""
+    if not paths:
+        return np.zeros(0)
+    points = np.concatenate(paths)
+    owner = np.repeat(np.arange(len(paths)), [len(path) for path in paths])
+    same = owner[1:] == owner[:-1]
+    steps = distance_m(points[:-1][same], points[1:][same])
+    return np.bincount(owner[1:][same], weights=steps, minlength=len(paths)).astype(np.float64)
+
+
+def _why_no_line(points: FloatArray, length_m: float) -> str | None:
+    if len(points) < 2:
+        return "too_few_nodes"
+    if len(points) > MAX_NODES_PER_WAY:
+        return "too_many_nodes"
+    return "without_length" if length_m <= 0.0 else None
+
+
+def _middle(points: FloatArray) -> LonLat:
+    """The point half-way along; on a step across the antimeridian the vertex before it."""
+    steps = distance_m(points[:-1], points[1:])
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    index = min(int(np.searchsorted(along, along[-1] / 2, side="right")) - 1, len(steps) - 1)
+    step = points[index + 1] - points[index]
+    if abs(step[0]) > 180.0 or steps[index] == 0.0:
+        return LonLat(*map(float, points[index]))
+    return LonLat(*map(float, points[index] + step * (along[-1] / 2 - along[index]) / steps[index]))
+
+
+def _line_record(way: _Way, kind: str, points: FloatArray, length_m: float, node_ids: tuple[int, ...]) -> AssetRecord:
+    return AssetRecord(
+        kind="line", subtype=kind, osm_type="w", osm_id=way.osm_id, geometry=LineString(points), centre=_middle(points), tags=way.tags,
+        voltages_v=meaning.voltages_v(way.tags.get("voltage")), circuits=meaning.circuits(way.tags.get("circuits")),
+        height_m=meaning.height_m(way.tags), length_m=length_m, is_flyable=meaning.is_flyable_line(way.tags), node_osm_ids=node_ids,
+    )  # fmt: skip
+
+
+def _railway_record(way: _Way, kind: str, points: FloatArray, length_m: float, node_ids: tuple[int, ...]) -> AssetRecord:
+    return AssetRecord(
+        kind="railway", subtype=kind, osm_type="w", osm_id=way.osm_id, geometry=LineString(points), centre=_middle(points), tags=way.tags,
+        voltages_v=meaning.voltages_v(way.tags.get("voltage")), length_m=length_m, is_flyable=meaning.is_flyable_railway(way.tags),
+        node_osm_ids=node_ids,
+    )  # fmt: skip
+
+
+def _extent(records: Sequence[AssetRecord]) -> Extent | None:
+    if not records:
+        return None
+    bounds = np.array([record.geometry.bounds for record in records])
+    return (*map(float, bounds[:, :2].min(axis=0)), *map(float, bounds[:, 2:].max(axis=0)))  # type: ignore[return-value]
+
+
+def _stated_extent(box: Any) -> Extent | None:
+    if not box.valid():
+        return None
+    return (box.bottom_left.lon, box.bottom_left.lat, box.top_right.lon, box.top_right.lat)
