@@ -186,6 +186,16 @@ SPECTACULAR_SETTINGS = {
     "SWAGGER_UI_FAVICON_HREF": "SIDECAR",
     "SCHEMA_PATH_PREFIX": r"/api/v1",
     "COMPONENT_SPLIT_REQUEST": True,
+    "ENUM_NAME_OVERRIDES": {
+        "AssetKind": "inspection.models.AssetKind",
+        "WaypointKind": "missions.models.WaypointKind",
+        "JobState": "workspace.models.JobState",
+        "MissionState": "missions.models.MissionState",
+        "TargetState": "missions.models.TargetState",
+        "FeatureType": ["Feature"],
+        "FeatureCollectionType": ["FeatureCollection"],
+        "GeometryType": ["Point", "LineString", "MultiLineString", "Polygon", "MultiPolygon"],
+    },
 }
 
 # Celery: rows in PostgreSQL are the truth, Redis is a hint (findings: late acknowledgement and a fast sweep, or work is lost).

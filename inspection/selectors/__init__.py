@@ -1,1 +1,21 @@
 """Reads of the ground: what views, commands and the other apps call."""
+
+from inspection.selectors.assets import Box, asset_label, asset_with_geometry, assets_on_the_ground, voltage_text, zones
+from inspection.selectors.ground import GroundSummary, ground_revision, ground_summary
+from inspection.selectors.tiles import RECIPE as TILE_RECIPE
+from inspection.selectors.tiles import NoSuchTile, vector_tile
+
+__all__ = [
+    "TILE_RECIPE",
+    "Box",
+    "GroundSummary",
+    "NoSuchTile",
+    "asset_label",
+    "asset_with_geometry",
+    "assets_on_the_ground",
+    "ground_revision",
+    "ground_summary",
+    "vector_tile",
+    "voltage_text",
+    "zones",
+]

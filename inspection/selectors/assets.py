@@ -1,0 +1,92 @@
+"""Assets and zones as lists, and what they are called."""
+
+import re
+
+from django.contrib.gis.db.models.functions import AsGeoJSON
+from django.contrib.gis.geos import MultiPolygon, Polygon
+from django.db.models import Q, QuerySet
+
+from inspection.models import Asset, AssetKind, NoFlyZone
+
+COORDINATE_DIGITS = 7  # about a centimetre
+WORDS = {"line": "Line", "minor_line": "Line", "cable": "Cable", "pole": "Pole", "portal": "Portal", "tram": "Tramway", "subway": "Subway"}
+
+VOLTAGE = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s*kV\b", re.IGNORECASE)
+OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
+
+Box = tuple[float, float, float, float]  # west, south, east, north; west > east crosses the 180th meridian
+
+
+def assets_on_the_ground(
+    *, box: Box | None = None, kinds: list[AssetKind] | None = None, text: str = "", flyable: bool | None = None
+) -> QuerySet[Asset]:
+    """Assets that the last import still had, with their geometry as GeoJSON text in `geometry_json`."""
+    assets = Asset.objects.filter(vanished_at=None)
+    if box is not None:
+        assets = assets.filter(geometry__intersects=area_of(box))
+    if kinds:
+        assets = assets.filter(kind__in=kinds)
+    if flyable is not None:
+        assets = assets.filter(is_flyable=flyable)
+    if text:
+        assets = assets.filter(_text_filter(text))
+    return assets.defer("geometry", "node_osm_ids").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+
+
+def asset_with_geometry(asset_id: int) -> Asset:
+    """One asset, also when it has vanished: missions may still point at it. Raises Asset.DoesNotExist."""
+    return (
+        Asset.objects.select_related("data_import")
+        .annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+        .get(pk=asset_id)
+    )
+
+
+def zones(*, box: Box | None = None) -> QuerySet[NoFlyZone]:
+    """All zones, with their geometry as GeoJSON text in `geometry_json`."""
+    found = NoFlyZone.objects.select_related("zone_set__data_import")
+    if box is not None:
+        found = found.filter(geometry__intersects=area_of(box))
+    return found.defer("geometry").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+
+
+def area_of(box: Box) -> Polygon | MultiPolygon:
+    west, south, east, north = box
+    if west <= east:
+        area: Polygon | MultiPolygon = Polygon.from_bbox(box)
+    else:
+        area = MultiPolygon(Polygon.from_bbox((west, south, 180.0, north)), Polygon.from_bbox((-180.0, south, east, north)))
+    area.srid = 4326
+    return area
+
+
+def _text_filter(text: str) -> Q:
+    """Every voltage in the text ("138 kV") must be among the asset's, every other word in its name, ref, operator or OSM id."""
+    wanted = Q()
+    for kilovolts in VOLTAGE.findall(text):
+        wanted &= Q(voltages_v__contains=[round(float(kilovolts) * 1000)])
+    for word in VOLTAGE.sub(" ", text).split():
+        matches = Q(name__icontains=word) | Q(ref__icontains=word) | Q(operator__icontains=word)
+        if key := OSM_KEY.fullmatch(word):
+            matches |= Q(osm_type=key[1].lower(), osm_id=int(key[2]))
+        wanted &= matches
+    return wanted
+
+
+def asset_label(asset: Asset) -> str:
+    """What an asset is called: ref, name, operator and voltage of a line, else its kind and OSM id ("Tower n42").
+
+    The same words as LABEL in selectors/tiles.py.
+    """
+    if given := asset.ref or asset.name:
+        return given
+    if asset.kind == AssetKind.LINE and (asset.operator or asset.max_voltage_v):
+        return " ".join(part for part in (asset.operator, voltage_text(asset.max_voltage_v)) if part)
+    if asset.kind == AssetKind.RAILWAY and asset.operator:
+        return f"{asset.operator} railway"
+    word = WORDS.get(asset.subtype, AssetKind(asset.kind).name.capitalize())
+    return f"{word} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{word} {asset.pk}"
+
+
+def voltage_text(voltage_v: int | None) -> str:
+    return f"{voltage_v / 1000:g} kV" if voltage_v else ""

@@ -1,0 +1,50 @@
+"""The ground as a whole: how much there is, where, from whom, and whether the graph shows it."""
+
+from dataclasses import dataclass
+
+from django.contrib.gis.db.models import Extent
+from django.db.models import Count, Exists, OuterRef, Q
+
+from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Ground, NoFlyZone, TerrainTile, ZoneSet
+
+
+@dataclass(frozen=True)
+class GroundSummary:
+    revision: int
+    graph: GraphSnapshot | None  # the newest one, without its arrays
+    extent: tuple[float, float, float, float] | None  # west, south, east, north of all assets
+    counts: dict[str, int]  # by asset kind, and of zones
+    attribution: list[str]
+    is_synthetic: bool
+    has_terrain: bool
+
+    @property
+    def graph_is_current(self) -> bool:
+        return self.graph is not None and self.graph.ground_revision == self.revision
+
+
+def ground_revision() -> int:
+    return Ground.objects.values_list("revision", flat=True).first() or 0
+
+
+def ground_summary() -> GroundSummary:
+    assets = Asset.objects.filter(vanished_at=None)
+    by_kind = dict(assets.order_by().values_list("kind").annotate(Count("pk")))
+    sources = imports_in_use()
+    return GroundSummary(
+        revision=ground_revision(),
+        graph=GraphSnapshot.objects.defer("arrays").first(),
+        extent=assets.aggregate(extent=Extent("centre"))["extent"],
+        counts={kind.value: by_kind.get(kind.value, 0) for kind in AssetKind} | {"zone": NoFlyZone.objects.count()},
+        attribution=sorted({source.attribution for source in sources if source.attribution}),
+        is_synthetic=any(source.is_synthetic for source in sources),
+        has_terrain=TerrainTile.objects.exists(),
+    )
+
+
+def imports_in_use() -> list[DataImport]:
+    """The files that something on the ground still comes from."""
+    used = Q(Exists(Asset.objects.filter(data_import=OuterRef("pk"), vanished_at=None)))
+    used |= Q(Exists(ZoneSet.objects.filter(data_import=OuterRef("pk"))))
+    used |= Q(Exists(TerrainTile.objects.filter(data_import=OuterRef("pk"))))
+    return list(DataImport.objects.filter(used))

@@ -1,0 +1,127 @@
+"""Vector tiles: one SQL statement makes all layers of a tile."""
+
+import math
+from dataclasses import dataclass
+
+from django.db import connection
+
+DEEPEST_ZOOM = 22
+RECIPE = 1  # part of the ETag: counts the changes to this file's statements
+EXTENT = 4096
+BUFFER = 64  # in units of the extent
+MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
+
+# From which zoom on a thing is in the tiles: ui.md section 6. A tile of zoom z serves the map up to z + 1.
+ALL_VOLTAGES_ZOOM = 10
+MEDIUM_VOLTAGE_ZOOM, MEDIUM_VOLTAGE_V = 8, 50_000
+HIGH_VOLTAGE_V = 100_000
+RAILWAY_ZOOM = 8
+BRIDGE_ZOOM = 10
+TOWER_ZOOM = 10
+OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
+ZONE_LABEL_ZOOM = 9
+MOST_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
+
+VOLTAGE_TEXT = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
+# The words of asset_label in selectors/assets.py.
+LABEL = f"""COALESCE(
+    NULLIF(ref, ''), NULLIF(name, ''),
+    CASE WHEN kind = 'line' THEN NULLIF(CONCAT_WS(' ', NULLIF(operator, ''), {VOLTAGE_TEXT}), '')
+         WHEN kind = 'railway' THEN NULLIF(operator, '') || ' railway' END,
+    CASE subtype WHEN 'minor_line' THEN 'Line' WHEN 'cable' THEN 'Cable' WHEN 'pole' THEN 'Pole' WHEN 'portal' THEN 'Portal'
+                 WHEN 'tram' THEN 'Tramway' WHEN 'subway' THEN 'Subway' ELSE INITCAP(kind) END
+    || ' ' || COALESCE(osm_type || osm_id, id::text)
+)"""
+ASSET_COLUMNS = f"""
+    id AS feature_id, id, kind, NULLIF(subtype, '') AS subtype, {LABEL} AS label,
+    NULLIF(ref, '') AS ref, NULLIF(name, '') AS name, NULLIF(operator, '') AS operator, is_flyable AS flyable,
+    (max_voltage_v / 1000.0)::float8 AS voltage,
+    (SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v) AS voltages
+"""  # noqa: S608 - constants alone
+ZONE_COLUMNS = """
+    id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
+    lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference
+"""
+ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
+
+
+@dataclass(frozen=True)
+class Layer:
+    name: str
+    from_zoom: int
+    columns: str
+    source: str  # table and condition
+    shape: str  # what is drawn, in EPSG:4326
+    found_by: str  # the indexed column that is compared with the tile's box
+    order: str  # the most important first
+
+
+SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
+LAYERS = (
+    Layer(
+        "lines", 0, ASSET_COLUMNS,
+        f"""inspection_asset WHERE kind = 'line' AND {ON_GROUND} AND (
+            %(zoom)s >= {ALL_VOLTAGES_ZOOM} OR max_voltage_v >= %(least_voltage_v)s
+            OR (max_voltage_v IS NULL AND subtype = 'line' AND %(zoom)s >= {MEDIUM_VOLTAGE_ZOOM}))""",
+        SIMPLIFIED, "geometry", "max_voltage_v DESC NULLS LAST, length_m DESC NULLS LAST",
+    ),
+    Layer("railways", RAILWAY_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'railway' AND {ON_GROUND}", SIMPLIFIED, "geometry",
+          "length_m DESC NULLS LAST"),
+    Layer("bridges", BRIDGE_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "geometry", "geometry", "id"),
+    Layer("bridge_points", BRIDGE_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "centre", "centre", "id"),
+    Layer("towers", TOWER_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'tower' AND {ON_GROUND}", "centre", "centre",
+          "max_voltage_v DESC NULLS LAST, id"),
+    Layer("zones", 0, ZONE_COLUMNS, "inspection_noflyzone WHERE true", "geometry", "geometry", "ST_Area(geometry) DESC"),
+    Layer("zone_labels", ZONE_LABEL_ZOOM, ZONE_COLUMNS, "inspection_noflyzone WHERE true", "ST_PointOnSurface(geometry)", "geometry", "id"),
+)  # fmt: skip
+
+
+class NoSuchTile(Exception):
+    """The address lies outside the pyramid of tiles."""
+
+
+def vector_tile(zoom: int, column: int, row: int) -> bytes:
+    """The Mapbox vector tile; empty where there is nothing. Raises NoSuchTile."""
+    if not (0 <= zoom <= DEEPEST_ZOOM and 0 <= column < 2**zoom and 0 <= row < 2**zoom):
+        raise NoSuchTile
+    layers = [layer for layer in LAYERS if zoom >= layer.from_zoom]
+    west, south, east, north = _box_deg(zoom, column, row)
+    least_voltage_v = HIGH_VOLTAGE_V if zoom < MEDIUM_VOLTAGE_ZOOM else MEDIUM_VOLTAGE_V
+    with connection.cursor() as cursor:
+        cursor.execute(
+            "SELECT " + " || ".join(_layer_sql(layer) for layer in layers),
+            {
+                "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
+                "tolerance_deg": 360 / 2**zoom / EXTENT * 4,  # half a pixel of a 512 pixel tile
+                "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM,
+            },
+        )  # fmt: skip
+        return bytes(cursor.fetchone()[0])
+
+
+def _layer_sql(layer: Layer) -> str:
+    return f"""COALESCE((
+        SELECT ST_AsMVT(feature, '{layer.name}', {EXTENT}, 'geom', 'feature_id') FROM (
+            SELECT * FROM (
+                SELECT {layer.columns}, ST_AsMVTGeom(
+                    ST_Transform({layer.shape}, 3857), ST_TileEnvelope(%(zoom)s, %(column)s, %(row)s), {EXTENT}, {BUFFER}, true) AS geom
+                FROM {layer.source} AND {layer.found_by} && ST_MakeEnvelope(%(west)s, %(south)s, %(east)s, %(north)s, 4326)
+                ORDER BY {layer.order} LIMIT {MOST_FEATURES}
+            ) drawn WHERE geom IS NOT NULL
+        ) feature), '')"""  # noqa: S608 - put together from the constants above alone
+
+
+def _box_deg(zoom: int, column: int, row: int) -> tuple[float, float, float, float]:
+    """West, south, east, north of the tile with its buffer, in degrees."""
+    size_m = 2 * MERCATOR_LIMIT_M / 2**zoom
+    margin_m = size_m * BUFFER / EXTENT
+    west_m = column * size_m - MERCATOR_LIMIT_M
+    north_m = MERCATOR_LIMIT_M - row * size_m
+    west, south = _lon_lat_deg(west_m - margin_m, north_m - size_m - margin_m)
+    east, north = _lon_lat_deg(west_m + size_m + margin_m, north_m + margin_m)
+    return max(west, -180.0), south, min(east, 180.0), north
+
+
+def _lon_lat_deg(x_m: float, y_m: float) -> tuple[float, float]:
+    radius_m = MERCATOR_LIMIT_M / math.pi
+    return math.degrees(x_m / radius_m), math.degrees(2 * math.atan(math.exp(y_m / radius_m)) - math.pi / 2)
