@@ -4,17 +4,14 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from inspection.geodesy import LonLat, distance_m
+from inspection.graph.edges import component_labels
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.nearness import chord, on_unit_sphere
 from inspection.graph.shortest_paths import Attachment
 from inspection.graph.zone_index import ZoneIndex
-
-EARTH_RADIUS_M = 6_371_008.8  # IUGG mean radius
-SPHERE_SLACK = 1.01  # a distance on the sphere is within 0.6 % of the geodesic on WGS84
 
 
 class NodeLocator:
@@ -22,7 +19,7 @@ class NodeLocator:
 
     def __init__(self, graph: InspectionGraph) -> None:
         self.tree = cKDTree(on_unit_sphere(graph.position)) if graph.node_count else None
-        self.component = components_of(graph)[1]
+        self.component = component_labels(graph.node_count, graph.edge)[1]
 
 
 _locator_of_graph: WeakKeyDictionary[InspectionGraph, NodeLocator] = WeakKeyDictionary()
@@ -46,7 +43,7 @@ def clear_legs(
     locator = node_locator(graph)
     if locator.tree is None:
         return []
-    around = np.asarray(locator.tree.query_ball_point(on_unit_sphere(np.array([position]))[0], radius_m * SPHERE_SLACK / EARTH_RADIUS_M))
+    around = np.asarray(locator.tree.query_ball_point(on_unit_sphere(np.array([position]))[0], chord(radius_m)))
     around = around.astype(np.int64)
     here = np.broadcast_to(np.asarray(position, dtype=np.float64), (len(around), 2))
     length_m = distance_m(here, graph.position[around])
@@ -76,17 +73,3 @@ def _is_clear(
 ) -> NDArray[np.bool_]:
     here = np.broadcast_to(np.asarray(position, dtype=np.float64), (len(nodes), 2))
     return ~zones.meets(here, graph.position[nodes], clearance_m)
-
-
-def components_of(graph: InspectionGraph) -> tuple[int, NDArray[np.int64]]:
-    """Number of connected components, and each node's."""
-    n = graph.node_count
-    links = csr_array((np.ones(graph.edge_count, dtype=np.int8), (graph.edge[:, 0], graph.edge[:, 1])), shape=(n, n))
-    count, labels = connected_components(links, directed=False) if n else (0, np.zeros(0))
-    return int(count), labels.astype(np.int64)
-
-
-def on_unit_sphere(position: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Positions (n, 2) lon, lat [deg] as points (n, 3) on the unit sphere, where nearness has no seam."""
-    lon, lat = np.radians(np.asarray(position, dtype=np.float64)).T
-    return np.column_stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)])

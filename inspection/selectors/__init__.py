@@ -1,6 +1,7 @@
 """Reads of the ground: what views, commands and the other apps call."""
 
 from inspection.selectors.assets import Box, asset_label, asset_with_geometry, assets_on_the_ground, voltage_text, zones
+from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
 from inspection.selectors.ground import GroundSummary, ground_revision, ground_summary
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
 from inspection.selectors.tiles import NoSuchTile, vector_tile
@@ -9,13 +10,17 @@ __all__ = [
     "TILE_RECIPE",
     "Box",
     "GroundSummary",
+    "NoGraph",
     "NoSuchTile",
     "asset_label",
     "asset_with_geometry",
     "assets_on_the_ground",
+    "current_graph",
+    "graph_of_version",
     "ground_revision",
     "ground_summary",
     "vector_tile",
     "voltage_text",
     "zones",
+    "zones_in_force",
 ]

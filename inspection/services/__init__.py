@@ -1,5 +1,7 @@
 """Writes of the ground: what the other apps, commands and tasks call."""
 
+from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
+from inspection.services.osm_import import import_osm
 
-__all__ = ["mark_ground_changed"]
+__all__ = ["build_graph", "import_osm", "mark_ground_changed", "refresh_graph"]

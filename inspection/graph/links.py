@@ -1,0 +1,91 @@
+"""Links away from infrastructure: bridges, railways that would be cut off, crossings of lines."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.graph.edges import Edges, component_labels, edges_of
+from inspection.graph.ground_data import Ways
+from inspection.graph.inspection_graph import EdgeKind
+from inspection.graph.nearness import nearest_within, pairs_within
+from inspection.graph.rules import LinkingRules
+from inspection.graph.zone_index import ZoneIndex
+
+TRIES = 8  # the nearest, and when a zone is in the way as many more
+
+IntArray = NDArray[np.int64]
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+def bridge_links(bridges: IntArray, position: FloatArray, rules: LinkingRules) -> Edges:
+    """Bridges to all bridges within the radius (the reference article's rule)."""
+    pairs = pairs_within(position[bridges], rules.bridge_to_bridge_m)
+    return edges_of(EdgeKind.BRIDGE_TO_BRIDGE, bridges[pairs[:, 0]], bridges[pairs[:, 1]])
+
+
+def crossing_links(joints: IntArray, position: FloatArray, lines: Ways, node_of_vertex: IntArray, rules: LinkingRules) -> Edges:
+    """Supports that stand within the radius and have no line in common: where lines cross, run close by, or meet in a substation.
+
+    `joints` are the supports and the nodes where a line ends, for a line often ends in a substation at a node that is not tagged as one.
+    A support without line shares none.
+    """
+    pairs = joints[pairs_within(position[joints], rules.crossing_m)]
+    pairs = pairs[~_share_a_way(pairs, lines, node_of_vertex)]
+    return edges_of(EdgeKind.CROSSING, pairs[:, 0], pairs[:, 1])
+
+
+def _share_a_way(pairs: IntArray, ways: Ways, node_of_vertex: IntArray) -> BoolArray:
+    """Whether some way passes through both nodes of each pair."""
+    membership = np.unique(node_of_vertex * len(ways) + ways.way_of_vertex) if len(ways) else np.zeros(0, dtype=np.int64)
+    node, way = np.divmod(membership, max(1, len(ways)))
+    begin, end = np.searchsorted(node, pairs[:, 0]), np.searchsorted(node, pairs[:, 0], side="right")
+    number = np.repeat(np.arange(len(pairs)), end - begin)
+    entry = np.arange(len(number)) - np.repeat(np.cumsum(end - begin) - (end - begin), end - begin) + begin[number]
+    shared = np.isin(pairs[number, 1] * len(ways) + way[entry], membership)
+    share = np.zeros(len(pairs), dtype=bool)
+    share[number[shared]] = True
+    return share
+
+
+@dataclass(frozen=True)
+class NearestLinks:
+    edges: Edges
+    blocked: int  # nearest legs that a zone is in the way of
+
+
+def bridge_to_tower_links(
+    bridges: IntArray, supports: IntArray, position: FloatArray, zones: ZoneIndex, rules: LinkingRules
+) -> NearestLinks:
+    """Each bridge to the nearest support within the radius, the next nearest when a zone is in the way."""
+    row, other, metres = nearest_within(position[bridges], position[supports], rules.bridge_to_tower_m, count=TRIES)
+    chosen, blocked = _nearest_clear(row, bridges[row], supports[other], metres, position, zones, rules)
+    return NearestLinks(edges_of(EdgeKind.BRIDGE_TO_TOWER, bridges[row[chosen]], supports[other[chosen]]), blocked)
+
+
+def railway_to_tower_links(
+    railway_points: IntArray, supports: IntArray, position: FloatArray, cleared: Edges, zones: ZoneIndex, rules: LinkingRules
+) -> NearestLinks:
+    """One link, the shortest clear one, for each component of the cleared graph that has railway points and no support."""
+    _, component = component_labels(len(position), cleared.pair)
+    cut_off = railway_points[~np.isin(component[railway_points], component[supports])]
+    row, other, metres = nearest_within(position[cut_off], position[supports], rules.railway_to_tower_m, count=TRIES)
+    order = np.lexsort((other, row, metres, component[cut_off[row]]))
+    row, other, metres = row[order], other[order], metres[order]
+    chosen, blocked = _nearest_clear(component[cut_off[row]], cut_off[row], supports[other], metres, position, zones, rules)
+    return NearestLinks(edges_of(EdgeKind.RAILWAY_TO_TOWER, cut_off[row[chosen]], supports[other[chosen]]), blocked)
+
+
+def _nearest_clear(
+    group: IntArray, start: IntArray, end: IntArray, metres: FloatArray, position: FloatArray, zones: ZoneIndex, rules: LinkingRules
+) -> tuple[IntArray, int]:
+    """Of legs sorted by group, then metres: the index of the first clear one of each group, and how many groups' first one is not clear."""
+    usable = np.flatnonzero(np.abs(position[start, 0] - position[end, 0]) <= 180.0)
+    _, first = np.unique(group[usable], return_index=True)
+    nearest = usable[first]
+    met = zones.meets(position[start[nearest]], position[end[nearest]], rules.zone_clearance_m)
+    others = np.setdiff1d(usable[np.isin(group[usable], group[nearest[met]])], nearest)
+    others = others[~zones.meets(position[start[others]], position[end[others]], rules.zone_clearance_m)]
+    _, first = np.unique(group[others], return_index=True)
+    return np.sort(np.concatenate([nearest[~met], others[first]])), int(met.sum())

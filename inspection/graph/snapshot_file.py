@@ -1,0 +1,132 @@
+"""A graph as bytes (npz) for the database, and as memory-mapped files for planners."""
+
+import io
+import json
+import shutil
+import tempfile
+from dataclasses import fields
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.graph.inspection_graph import InspectionGraph
+
+MANIFEST = "manifest.json"
+KEPT_FOLDERS = 4
+ARRAY_FIELDS = [
+    field.name for field in fields(InspectionGraph) if field.name not in {"version", "ground_revision", "zone_wkb", "zone_name"}
+]
+
+Arrays = dict[str, NDArray[np.generic]]
+
+
+class CorruptSnapshot(Exception):
+    """The bytes are not those that were stored."""
+
+
+def to_bytes(graph: InspectionGraph) -> bytes:
+    """The arrays as a compressed npz; the same graph always gives the same bytes."""
+    stream = io.BytesIO()
+    np.savez_compressed(stream, allow_pickle=False, **_arrays(graph))
+    return stream.getvalue()
+
+
+def from_bytes(content: bytes, *, content_sha256: str, version: int, ground_revision: int) -> InspectionGraph:
+    """The graph from its npz. Raises CorruptSnapshot when the content is not what its hash says."""
+    return _graph(_checked_arrays(content, content_sha256), version, ground_revision)
+
+
+def write_cache(folder: Path, content: bytes, *, content_sha256: str, version: int) -> None:
+    """Unpack a snapshot into folder/<version>/: one .npy file per array, and the manifest with their hashes.
+
+    It appears whole or not at all, in place of one that is broken. Folders of much older versions are removed.
+    """
+    arrays = _checked_arrays(content, content_sha256)
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".draft-", dir=folder) as draft_name:
+        draft = Path(draft_name) / "graph"
+        draft.mkdir()
+        for name, array in arrays.items():
+            np.save(draft / f"{name}.npy", array, allow_pickle=False)
+        hashes = {path.name: _hash_of_file(path) for path in sorted(draft.iterdir())}
+        (draft / MANIFEST).write_text(json.dumps({"content_sha256": content_sha256, "files": hashes}))
+        target = folder / str(version)
+        try:
+            draft.rename(target)
+        except OSError:  # there is one already: a broken one, or another process was faster with the same
+            target.rename(Path(draft_name) / "replaced")
+            draft.rename(target)
+    _remove_old(folder)
+
+
+def read_cache(folder: Path, *, content_sha256: str, version: int, ground_revision: int) -> InspectionGraph | None:
+    """The graph, its arrays memory-mapped and read-only; None when the files are missing, broken or of another snapshot."""
+    place = folder / str(version)
+    try:
+        manifest = json.loads((place / MANIFEST).read_bytes())
+        if manifest["content_sha256"] != content_sha256:
+            return None
+        if any(_hash_of_file(place / name) != digest for name, digest in manifest["files"].items()):
+            return None
+        arrays = {Path(name).stem: _mapped(place / name) for name in manifest["files"]}
+        return _graph(arrays, version, ground_revision)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def _arrays(graph: InspectionGraph) -> Arrays:
+    arrays: Arrays = {name: getattr(graph, name) for name in ARRAY_FIELDS}
+    ends = np.cumsum([len(wkb) for wkb in graph.zone_wkb], dtype=np.int64)
+    arrays["zone_wkb"] = np.frombuffer(b"".join(graph.zone_wkb), dtype=np.uint8)
+    arrays["zone_wkb_end"] = ends.astype(np.int64)
+    arrays["zone_name"] = np.frombuffer(json.dumps(graph.zone_name).encode(), dtype=np.uint8)
+    return arrays
+
+
+def _graph(arrays: Arrays, version: int, ground_revision: int) -> InspectionGraph:
+    ends = arrays["zone_wkb_end"].tolist()
+    wkb = arrays["zone_wkb"].tobytes()
+    return InspectionGraph(
+        version=version,
+        ground_revision=ground_revision,
+        zone_wkb=tuple(wkb[begin:end] for begin, end in zip([0, *ends], ends, strict=False)),
+        zone_name=tuple(json.loads(arrays["zone_name"].tobytes())),
+        **{name: arrays[name] for name in ARRAY_FIELDS},  # type: ignore[arg-type]
+    )
+
+
+def _checked_arrays(content: bytes, content_sha256: str) -> Arrays:
+    if sha256(content).hexdigest() != content_sha256:
+        raise CorruptSnapshot(content_sha256)
+    with np.load(io.BytesIO(content), allow_pickle=False) as stored:
+        return {name: stored[name] for name in stored.files}
+
+
+def _mapped(path: Path) -> NDArray[np.generic]:
+    mapped = np.load(path, mmap_mode="r", allow_pickle=False)
+    plain: NDArray[np.generic] = np.asarray(mapped)
+    return plain
+
+
+def _hash_of_file(path: Path) -> str:
+    return sha256(path.read_bytes()).hexdigest()
+
+
+def _remove_old(folder: Path) -> None:
+    """Keep the newest versions, and remove drafts that a killed process left before the oldest of them was written."""
+    versions = sorted((path for path in folder.iterdir() if path.name.isdigit()), key=lambda path: int(path.name), reverse=True)
+    for path in versions[KEPT_FOLDERS:]:
+        shutil.rmtree(path, ignore_errors=True)
+    oldest_s = min((_modified_s(path) for path in versions[:KEPT_FOLDERS]), default=0.0)
+    for path in folder.glob(".draft-*"):
+        if _modified_s(path) < oldest_s:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _modified_s(path: Path) -> float:
+    try:
+        return path.stat().st_mtime
+    except FileNotFoundError:
+        return float("inf")

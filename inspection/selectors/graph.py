@@ -1,0 +1,80 @@
+"""The graph that planners use: the newest snapshot, memory-mapped, and the zones in force now."""
+
+import logging
+import threading
+from datetime import datetime
+
+import numpy as np
+import shapely
+from django.conf import settings
+
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.snapshot_file import from_bytes, read_cache, write_cache
+from inspection.graph.zone_index import ZoneIndex
+from inspection.models import GraphSnapshot, Ground
+from inspection.selectors.ground_data import zones_of_the_ground
+
+logger = logging.getLogger(__name__)
+
+KEPT_GRAPHS = 2  # per process: the newest, and the one that plans under way still hold
+
+
+class NoGraph(Exception):
+    """No snapshot has been built yet, or none of this version is kept."""
+
+
+_lock = threading.Lock()
+_graphs: dict[tuple[int, str], InspectionGraph] = {}
+_zones: tuple[tuple[int, datetime | None], ZoneIndex] | None = None
+
+
+def current_graph() -> InspectionGraph:
+    """The newest snapshot. Costs one small query once the process has it."""
+    return _graph_of(GraphSnapshot.objects.values_list("version", "ground_revision", "arrays_sha256").first())
+
+
+def graph_of_version(version: int) -> InspectionGraph:
+    return _graph_of(GraphSnapshot.objects.filter(version=version).values_list("version", "ground_revision", "arrays_sha256").first())
+
+
+def zones_in_force() -> ZoneIndex:
+    """The zones of the ground as it is now, whatever graph is in use. Costs one small query until they change."""
+    global _zones
+    # The revision is read before the zones: they are at least as new as what they are remembered under.
+    key = Ground.objects.values_list("revision", "changed_at").first() or (0, None)
+    remembered = _zones
+    if remembered is None or remembered[0] != key:
+        zones = zones_of_the_ground()
+        polygons = shapely.from_wkb(np.array(zones.wkb, dtype=object))
+        _zones = remembered = key, ZoneIndex(polygons, zones.identifier, zones.name)
+    return remembered[1]
+
+
+def _graph_of(row: tuple[int, int, str] | None) -> InspectionGraph:
+    if row is None:
+        raise NoGraph
+    version, ground_revision, content_sha256 = row
+    key = version, content_sha256
+    with _lock:
+        if key not in _graphs:
+            _graphs[key] = _load(version, ground_revision, content_sha256)
+            for old in sorted(_graphs)[:-KEPT_GRAPHS]:
+                if old != key:
+                    del _graphs[old]
+        return _graphs[key]
+
+
+def _load(version: int, ground_revision: int, content_sha256: str) -> InspectionGraph:
+    folder = settings.GRAPH_CACHE_DIR
+    graph = read_cache(folder, content_sha256=content_sha256, version=version, ground_revision=ground_revision)
+    if graph is not None:
+        return graph
+    content = GraphSnapshot.objects.filter(version=version).values_list("arrays", flat=True).first()
+    if content is None:
+        raise NoGraph
+    try:
+        write_cache(folder, bytes(content), content_sha256=content_sha256, version=version)
+        graph = read_cache(folder, content_sha256=content_sha256, version=version, ground_revision=ground_revision)
+    except OSError as error:
+        logger.warning("graph %d is kept in memory, its cache cannot be written: %s", version, error)
+    return graph or from_bytes(bytes(content), content_sha256=content_sha256, version=version, ground_revision=ground_revision)

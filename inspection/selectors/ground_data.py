@@ -1,0 +1,95 @@
+"""Reads assets and zones as the plain arrays that the graph is built from."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import shapely
+from django.db import connection
+
+from inspection.graph.ground_data import NO_OSM_NODE, GroundData, Places, Ways, Zones
+from inspection.models import AssetKind
+from inspection.selectors.ground import ground_revision
+
+READINGS = 3
+
+
+def has_flyable_assets() -> bool:
+    return bool(_rows("SELECT EXISTS (SELECT 1 FROM inspection_asset WHERE is_flyable AND vanished_at IS NULL)")[0][0])
+
+
+def ground_data() -> GroundData:
+    """All flyable assets that have not vanished, and all zones.
+
+    Read again when the ground changes meanwhile; if it never rests, the data is at least as new as the revision that it names.
+    """
+    for _ in range(READINGS):
+        revision = ground_revision()
+        data = GroundData(
+            revision=revision,
+            supports=_places(AssetKind.TOWER, "geometry"),
+            bridges=_places(AssetKind.BRIDGE, "centre"),
+            lines=_ways(AssetKind.LINE),
+            railways=_ways(AssetKind.RAILWAY),
+            zones=zones_of_the_ground(),
+        )
+        if ground_revision() == revision:
+            break
+    return data
+
+
+def zones_of_the_ground() -> Zones:
+    rows = _rows("SELECT id, name, ST_AsBinary(geometry) FROM inspection_noflyzone ORDER BY id")
+    return Zones(
+        tuple(bytes(wkb) for _, _, wkb in rows), np.array([pk for pk, _, _ in rows], dtype=np.int64), tuple(name for _, name, _ in rows)
+    )
+
+
+def _rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+    with connection.cursor() as cursor:
+        cursor.execute(statement, parameters)
+        return cursor.fetchall()
+
+
+def _places(kind: AssetKind, column: str) -> Places:
+    rows = _rows(
+        f"""
+        SELECT id, CASE WHEN osm_type = 'n' AND NOT is_edited THEN osm_id END, ST_X({column}), ST_Y({column}), height_m
+        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
+        """,  # noqa: S608  # the column is one of two literals of this file
+        [kind],
+    )
+    return Places(
+        asset=np.array([row[0] for row in rows], dtype=np.int64),
+        osm_node=np.array([NO_OSM_NODE if row[1] is None else row[1] for row in rows], dtype=np.int64),
+        position=np.array([row[2:4] for row in rows], dtype=np.float64).reshape(-1, 2),
+        height_m=np.array([np.nan if row[4] is None else row[4] for row in rows], dtype=np.float64),
+    )
+
+
+def _ways(kind: AssetKind) -> Ways:
+    """A way whose vertices do not match its list of OSM nodes, or that a curator edited, is joined by position alone."""
+    rows = _rows(
+        """
+        SELECT id, height_m, ST_AsBinary(geometry), CASE WHEN NOT is_edited THEN node_osm_ids END
+        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
+        """,
+        [kind],
+    )
+    geometries = shapely.from_wkb(np.array([bytes(row[2]) for row in rows], dtype=object))
+    parts, owner = shapely.get_parts(geometries, return_index=True)
+    count = shapely.get_num_coordinates(parts)
+    osm_nodes = [np.asarray(rows[row][3] or [], dtype=np.int64) for row in owner.tolist()]
+    osm_nodes = [
+        nodes if len(nodes) == vertices else np.full(vertices, NO_OSM_NODE)
+        for nodes, vertices in zip(osm_nodes, count.tolist(), strict=True)
+    ]
+    asset = np.array([row[0] for row in rows], dtype=np.int64)
+    height_m = np.array([np.nan if row[1] is None else row[1] for row in rows], dtype=np.float64)
+    return Ways(
+        asset=asset[owner],
+        height_m=height_m[owner],
+        first=np.concatenate([[0], np.cumsum(count)]).astype(np.int64),
+        osm_node=np.concatenate([np.zeros(0, dtype=np.int64), *osm_nodes]),
+        position=shapely.get_coordinates(parts),
+    )
