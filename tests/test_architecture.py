@@ -15,9 +15,9 @@ ROOT = Path(__file__).resolve().parents[1]
 APPS = ("workspace", "inspection", "missions")
 LONGEST_FILE = 450
 UNNAMED = {"utils", "util", "helpers", "helper", "common", "misc"}
-CLOCKS = {"time", "datetime.now", "datetime.utcnow", "datetime.today", "date.today", "datetime.datetime.now", "datetime.date.today"}
-GLOBAL_RANDOMNESS = {"random", "secrets", "uuid"}
-SEEDLESS = {"default_rng", "Generator", "PCG64", "SeedSequence"}
+CLOCKS = {"datetime.now", "datetime.utcnow", "datetime.today", "date.today", "datetime.datetime.now", "datetime.date.today"}
+UNSEEDABLE = {"time", "secrets", "uuid"}
+SEEDED = {"Random", "default_rng", "Generator", "PCG64", "SeedSequence"}  # pure when a seed is passed in
 
 
 def own_files(*patterns: str) -> list[Path]:
@@ -48,23 +48,21 @@ def dotted(node: ast.expr) -> str:
 def impurities(source: str) -> Iterator[str]:
     """Calls and imports in a pure module that read a clock or draw numbers nobody seeded."""
     for node in ast.walk(ast.parse(source)):
-        names: list[str] = []
         if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
+            yield from (f"line {node.lineno}: imports {alias.name}" for alias in node.names if alias.name.split(".")[0] in UNSEEDABLE)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names = [node.module]
-        yield from (f"line {node.lineno}: imports {name}" for name in names if name.split(".")[0] in GLOBAL_RANDOMNESS | {"time"})
-        if not isinstance(node, ast.Call):
-            continue
-        name = dotted(node.func)
-        if name in CLOCKS:
-            yield f"line {node.lineno}: reads the clock with {name}"
-        is_of_numpy = name.startswith(("np.random.", "numpy.random."))
-        last = name.rpartition(".")[2]
-        if is_of_numpy and last not in SEEDLESS:
-            yield f"line {node.lineno}: draws from numpy's global generator with {name}"
-        if (is_of_numpy or name in SEEDLESS) and last in SEEDLESS and not node.args and not node.keywords:
-            yield f"line {node.lineno}: makes a generator without a seed with {name}"
+            if node.module.split(".")[0] in UNSEEDABLE:
+                yield f"line {node.lineno}: imports {node.module}"
+            if node.module in {"random", "numpy.random"}:
+                yield from (f"line {node.lineno}: imports {alias.name}" for alias in node.names if alias.name not in SEEDED)
+        elif isinstance(node, ast.Call):
+            owner, _, name = dotted(node.func).rpartition(".")
+            if f"{owner}.{name}" in CLOCKS:
+                yield f"line {node.lineno}: reads the clock with {owner}.{name}"
+            elif owner in {"random", "np.random", "numpy.random"} and name not in SEEDED:
+                yield f"line {node.lineno}: draws from the global generator with {owner}.{name}"
+            elif name in SEEDED and not node.args and not node.keywords:
+                yield f"line {node.lineno}: makes a generator without a seed with {name}"
 
 
 @pytest.mark.parametrize(
@@ -72,6 +70,8 @@ def impurities(source: str) -> Iterator[str]:
     [
         "import time",
         "from random import random",
+        "import random\nrandom.shuffle([1, 2])",
+        "import random\nrandom.Random()",
         "from datetime import datetime\ndatetime.now()",
         "import numpy as np\nnp.random.uniform(0, 1)",
         "import numpy as np\nnp.random.default_rng()",
@@ -82,7 +82,10 @@ def test_the_check_for_purity_finds_each_kind_of_fault(source: str) -> None:
 
 
 def test_the_check_for_purity_lets_a_seeded_generator_pass() -> None:
-    assert not list(impurities("import numpy as np\ndef draw(seed):\n    return np.random.default_rng(seed).uniform()"))
+    source = (
+        "import random\nimport numpy as np\ndef draw(seed):\n    return np.random.default_rng(seed).uniform(), random.Random(seed).random()"
+    )
+    assert not list(impurities(source))
 
 
 @pytest.mark.parametrize("folder", pure_folders())
