@@ -2,7 +2,6 @@
 
 from django.contrib import admin
 from django.urls import URLPattern, URLResolver, include, path
-from django.views.generic import RedirectView
 from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerSplitView
 
 from config.health import healthz, readyz
@@ -15,7 +14,6 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),
     path("", include("missions.page_urls")),
-    path("admin/login/", RedirectView.as_view(pattern_name="sign-in", query_string=True)),  # one door for everybody
     path("admin/", admin.site.urls),
 ]
 

@@ -30,7 +30,7 @@ def assets_on_the_ground(
         assets = assets.filter(is_flyable=flyable)
     if text:
         assets = assets.filter(_text_filter(text))
-    return assets.defer("geometry", "node_osm_ids").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+    return assets.defer("geometry", "node_osm_ids", "parts").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
 
 
 def asset_with_geometry(asset_id: int) -> Asset:
