@@ -139,12 +139,13 @@ def main(purpose: str) -> int:
         print(f"Packages are missing. As root, run:\n  {apt_line(missing)}", file=sys.stderr)
         return EXIT_MISSING
     began = time.monotonic()
+    print(f"Debian packages {' '.join(missing)} … ", end="", flush=True)
     try:
         install(purpose)
     except subprocess.CalledProcessError as error:
         print(f"apt-get failed (exit code {error.returncode}); its last words are above", file=sys.stderr)
         return 1
-    print(f"{time.monotonic() - began:6.1f} s  Debian packages: {' '.join(missing)}", flush=True)
+    print(f"{time.monotonic() - began:.1f} s", flush=True)
     if still_missing := missing_packages(purpose):
         print(f"Still not found after the installation: {' '.join(still_missing)}", file=sys.stderr)
         return 1

@@ -19,12 +19,15 @@ class Command(BaseCommand):
         parser.add_argument("--user", metavar="NAME", help="name of the administrator to make")
         parser.add_argument("--password-file", metavar="FILE", type=Path, help="its first line is the administrator's password")
 
-    def handle(self, *args: Any, user: str | None, password_file: Path | None, **options: Any) -> None:
+        parser.add_argument("--no-uavs", action="store_true", help="leave the UAVs out: the data are not the demo region's")
+
+    def handle(self, *args: Any, user: str | None, password_file: Path | None, no_uavs: bool, **options: Any) -> None:
         if (user is None) != (password_file is None):
             raise CommandError("--user and --password-file go together.")
         with transaction.atomic():
-            created = sum(_create_uavs())
-            self.stdout.write(f"{created} UAVs created at {len(BASES)} bases.")
+            if not no_uavs:
+                created = sum(_create_uavs())
+                self.stdout.write(f"{created} UAVs created at {len(BASES)} bases.")
             if user is not None and password_file is not None:
                 self.stdout.write(_create_first_administrator(user, _first_line(password_file)))
 

@@ -1,0 +1,86 @@
+"""Making the private PostgreSQL's data folder and the database in it, and waiting for the servers."""
+
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import psycopg
+import redis
+
+from config.private_servers import DATABASE_NAME, DATABASE_ROLE
+from scripts.places import CannotStart, Places, database_user_id
+from scripts.postgresql_installations import server_for
+
+START_TIMEOUT_S = 60.0
+
+
+def prepare_cluster(places: Places) -> bool:
+    """Make PostgreSQL's data folder if it is not there. True if it was made. An interrupted attempt leaves nothing that counts."""
+    data = places.data
+    if (data / "PG_VERSION").exists():
+        owner = data.stat().st_uid
+        if owner != database_user_id():
+            raise CannotStart(
+                f"{data} belongs to user id {owner}: start Spanwise as the user who made it, or choose another folder with --var"
+            )
+        return False
+    server = server_for(data)
+    if server is None:
+        raise CannotStart("no PostgreSQL 15 or newer with PostGIS on this machine")
+    draft = data.with_name(f"{data.name}.new")
+    shutil.rmtree(draft, ignore_errors=True)
+    draft.mkdir(mode=0o700, parents=True)
+    user = database_user_id()
+    if os.geteuid() == 0:
+        os.chown(draft, user, draft.parent.stat().st_gid)
+    command = [server.program("initdb"), "-D", str(draft), "-U", DATABASE_ROLE, "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8"]
+    # Trust holds inside the socket folder, which no other user may enter; there is no network socket.
+    answer = subprocess.run(
+        command, user=user, extra_groups=[] if os.geteuid() == 0 else None, cwd="/", capture_output=True, text=True, check=False
+    )
+    if answer.returncode != 0:
+        raise CannotStart(f"initdb failed:\n{answer.stdout}{answer.stderr}")
+    draft.rename(data)
+    return True
+
+
+def wait_for_database(sockets: Path) -> None:
+    """Return once PostgreSQL takes connections; crash recovery after a kill -9 is waited for."""
+    deadline = time.monotonic() + START_TIMEOUT_S
+    while True:
+        try:
+            psycopg.connect(host=str(sockets), user=DATABASE_ROLE, dbname="postgres", connect_timeout=5).close()
+        except psycopg.OperationalError as error:
+            if time.monotonic() > deadline:
+                raise CannotStart(f"PostgreSQL does not answer: {error}") from None
+            time.sleep(0.05)
+        else:
+            return
+
+
+def wait_for_queue(sockets: Path) -> None:
+    """Return once Redis answers; loading its append-only file is waited for."""
+    deadline = time.monotonic() + START_TIMEOUT_S
+    client = redis.Redis(unix_socket_path=str(sockets / "redis.sock"), socket_timeout=5)
+    while True:
+        try:
+            client.ping()
+        except (redis.ConnectionError, redis.TimeoutError) as error:
+            if time.monotonic() > deadline:
+                raise CannotStart(f"Redis does not answer: {error}") from None
+            time.sleep(0.05)
+        else:
+            client.close()
+            return
+
+
+def database_exists(sockets: Path) -> bool:
+    with psycopg.connect(host=str(sockets), user=DATABASE_ROLE, dbname="postgres") as connection:
+        return connection.execute("SELECT 1 FROM pg_database WHERE datname = %s", [DATABASE_NAME]).fetchone() is not None
+
+
+def create_database(sockets: Path) -> None:
+    with psycopg.connect(host=str(sockets), user=DATABASE_ROLE, dbname="postgres", autocommit=True) as connection:
+        connection.execute(f'CREATE DATABASE "{DATABASE_NAME}"')

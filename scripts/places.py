@@ -1,0 +1,151 @@
+"""Where one installation keeps its state: everything under its state folder, sockets in a short folder of their own."""
+
+import hashlib
+import os
+import pwd
+import shutil
+import stat
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from config.private_servers import PROJECT_DIR
+
+SOCKET_PATH_LIMIT = 107  # bytes, sun_path of Linux
+DATABASE_USER = "postgres"  # PostgreSQL refuses to run as root
+DEMO_USER = "demo"
+
+
+class CannotStart(Exception):
+    """Something on this machine stands in the way; the message tells the operator what."""
+
+
+@dataclass(frozen=True)
+class Places:
+    """Paths of one state folder."""
+
+    state: Path
+
+    @property
+    def data(self) -> Path:
+        """PostgreSQL's data folder."""
+        inside = self.state / "postgresql"
+        if os.geteuid() != 0 or (inside / "PG_VERSION").exists() or database_user_reaches(self.state):
+            return inside
+        digest = hashlib.sha256(str(self.state).encode()).hexdigest()[:10]
+        return Path(pwd.getpwnam(DATABASE_USER).pw_dir) / f"spanwise-{digest}"
+
+    @property
+    def redis(self) -> Path:
+        return self.state / "redis"
+
+    @property
+    def logs(self) -> Path:
+        return self.state / "log"
+
+    @property
+    def generated(self) -> Path:
+        """Configuration files that are written anew at every start."""
+        return self.state / "generated"
+
+    @property
+    def static(self) -> Path:
+        return self.state / "static"
+
+    @property
+    def instance(self) -> Path:
+        """What runs on this state: its port."""
+        return self.state / "instance.json"
+
+    @property
+    def first_load(self) -> Path:
+        """Exists while the first data are being loaded, so that an interrupted load is taken up again."""
+        return self.state / "first_load.json"
+
+    @property
+    def demo_password(self) -> Path:
+        return self.state / "demo_password"
+
+    @property
+    def lock(self) -> Path:
+        return self.state / "lock"
+
+    def process(self, program: str) -> Path:
+        """The working folder of a program. It belongs to that program alone: whatever stands in it is ours to end."""
+        return self.state / "processes" / program
+
+
+def database_user_id() -> int:
+    """The user id that runs PostgreSQL: our own, or that of `postgres` when we are root."""
+    if os.geteuid() != 0:
+        return os.geteuid()
+    try:
+        return pwd.getpwnam(DATABASE_USER).pw_uid
+    except KeyError:
+        raise CannotStart("PostgreSQL does not run as root, and this machine has no user `postgres`") from None
+
+
+def database_user_reaches(folder: Path) -> bool:
+    """True if the user that runs PostgreSQL can pass through every folder down to this one."""
+    answer = subprocess.run(
+        ["test", "-x", str(folder)], user=database_user_id(), group=_database_group_id(), extra_groups=[], cwd="/", check=False
+    )
+    return answer.returncode == 0
+
+
+def _database_group_id() -> int:
+    return pwd.getpwuid(database_user_id()).pw_gid
+
+
+def prepare_state(state: Path) -> Places:
+    """Make the folders of a state. Raises CannotStart if this user may not write there."""
+    places = Places(state)
+    try:
+        for folder in (state, places.redis, places.logs, places.generated):
+            folder.mkdir(parents=True, exist_ok=True)
+        for folder in (places.redis, places.logs):
+            folder.chmod(0o700)
+    except PermissionError as error:
+        raise CannotStart(f"this user may not write in {state} ({error.strerror}); choose another folder with --var") from None
+    if not os.access(state, os.W_OK | os.X_OK):
+        raise CannotStart(f"this user may not write in {state}; choose another folder with --var")
+    return places
+
+
+def _is_ours(sockets: Path, state: Path) -> bool:
+    """True for a real folder, owned by us (or by the database's user when we are root), that was made for this state."""
+    try:
+        found = sockets.lstat()
+        made_for = (sockets / "state").read_text()
+    except OSError:
+        return False
+    return stat.S_ISDIR(found.st_mode) and found.st_uid in {os.geteuid(), database_user_id()} and made_for == str(state)
+
+
+def prepare_sockets(state: Path) -> Path:
+    """The folder of this state's sockets, made where it is missing, closed to other users, and noted in the state."""
+    note = state / "socket_directory"
+    digest = hashlib.sha256(str(state).encode()).hexdigest()[:10]
+    sockets = Path(note.read_text().strip()) if note.exists() else Path(tempfile.gettempdir()) / f"spanwise-{digest}"
+    if not _is_ours(sockets, state):
+        parent = Path(tempfile.gettempdir())
+        if len(str(parent)) > SOCKET_PATH_LIMIT - 50:
+            parent = Path("/tmp")  # noqa: S108 - the folder in it is checked for its owner and closed
+        sockets = parent / f"spanwise-{digest}"
+        try:
+            sockets.mkdir(mode=0o700)
+        except FileExistsError:
+            if not _is_ours(sockets, state):  # somebody else's, whatever the reason
+                sockets = Path(tempfile.mkdtemp(prefix="spanwise-", dir=parent))
+        (sockets / "state").write_text(str(state))
+    sockets.chmod(0o700)
+    if os.geteuid() == 0:
+        shutil.chown(sockets, database_user_id(), _database_group_id())
+    draft = note.with_suffix(".new")
+    draft.write_text(f"{sockets}\n")
+    draft.replace(note)
+    return sockets
+
+
+__all__ = ["DATABASE_USER", "DEMO_USER", "PROJECT_DIR", "CannotStart", "Places", "database_user_id", "prepare_sockets", "prepare_state"]

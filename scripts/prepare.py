@@ -1,0 +1,121 @@
+"""Bring a database up to the program, before the program starts: migrations, static files, data, the graph.
+
+python -m scripts.prepare [--osm FILE]... [--zones FILE]...
+"""
+
+import argparse
+import json
+import os
+import secrets
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import StringIO
+from pathlib import Path
+
+import django
+from django.apps import apps
+from django.core.management import CommandError, call_command
+from django.db import connection
+from django.db.migrations.executor import MigrationExecutor
+
+from config.private_servers import state_directory
+from scripts.places import DEMO_USER, Places
+
+
+@contextmanager
+def step(text: str) -> Iterator[None]:
+    """Say what is being done, and how long it took."""
+    began = time.monotonic()
+    print(f"{text} … ", end="", flush=True)
+    try:
+        yield
+    except BaseException:
+        print("failed", flush=True)
+        raise
+    print(f"{time.monotonic() - began:.1f} s", flush=True)
+
+
+def migrate() -> None:
+    executor = MigrationExecutor(connection)
+    if executor.migration_plan(executor.loader.graph.leaf_nodes()):
+        with step("Database migrations"):
+            call_command("migrate", interactive=False, verbosity=0)
+
+
+def is_without_ground() -> bool:
+    """True if nobody has brought in any asset or zone yet."""
+    return not any(apps.get_model("inspection", name).objects.exists() for name in ("Asset", "NoFlyZone"))
+
+
+def password_file(places: Places) -> Path:
+    """The file with the demo user's password: made at random once, readable by its owner alone."""
+    path = places.demo_password
+    if not path.exists():
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(descriptor, "w") as file:
+            file.write(f"{secrets.token_urlsafe(12)}\n")
+    return path
+
+
+def load_demo_region(folder: Path) -> None:
+    """Make the demo region's files and read them with the importers that read any other data."""
+    commands = [
+        ("Demo region (synthetic): files", ["make_demo_region", str(folder)]),
+        ("Demo region: towers, lines, railways, bridges", ["import_osm", str(folder / "demo.osm.pbf"), "--synthetic"]),
+        ("Demo region: no-fly zones", ["import_zones", str(folder / "demo-zones.json"), "--synthetic"]),
+        ("Demo region: terrain", ["import_terrain", str(folder / "demo-terrain.tif"), "--synthetic"]),
+        ("Demo region: UAVs", ["load_demo"]),
+    ]
+    for text, command in commands:
+        with step(text):
+            call_command(*command, stdout=StringIO())
+
+
+def load_own_data(osm_files: list[Path], zone_files: list[Path]) -> None:
+    """Read the operator's files; the importers say what they found, and leave alone what has not changed."""
+    for command, paths in (("import_osm", osm_files), ("import_zones", zone_files)):
+        for path in paths:
+            print(f"{command} {path}", flush=True)
+            call_command(command, str(path))
+
+
+def make_demo_user(password_file: Path) -> None:
+    """The first sign-in of a database that ./run has made: an administrator, unless somebody has an account already."""
+    call_command("load_demo", "--no-uavs", "--user", DEMO_USER, "--password-file", str(password_file), stdout=StringIO())
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--osm", type=Path, action="append", default=[])
+    parser.add_argument("--zones", type=Path, action="append", default=[])
+    options = parser.parse_args()
+    places = Places(state_directory())
+    os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
+    django.setup()
+
+    migrate()
+    with step("Static files"):
+        call_command("collectstatic", interactive=False, verbosity=0)
+    if places.first_load.exists() or is_without_ground():
+        # Noted until all is done: a load that is interrupted is taken up again. ./run notes it before it makes a database.
+        if not places.first_load.exists():
+            places.first_load.write_text(json.dumps({"demo_user": False}))
+        if json.loads(places.first_load.read_text())["demo_user"]:
+            make_demo_user(password_file(places))
+        if not (options.osm or options.zones):
+            load_demo_region(places.state / "demo")
+    load_own_data(options.osm, options.zones)
+    with step("Inspection graph"):
+        call_command("build_graph", stdout=StringIO())
+    places.first_load.unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except CommandError as error:
+        sys.exit(f"{error}")
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -1,0 +1,53 @@
+"""Running processes as /proc shows them: which of them stand in a folder of ours, and ending those."""
+
+import os
+import signal
+import time
+from collections.abc import Iterable
+from pathlib import Path
+
+# What our programs run as. A shell that somebody has opened in one of the folders is not among them.
+OUR_PROGRAMS = ("postgres", "redis-server", "redis-check-rdb", "nginx", "python")
+
+
+def is_alive(pid: int) -> bool:
+    """False for a process that is gone and for one that is dead but not yet collected by its parent."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text()
+    except OSError:
+        return False
+    return fields.rpartition(")")[2].split()[0] not in {"Z", "X"}
+
+
+def processes_in(folders: Iterable[Path]) -> list[int]:
+    """Process ids of our programs whose working folder is one of these."""
+    wanted = {str(folder) for folder in folders}
+    found = []
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdigit() or int(entry.name) == os.getpid():
+            continue
+        try:
+            folder, program = str((entry / "cwd").readlink()), (entry / "exe").readlink().name
+        except OSError:  # gone, or another user's
+            continue
+        if folder in wanted and program.removesuffix(" (deleted)").startswith(OUR_PROGRAMS) and is_alive(int(entry.name)):
+            found.append(int(entry.name))
+    return found
+
+
+def end_processes(folders: Iterable[Path], *, first_signal: signal.Signals = signal.SIGTERM, patience_s: float = 10.0) -> int:
+    """End our programs that stand in these folders, by kill -9 once patience is over. Returns how many there were."""
+    folders = list(folders)
+    seen: set[int] = set()
+    deadline = time.monotonic() + patience_s
+    while remaining := processes_in(folders):
+        is_over = time.monotonic() > deadline
+        for pid in remaining:
+            if pid not in seen or is_over:
+                try:
+                    os.kill(pid, signal.SIGKILL if is_over else first_signal)
+                except ProcessLookupError:
+                    continue
+        seen.update(remaining)
+        time.sleep(0.05)
+    return len(seen)

@@ -1,0 +1,113 @@
+"""The programs of one installation: what each is started with, in which order, and how it is stopped."""
+
+import os
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from scripts.places import DATABASE_USER, CannotStart, Places
+from scripts.postgresql_installations import server_for
+from scripts.system_packages import find_program
+
+
+@dataclass(frozen=True)
+class Program:
+    """One supervised process. Lower stages start first and stop last."""
+
+    name: str
+    stage: int
+    command: list[str]
+    folder: Path
+    stop_signal: str = "TERM"
+    patience_s: int = 10
+    user: str | None = None
+    stale_files: list[Path] = field(default_factory=list)
+
+    def start_command(self) -> list[str]:
+        """The command as the supervisor runs it: through scripts.start_program, which clears up after a killed instance."""
+        options = [str(self.folder), "--stop-signal", self.stop_signal]
+        if self.user:
+            options += ["--user", self.user]
+        for path in self.stale_files:
+            options += ["--stale", str(path)]
+        return [sys.executable, "-m", "scripts.start_program", *options, "--", *self.command]
+
+
+SERVERS_STAGE, PROGRAM_STAGE = 1, 2
+SERVERS = ("postgresql", "redis")
+
+
+def database_server(places: Places, sockets: Path, *, is_durable: bool = True) -> Program:
+    """PostgreSQL on a unix socket. A server for tests alone need not wait for the disk."""
+    data = places.data
+    server = server_for(data)
+    if server is None:
+        raise CannotStart(f"no PostgreSQL with PostGIS on this machine can open {data}")
+    settings = {"unix_socket_directories": str(sockets), "listen_addresses": "", "unix_socket_permissions": "0777", "jit": "off"}
+    if not is_durable:
+        settings |= {"fsync": "off", "synchronous_commit": "off", "full_page_writes": "off"}
+    command = [server.program("postgres"), "-D", str(data)]
+    for name, value in settings.items():
+        command += ["-c", f"{name}={value}"]
+    return Program(
+        name="postgresql",
+        stage=SERVERS_STAGE,
+        command=command,
+        folder=data,
+        stop_signal="INT",  # PostgreSQL's fast shutdown
+        patience_s=60,
+        user=DATABASE_USER if os.geteuid() == 0 else None,
+        stale_files=[data / "postmaster.pid", sockets / ".s.PGSQL.5432.lock"],
+    )
+
+
+def queue_server(places: Places, sockets: Path) -> Program:
+    """Redis on a unix socket, with its append-only file."""
+    settings = {
+        "port": "0",
+        "unixsocket": str(sockets / "redis.sock"),
+        "unixsocketperm": "700",
+        "dir": str(places.redis),
+        "appendonly": "yes",
+        "save": "60 1",
+        "daemonize": "no",
+        "logfile": "",
+    }
+    command = [find_program("redis-server") or "redis-server"]
+    for name, value in settings.items():
+        command += [f"--{name}", value]
+    return Program(name="redis", stage=SERVERS_STAGE, command=command, folder=places.redis, patience_s=20)
+
+
+def _celery(places: Places, name: str, *arguments: str) -> Program:
+    return Program(
+        name=name,
+        stage=PROGRAM_STAGE,
+        command=[sys.executable, "-m", "celery", "--app", "config.celery", "--quiet", *arguments],
+        folder=places.process(name),
+        # QUIT is Celery's soft shutdown: running tasks get CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT, then go back to the queue.
+        stop_signal="TERM" if name == "beat" else "QUIT",
+        patience_s=20,
+    )
+
+
+def _worker(places: Places, queue: str, processes: int) -> Program:
+    arguments = ["--queues", queue, "--hostname", f"{queue}@%h", "--concurrency", str(processes)]
+    quick_start = ["--without-gossip", "--without-mingle", "--without-heartbeat"]  # workers need not know of each other
+    return _celery(places, f"worker-{queue}", "worker", "--loglevel", "INFO", *arguments, *quick_start)
+
+
+def web_programs(places: Places, sockets: Path) -> list[Program]:
+    """Every process of Spanwise itself."""
+    granian = [sys.executable, "-m", "granian", "--interface", "wsgi", "--uds", str(sockets / "web.sock"), "--workers", "2"]
+    granian += ["--no-ws", "--blocking-threads", "4", "--backlog", "1024", "--http", "1", "--workers-kill-timeout", "10"]
+    granian += ["--respawn-failed-workers", "--respawn-interval", "0.5", "--log-level", "warning", "config.wsgi:application"]
+    configuration = places.generated / "nginx.conf"
+    nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
+    return [
+        Program(name="web", stage=PROGRAM_STAGE, command=granian, folder=places.process("web"), patience_s=20),
+        _worker(places, "data", 1),
+        _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),
+        _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),
+        Program(name="proxy", stage=PROGRAM_STAGE, command=nginx, folder=places.process("proxy")),
+    ]

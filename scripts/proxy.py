@@ -1,0 +1,193 @@
+"""The reverse proxy (nginx): its configuration for one installation, without anything of the machine's own."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from scripts.places import CannotStart, Places
+
+LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
+
+# A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
+MEDIA_TYPES = {
+    "text/html": "html",
+    "text/css": "css",
+    "text/plain": "txt",
+    "text/javascript": "js mjs",
+    "application/json": "json map",
+    "application/geo+json": "geojson",
+    "application/wasm": "wasm",
+    "application/x-protobuf": "pbf",
+    "image/svg+xml": "svg",
+    "image/png": "png",
+    "image/jpeg": "jpg jpeg",
+    "image/webp": "webp",
+    "image/x-icon": "ico",
+    "font/woff": "woff",
+    "font/woff2": "woff2",
+    "font/ttf": "ttf",
+}
+COMPRESSED = (
+    "text/css text/plain text/javascript application/json application/geo+json application/wasm image/svg+xml "
+    "application/vnd.mapbox-vector-tile application/vnd.oai.openapi application/graphml+xml"
+)
+
+
+def origins(addresses: Iterable[str]) -> list[str]:
+    """Scheme and host of tile addresses, for those that `https:` does not cover."""
+    found = []
+    for address in addresses:
+        parts = urlsplit(address)
+        if parts.scheme == "http" and parts.netloc and not set(parts.netloc) & set(" ;,'\"{}"):
+            found.append(f"http://{parts.netloc}")
+    return sorted(set(found))
+
+
+def content_security_policy(tile_addresses: Iterable[str] = ()) -> str:
+    """What a page may load: everything from here, raster tiles from any https host (and from plain hosts the settings name)."""
+    tiles = " ".join(["https:", *origins(tile_addresses)])
+    rules = [
+        "default-src 'self'",
+        "script-src 'self'",
+        "worker-src 'self' blob:",
+        "style-src 'self' 'unsafe-inline'",  # MapLibre and Django's admin set style attributes
+        f"img-src 'self' data: blob: {tiles}",
+        f"connect-src 'self' {tiles}",  # MapLibre fetches tiles
+        "font-src 'self'",
+        "object-src 'none'",
+        "base-uri 'none'",
+        "form-action 'self'",
+        "frame-ancestors 'none'",
+    ]
+    return "; ".join(rules)
+
+
+def _quoted(path: object) -> str:
+    """A path as nginx reads it; spaces are fine, a dollar sign would be a variable."""
+    text = str(path)
+    if set(text) & set('"\\$\n'):
+        raise CannotStart(f"nginx cannot be given the path {text!r}: it holds a quotation mark, a backslash or a dollar sign")
+    return f'"{text}"'
+
+
+def _headers(tile_addresses: Iterable[str]) -> str:
+    """Headers that every answer carries. nginx inherits none into a block that adds one of its own, so each block has them all."""
+    return f"""\
+            add_header Content-Security-Policy "{content_security_policy(tile_addresses)}" always;
+            add_header X-Content-Type-Options nosniff always;
+            add_header Referrer-Policy same-origin always;
+            add_header Permissions-Policy "camera=(), microphone=(), geolocation=(self)" always;"""
+
+
+def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too_large: str) -> str:
+    """What nginx answers itself: where the application is away, and where a body is too large to be passed on."""
+    return f"""
+        location @{name}_unavailable {{
+            internal;
+            default_type {media_type};
+            add_header Retry-After 5 always;
+{headers}
+            return 503 '{unavailable}';
+        }}
+        location @{name}_too_large {{
+            internal;
+            default_type {media_type};
+{headers}
+            return 413 '{too_large}';
+        }}"""
+
+
+def _proxied(location: str, name: str, headers: str, scheme: str) -> str:
+    return f"""
+        location {location} {{
+            proxy_pass http://web;
+            proxy_http_version 1.1;
+            proxy_set_header Connection "";
+            proxy_set_header Host $http_host;
+            proxy_set_header X-Forwarded-For $remote_addr;
+            proxy_set_header X-Forwarded-Proto {scheme};
+            proxy_connect_timeout 5s;
+            proxy_read_timeout 120s;
+            proxy_buffers 16 32k;
+            proxy_buffer_size 32k;
+            error_page 502 504 = @{name}_unavailable;
+            error_page 413 = @{name}_too_large;
+{headers}
+        }}"""
+
+
+def configuration(places: Places, sockets: Path, port: int) -> str:
+    """The text of nginx.conf."""
+    folder = places.process("proxy")
+    headers = _headers(os.environ.get(name, "") for name in ("SPANWISE_BASE_MAP_TILES", "SPANWISE_SATELLITE_TILES"))
+    is_behind_https = os.environ.get("SPANWISE_HTTPS", "0").lower() in {"1", "true", "yes", "on"}
+    scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
+    media_types = "\n".join(f"        {kind} {endings};" for kind, endings in MEDIA_TYPES.items())
+    temporary = "\n".join(
+        f"    {kind}_temp_path {_quoted(folder / kind)};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+    )
+    failures_for_programs = _failures(
+        "api",
+        "application/json",
+        headers,
+        unavailable='{"error": {"code": "unavailable", "message": "Spanwise is not answering; try again.", "details": {}}}',
+        too_large='{"error": {"code": "too_large", "message": "The body is too large.", "details": {}}}',
+    )
+    failures_for_people = _failures(
+        "page",
+        "text/plain",
+        headers,
+        unavailable="Spanwise is starting or has been stopped. Please try again in a moment.",
+        too_large="This is more than Spanwise takes in one request.",
+    )
+    return f"""{"user root;" if os.geteuid() == 0 else ""}
+daemon off;
+pid {_quoted(folder / "nginx.pid")};
+error_log stderr warn;
+worker_processes 1;
+worker_rlimit_nofile 8192;
+events {{
+    worker_connections 4096;
+}}
+http {{
+    types {{
+{media_types}
+    }}
+    default_type application/octet-stream;
+    charset utf-8;
+    charset_types text/css text/plain text/javascript image/svg+xml;
+{temporary}
+    log_format line '$time_iso8601 $remote_addr "$request" $status $body_bytes_sent $request_time';
+    access_log /dev/stdout line;
+    server_tokens off;
+    sendfile on;
+    tcp_nopush on;
+    client_max_body_size {LARGEST_BODY};
+    client_body_buffer_size 256k;
+    client_header_timeout 15s;
+    client_body_timeout 15s;
+    send_timeout 30s;
+    reset_timedout_connection on;
+    gzip on;
+    gzip_proxied any;
+    gzip_vary on;
+    gzip_min_length 512;
+    gzip_comp_level 4;
+    gzip_types {COMPRESSED};
+    upstream web {{
+        server {_quoted(f"unix:{sockets / 'web.sock'}")} max_fails=0;
+        keepalive 16;
+    }}
+    server {{
+        listen 127.0.0.1:{port};
+        location /static/ {{
+            alias {_quoted(f"{places.static}/")};
+            add_header Cache-Control no-cache;
+{headers}
+        }}{_proxied("/", "page", headers, scheme)}{_proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme)}
+{failures_for_people}
+{failures_for_programs}
+    }}
+}}
+"""

@@ -1,0 +1,67 @@
+"""Become one of the supervised programs: end what an earlier instance left behind, follow the supervisor into death, exec.
+
+python -m scripts.start_program FOLDER [--user NAME] [--stale FILE]... [--stop-signal NAME] -- COMMAND...
+
+A server that is ended by kill -9 leaves its workers behind, with the port or the data folder still in their hands; they are
+found by their working folder, which belongs to this program alone. Should the supervisor itself be killed, the kernel asks the
+program to stop (PR_SET_PDEATHSIG), so that nothing lives on without it.
+"""
+
+import argparse
+import ctypes
+import os
+import pwd
+import signal
+from pathlib import Path
+
+from scripts.processes import end_processes
+
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
+
+
+def remove_stale_lock(path: Path) -> None:
+    """Remove a lock file of a server that is gone. Its process id may be in use again, so the server's own test is not enough."""
+    try:
+        path.unlink()
+    except FileNotFoundError:
+        return
+    print(f"removed {path.name}, which a killed server left behind", flush=True)
+
+
+def _become(user: str) -> None:
+    entry = pwd.getpwnam(user)
+    os.setgroups([])
+    os.setgid(entry.pw_gid)
+    os.setuid(entry.pw_uid)
+    os.environ["HOME"] = entry.pw_dir
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--user")
+    parser.add_argument("--stale", type=Path, action="append", default=[])
+    parser.add_argument("--stop-signal", default="TERM", help="ends leftovers; sent by the kernel when the supervisor dies")
+    parser.add_argument("command", nargs="+")
+    options = parser.parse_args()
+
+    supervisor = os.getppid()
+    stop_signal = signal.Signals[f"SIG{options.stop_signal}"]
+    ended = end_processes([options.folder], first_signal=stop_signal, patience_s=5.0)
+    if ended:
+        print(f"ended {ended} processes that a killed server left behind", flush=True)
+    for path in options.stale:
+        remove_stale_lock(path)
+    os.chdir(options.folder)
+    if options.user:
+        _become(options.user)
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.prctl(PR_SET_PDEATHSIG, stop_signal, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "prctl(PR_SET_PDEATHSIG)")
+    if os.getppid() != supervisor:
+        raise SystemExit("the supervisor has gone")
+    os.execvp(options.command[0], options.command)  # noqa: S606 - no shell, the command is the supervisor's
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,163 @@
+"""The supervisor (supervisord): its configuration, starting it, talking to it, stopping it with everything it runs."""
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+import xmlrpc.client
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from supervisor.xmlrpc import SupervisorTransport
+
+from scripts.places import PROJECT_DIR, CannotStart, Places
+from scripts.processes import end_processes, processes_in
+from scripts.programs import SERVERS, SERVERS_STAGE, Program
+
+START_TIMEOUT_S = 15.0
+STOP_TIMEOUT_S = 90.0
+
+
+def configuration(places: Places, sockets: Path, programs: Iterable[Program]) -> str:
+    """The text of supervisord.conf. A percent sign is doubled, as its parser wants."""
+    lines = [
+        "[unix_http_server]",
+        f"file={sockets / 'supervisor.sock'}",
+        "chmod=0700",
+        "[rpcinterface:supervisor]",
+        "supervisor.rpcinterface_factory=supervisor.rpcinterface:make_main_rpcinterface",
+        "[supervisord]",
+        f"logfile={places.logs / 'supervisor.log'}",
+        "logfile_maxbytes=5MB",
+        "logfile_backups=1",
+        f"pidfile={places.generated / 'supervisord.pid'}",
+        f"childlogdir={places.logs}",
+        "silent=true",
+        "umask=077",
+    ]
+    if os.geteuid() == 0:
+        lines.append("user=root")
+    for program in programs:
+        lines += [
+            f"[program:{program.name}]",
+            f"command={shlex.join(program.start_command())}",
+            f"directory={PROJECT_DIR}",
+            f"priority={program.stage}",
+            f"autostart={'true' if program.stage == SERVERS_STAGE else 'false'}",
+            "autorestart=true",
+            "startsecs=1",
+            "startretries=1000",
+            f"stopsignal={program.stop_signal}",
+            f"stopwaitsecs={program.patience_s}",
+            "killasgroup=true",
+            "redirect_stderr=true",
+            f"stdout_logfile={places.logs / program.name}.log",
+            "stdout_logfile_maxbytes=10MB",
+            "stdout_logfile_backups=3",
+        ]
+    return "".join(f"{line.replace('%', '%%')}\n" for line in lines)
+
+
+@dataclass(frozen=True)
+class ProgramState:
+    """What the supervisor says of one program."""
+
+    name: str
+    state: str
+    description: str
+    started_at_s: int
+
+
+class Supervisor:
+    """One installation's supervisor, running or not."""
+
+    def __init__(self, places: Places, sockets: Path) -> None:
+        self.places = places
+        self.sockets = sockets
+
+    def _call(self) -> Any:
+        transport = SupervisorTransport(None, None, f"unix://{self.sockets / 'supervisor.sock'}")
+        return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport).supervisor
+
+    def is_running(self) -> bool:
+        try:
+            return bool(self._call().getState()["statename"] == "RUNNING")
+        except (OSError, xmlrpc.client.Error):
+            return False
+
+    def is_alive(self) -> bool:
+        """True while its process is there, answering or not."""
+        return bool(processes_in([self.places.process("supervisor")]))
+
+    def start(self, programs: list[Program]) -> None:
+        """Start the supervisor with the servers; the other programs wait for start_programs. Leftovers of a killed one are ended."""
+        self.end_leftovers()
+        for program in programs:
+            if program.stage != SERVERS_STAGE:
+                program.folder.mkdir(parents=True, exist_ok=True)
+        path = self.places.generated / "supervisord.conf"
+        path.write_text(configuration(self.places, self.sockets, programs))
+        folder = self.places.process("supervisor")
+        folder.mkdir(parents=True, exist_ok=True)
+        environment = {**os.environ, "SPANWISE_VAR": str(self.places.state), "PYTHONPATH": str(PROJECT_DIR)}
+        log = self.places.logs / "supervisor.log"
+        with log.open("a") as words:
+            child = subprocess.Popen(
+                [sys.executable, "-m", "supervisor.supervisord", "--nodaemon", "--configuration", str(path)],
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=words,
+                stderr=words,
+                start_new_session=True,
+            )
+        deadline = time.monotonic() + START_TIMEOUT_S
+        while not self.is_running():
+            if child.poll() is not None or time.monotonic() > deadline:
+                raise CannotStart(f"the supervisor did not start; see {log}")
+            time.sleep(0.05)
+
+    def start_programs(self, names: Iterable[str]) -> None:
+        for name in names:
+            self._call().startProcess(name, False)
+
+    def states(self) -> list[ProgramState]:
+        """The programs' states; empty when the supervisor is not there."""
+        try:
+            rows: list[dict[str, Any]] = self._call().getAllProcessInfo()
+        except (OSError, xmlrpc.client.Error):
+            return []
+        return [ProgramState(row["name"], row["statename"], row["description"], row["start"]) for row in rows]
+
+    def end_leftovers(self) -> None:
+        """End what a killed supervisor left behind. The kernel has asked its programs to stop; here they get their time to do so."""
+        end_processes([self.places.process("supervisor")])
+        end_processes([self.places.data], first_signal=signal.SIGINT, patience_s=15.0)  # PostgreSQL's fast shutdown
+        others = [entry for entry in (self.places.state / "processes").glob("*") if entry.is_dir()]
+        end_processes([*others, self.places.redis], patience_s=15.0)
+
+    def stop(self) -> None:
+        """Stop every program, the servers last, and the supervisor itself."""
+        programs = [state.name for state in self.states() if state.name not in SERVERS]
+        try:
+            for name in programs:  # all at once; a shutdown alone stops one after the other
+                self._stop_program(name)
+            deadline = time.monotonic() + STOP_TIMEOUT_S
+            while any(state.name in programs and state.state == "STOPPING" for state in self.states()) and time.monotonic() < deadline:
+                time.sleep(0.05)
+            self._call().shutdown()
+        except (OSError, xmlrpc.client.Error):
+            pass  # not there, or on its way out already
+        else:
+            while self.is_alive() and time.monotonic() < deadline:
+                time.sleep(0.05)
+        self.end_leftovers()
+
+    def _stop_program(self, name: str) -> None:
+        with suppress(xmlrpc.client.Fault):  # it was not running
+            self._call().stopProcess(name, False)
