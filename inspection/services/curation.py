@@ -1,5 +1,6 @@
 """What curators write by hand: each change marks the row as edited, is recorded, and counts as a change of the ground."""
 
+import uuid
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,14 @@ class WrongGeometry(ValueError):
     """The geometry is of another type than the asset's kind has."""
 
 
+def geometry_fault(*, kind: AssetKind, geometry: GEOSGeometry) -> str | None:
+    """A sentence, if assets of this kind have another type of geometry."""
+    types = GEOMETRY_TYPES[kind]
+    if geometry.geom_type in types:
+        return None
+    return f"A {kind.label.lower()} is drawn as {' or '.join(sorted(types))}, not as {geometry.geom_type}."
+
+
 def save_asset(*, asset: Asset, actor: User) -> Asset:
     """Store a new or changed asset with all that follows from its geometry and voltages. Raises WrongGeometry."""
     kind = AssetKind(asset.kind)
@@ -48,7 +57,7 @@ def save_asset(*, asset: Asset, actor: User) -> Asset:
 
 
 def delete_asset(*, asset: Asset, actor: User) -> None:
-    """Remove an asset. One that comes from a file comes back with the file's next import; clear `is_flyable` to keep it out of the graph."""
+    """Remove an asset. One from a file comes back with the file's next import; clear `is_flyable` to keep it out of the graph."""
     with transaction.atomic():
         _record(actor, asset, None, asset_facts)
         asset.delete()
@@ -56,8 +65,10 @@ def delete_asset(*, asset: Asset, actor: User) -> None:
 
 
 def save_zone(*, zone: NoFlyZone, actor: User) -> NoFlyZone:
+    """Store a new or changed zone. Its geometry has passed the gate (zones/geometry_gate.py)."""
     with transaction.atomic():
-        before = NoFlyZone.objects.select_for_update().filter(pk=zone.pk).first()
+        before = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
+        zone.identifier = zone.identifier or f"drawn-{uuid.uuid4()}"
         zone.save()
         _record(actor, before, zone, zone_facts)
         mark_ground_changed()

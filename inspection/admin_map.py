@@ -1,0 +1,70 @@
+"""The geometry field of the admin: a map that needs nothing from outside, and the GeoJSON text beside it."""
+
+import json
+from typing import Any
+
+import shapely
+from django import forms
+from django.conf import settings
+from django.contrib.gis.geos import GEOSGeometry
+from django.core.exceptions import ValidationError
+from django.forms.widgets import Script
+
+from inspection.zones.geometry_gate import GeometryFault, checked_geometry
+from inspection.zones.strict_json import JsonFault, parse_strict_json
+
+WGS84_SRID = 4326
+AREA_TYPES = {"POLYGON", "MULTIPOLYGON"}
+
+
+class MapWidget(forms.Textarea):
+    """A map over the text: it shows what the text says, and a point can be dragged."""
+
+    template_name = "admin/map_widget.html"
+    is_point = False
+
+    class Media:
+        css = {"all": ["lib/maplibre-gl/maplibre-gl.css"]}
+        js = [Script("js/admin/geometry_map.js", type="module")]
+
+    def __init__(self, attrs: dict[str, Any] | None = None) -> None:
+        super().__init__({"rows": 6, "cols": 80, "spellcheck": "false", **(attrs or {})})
+
+    def get_context(self, name: str, value: Any, attrs: dict[str, Any] | None) -> dict[str, Any]:
+        context = super().get_context(name, value, attrs)
+        context["widget"]["is_point"] = self.is_point
+        return context
+
+
+class GeoJSONField(forms.Field):
+    """GeoJSON text that passes the geometry gate; what a user wrote wrong is shown back with the place of the fault."""
+
+    widget = MapWidget
+
+    def __init__(self, *, geom_type: str = "GEOMETRY", srid: int = WGS84_SRID, **options: Any) -> None:
+        super().__init__(**options)
+        self.geom_type = geom_type
+        self.widget.is_point = geom_type == "POINT"
+
+    def prepare_value(self, value: Any) -> Any:
+        if not isinstance(value, GEOSGeometry):
+            return value
+        return json.dumps({"type": value.geom_type, "coordinates": value.coords})
+
+    def to_python(self, value: Any) -> GEOSGeometry | None:
+        if value in self.empty_values or not str(value).strip():
+            return None
+        try:
+            shape = checked_geometry(parse_strict_json(str(value), max_bytes=settings.DATA_UPLOAD_MAX_MEMORY_SIZE))
+        except (JsonFault, GeometryFault) as fault:
+            raise ValidationError(str(fault), code="invalid") from fault
+        wanted = AREA_TYPES if self.geom_type in AREA_TYPES else {self.geom_type}
+        if self.geom_type != "GEOMETRY" and shape.geom_type.upper() not in wanted:
+            raise ValidationError(f"A {self.geom_type.capitalize()} is needed here, not a {shape.geom_type}.", code="invalid")
+        return GEOSGeometry(memoryview(shapely.to_wkb(shape)), srid=WGS84_SRID)
+
+    def has_changed(self, initial: Any, data: Any) -> bool:
+        try:
+            return bool(self.to_python(self.prepare_value(initial)) != self.to_python(data))
+        except ValidationError:
+            return True

@@ -1,0 +1,93 @@
+"""The admin's pages for missions and UAVs. Missions are changed on the operator's map; here they can be looked at."""
+
+from typing import Any
+
+from django.contrib import admin
+from django.contrib.gis.db import models
+from django.db.models import QuerySet
+from django.http import HttpRequest
+
+from inspection.admin_map import GeoJSONField
+from missions.models import InspectionTarget, Mission, MissionUav, Route, Uav, Waypoint
+from workspace.admin import ReadOnlyAdmin
+
+
+@admin.register(Uav)
+class UavAdmin(admin.ModelAdmin):
+    formfield_overrides = {models.GeometryField: {"form_class": GeoJSONField}}
+    list_display = ["name", "base_name", "max_range_m", "cruise_speed_mps", "battery_percent", "sensor", "end_action", "organisation"]
+    list_filter = ["base_name", "end_action", "organisation"]
+    list_select_related = ["organisation"]
+    search_fields = ["name", "base_name"]
+    readonly_fields = ["created_at", "updated_at"]
+
+
+class _ReadOnlyInline(admin.TabularInline):
+    extra = 0
+    can_delete = False
+    show_change_link = True
+
+    def has_add_permission(self, request: HttpRequest, obj: Any = None) -> bool:
+        return False
+
+    def has_change_permission(self, request: HttpRequest, obj: Any = None) -> bool:
+        return False
+
+
+class MissionUavInline(_ReadOnlyInline):
+    model = MissionUav
+    fields = ["sequence", "name", "max_range_m", "cruise_speed_mps", "end_action"]
+
+
+class TargetInline(_ReadOnlyInline):
+    model = InspectionTarget
+    fields = ["sequence", "label", "state", "unassigned_reason"]
+
+
+class RouteInline(_ReadOnlyInline):
+    model = Route
+    fields = ["mission_uav", "length_m", "duration_s"]
+
+
+@admin.register(Mission)
+class MissionAdmin(ReadOnlyAdmin):
+    list_display = ["name", "state", "objective", "total_length_m", "longest_route_m", "author", "organisation", "updated_at", "deleted_at"]
+    list_filter = ["state", "objective", "organisation", ("deleted_at", admin.EmptyFieldListFilter)]
+    list_select_related = ["author", "organisation"]
+    search_fields = ["name", "author__username"]
+    date_hierarchy = "updated_at"
+    inlines = [MissionUavInline, TargetInline, RouteInline]
+
+
+@admin.register(MissionUav)
+class MissionUavAdmin(ReadOnlyAdmin):
+    list_display = ["name", "mission", "sequence", "max_range_m", "cruise_speed_mps", "end_action"]
+    list_select_related = ["mission"]
+    search_fields = ["name", "mission__name"]
+
+
+@admin.register(InspectionTarget)
+class InspectionTargetAdmin(ReadOnlyAdmin):
+    list_display = ["label", "mission", "sequence", "state", "unassigned_reason"]
+    list_filter = ["state", "unassigned_reason"]
+    list_select_related = ["mission"]
+    search_fields = ["label", "mission__name"]
+
+
+@admin.register(Route)
+class RouteAdmin(ReadOnlyAdmin):
+    list_display = ["mission", "mission_uav", "length_m", "duration_s", "graph_version"]
+    list_select_related = ["mission", "mission_uav"]
+    search_fields = ["mission__name", "mission_uav__name"]
+    exclude = ["geometry"]
+
+
+@admin.register(Waypoint)
+class WaypointAdmin(ReadOnlyAdmin):
+    list_display = ["route", "sequence", "kind", "altitude_agl_m", "altitude_amsl_m", "altitude_relative_m"]
+    list_filter = ["kind"]
+    search_fields = ["route__mission__name"]
+    show_full_result_count = False
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[Waypoint]:
+        return super().get_queryset(request).select_related("route__mission", "route__mission_uav")
