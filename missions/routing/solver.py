@@ -1,4 +1,4 @@
-"""Assignment and order by OR-tools, side by side with plain insertion; the better plan is kept."""
+"""Assignment and order: exact for a few targets, else by OR-tools side by side with plain insertion; the better plan is kept."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
+from missions.routing import exact
 from missions.routing.insertion import ArcTable, insertion_plans, with_missing_inserted
 from missions.routing.problem import Objective, Problem, Routes, Solution, merit
 from missions.routing.reach import needed_range_m, reachable, reasons
@@ -16,8 +17,6 @@ UNLIMITED_CM = 10**12  # ten million kilometres: longer than any route, short en
 FORBIDDEN_CM = UNLIMITED_CM + 1  # no UAV has the range for it
 SPAN_WEIGHT = 1_000  # a metre off the longest route is worth so many off the total
 LOOK_INTERVAL_MS = 100  # how often `stop` is asked
-POLISH_SOLUTIONS = 60  # the guided search after the first descent of a small problem, counted in solutions so that it repeats exactly
-POLISH_TARGETS = 12
 DESCENT_S = 5.0  # no descent of a problem without a search takes longer
 INSERTION_STARTS = 2
 
@@ -42,34 +41,45 @@ def no_report(progress: float, message: str) -> None:
 def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_report, seed: int = 7, search_s: float = 0.0) -> Solution:
     """The best plan found: first as many targets as possible, then the objective.
 
-    Every route keeps its UAV's range. Without `search_s` the answer depends on the problem and the seed alone; with it a guided search
-    goes on for about so many seconds. `stop` is asked several times a second while OR-tools searches; once it is true, the best plan
-    so far is returned.
+    Every route keeps its UAV's range. Up to 12 targets the plan is the best there is. Beyond, the answer depends on the problem and the
+    seed alone as long as `search_s` is 0; with it a guided search goes on for about so many seconds. `stop` is asked several times a
+    second while OR-tools searches; once it is true, the best plan so far is returned.
     """
     needed_m = needed_range_m(problem)
     usable = reachable(problem, needed_m)
     empty: Routes = ((),) * len(problem.uavs)
     if not usable.any():
         return _solution(problem, empty, needed_m)
+    if problem.target_count <= exact.MAX_TARGETS:
+        routes = exact.best_plan(problem)
+    else:
+        routes = searched_plan(problem, usable, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+    return _solution(problem, routes, needed_m)
+
+
+def searched_plan(
+    problem: Problem, usable: NDArray[np.bool_], *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+) -> Routes:
+    """The best of several descents of OR-tools and plain insertions, and of a guided search if there is time for one."""
+
+    def better(*plans: Routes) -> Routes:
+        return min(plans, key=lambda routes: merit(problem, routes))
 
     on_progress(0.0, "Looking for a first plan")
     insertions = insertion_plans(problem, usable, seed=seed)
-    model = _Model(problem, usable, stop)
-    best = min(insertions, key=lambda routes: merit(problem, routes))
+    best = better(*insertions)
     descent_s = search_s / 5 if search_s else DESCENT_S
     starts: list[int | Routes] = [*FIRST_SOLUTIONS, *insertions[:INSERTION_STARTS]]
     for number, start in enumerate(starts, start=1):
         if stop():
             break
-        best = min(best, model.descend(start, descent_s), key=lambda routes: merit(problem, routes))
+        best = better(best, _Model(problem, usable, stop).descend(start, descent_s))
         on_progress(0.3 * number / len(starts), _progress_message(problem, best))
-    if not stop() and search_s:
-        best = min(best, model.search(best, search_s, on_progress), key=lambda routes: merit(problem, routes))
-    elif not stop() and problem.target_count <= POLISH_TARGETS:
-        best = min(best, model.polish(best), key=lambda routes: merit(problem, routes))
+    if search_s and not stop():
+        best = better(best, _Model(problem, usable, stop).search(best, search_s, on_progress))
     best = with_missing_inserted(problem, best, usable)
     on_progress(1.0, _progress_message(problem, best))
-    return _solution(problem, best, needed_m)
+    return best
 
 
 def _solution(problem: Problem, routes: Routes, needed_m: NDArray[np.float64]) -> Solution:
@@ -87,7 +97,8 @@ def _progress_message(problem: Problem, routes: Routes) -> str:
 class _Model:
     """The problem as OR-tools has it: starts, visits and ends are nodes, arcs are whole centimetres rounded up.
 
-    Rounding up, with the ranges rounded down, is why no route is ever longer than its UAV can fly.
+    Rounding up, with the ranges rounded down, is why no route is ever longer than its UAV can fly. A model is good for one search:
+    OR-tools 9.15 gives up at once when it is asked again after a guided search.
     """
 
     def __init__(self, problem: Problem, usable: NDArray[np.bool_], stop: Stop) -> None:
@@ -141,11 +152,6 @@ class _Model:
             parameters.first_solution_strategy = start
             return self._routes(self.routing.SolveWithParameters(parameters))
         return self._from_plan(start, parameters)
-
-    def polish(self, plan: Routes) -> Routes:
-        parameters = self._guided(DESCENT_S)
-        parameters.solution_limit = POLISH_SOLUTIONS
-        return self._from_plan(plan, parameters)
 
     def search(self, plan: Routes, search_s: float, on_progress: OnProgress) -> Routes:
         best = plan
