@@ -62,6 +62,12 @@ def test_without_a_name_no_account_is_made() -> None:
     assert not User.objects.exists()
 
 
+def test_own_data_gets_an_administrator_without_the_demos_uavs(password_file: Path) -> None:
+    load_demo("--no-uavs", "--user", "demo", "--password-file", str(password_file))
+    assert User.objects.get().username == "demo"
+    assert not Uav.objects.exists()
+
+
 def test_a_name_without_a_password_file_is_refused() -> None:
     with pytest.raises(CommandError, match="go together"):
         load_demo("--user", "demo")
