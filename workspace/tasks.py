@@ -26,12 +26,12 @@ def send_job_on_commit(job: Job) -> None:
     transaction.on_commit(partial(send_job, job))
 
 
-@shared_task(time_limit=30)
+@shared_task(time_limit=30, soft_time_limit=25)
 def requeue_lost_jobs() -> None:
     for job in services.requeue_lost_jobs():
         send_job(job)
 
 
-@shared_task(time_limit=30)
+@shared_task(time_limit=30, soft_time_limit=25)
 def forget_old_idempotency_keys() -> None:
     services.forget_old_idempotency_keys()
