@@ -92,9 +92,18 @@ def _celery(places: Places, name: str, *arguments: str) -> Program:
 
 
 def _worker(places: Places, queue: str, processes: int) -> Program:
-    arguments = ["--queues", queue, "--hostname", f"{queue}@%h", "--concurrency", str(processes)]
+    arguments = [
+        "--loglevel",
+        os.environ.get("SPANWISE_LOG_LEVEL", "WARNING"),
+        "--queues",
+        queue,
+        "--hostname",
+        f"{queue}@%h",
+        "--concurrency",
+        str(processes),
+    ]
     quick_start = ["--without-gossip", "--without-mingle", "--without-heartbeat"]  # workers need not know of each other
-    return _celery(places, f"worker-{queue}", "worker", "--loglevel", "INFO", *arguments, *quick_start)
+    return _celery(places, f"worker-{queue}", "worker", *arguments, *quick_start)
 
 
 def web_programs(places: Places, sockets: Path) -> list[Program]:
@@ -105,7 +114,14 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
     return [
-        Program(name="web", stage=PROGRAM_STAGE, command=granian, folder=places.process("web"), patience_s=20),
+        Program(
+            name="web",
+            stage=PROGRAM_STAGE,
+            command=granian,
+            folder=places.process("web"),
+            patience_s=20,
+            stale_files=[sockets / "web.sock"],
+        ),
         _worker(places, "data", 1),
         _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),
         _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),

@@ -111,6 +111,8 @@ def _proxied(location: str, name: str, headers: str, scheme: str) -> str:
             proxy_read_timeout 120s;
             proxy_buffers 16 32k;
             proxy_buffer_size 32k;
+            proxy_hide_header X-Content-Type-Options;
+            proxy_hide_header Referrer-Policy;
             error_page 502 504 = @{name}_unavailable;
             error_page 413 = @{name}_too_large;
 {headers}

@@ -25,6 +25,7 @@ from scripts.supervision import ProgramState, Supervisor
 
 READY_TIMEOUT_S = 120.0
 EXIT_NOT_RUNNING = 3
+FIRST_PROGRAMS = ("web", "proxy")
 
 
 def address(port: int) -> str:
@@ -103,7 +104,6 @@ class Installation:
             self._start_servers()
             self._prepare()
             self._start_programs()
-            self._wait_until_ready()
             _note_instance(self.places, port=self.options.port, is_serving=True)
             self._greet()
             if self.options.detach:
@@ -121,10 +121,11 @@ class Installation:
         """Stop all, and let no second Ctrl-C leave half of it behind."""
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, signal.SIG_IGN)
-        print("\nStopping …", flush=True)
+        print("\nStopping … ", end="", flush=True)
+        began = time.monotonic()
         self.supervisor.stop()
         self.places.instance.unlink(missing_ok=True)
-        print("Stopped. The data stay.", flush=True)
+        print(f"{time.monotonic() - began:.1f} s. The data stay.", flush=True)
 
     def _start_servers(self) -> None:
         self.supervisor.end_leftovers()
@@ -164,15 +165,17 @@ class Installation:
             raise CannotStart("the data could not be prepared; the reason is above")
 
     def _start_programs(self) -> None:
-        self.supervisor.start_programs(self.program_names)
-
-    def _wait_until_ready(self) -> None:
+        """Start the web program and the proxy; the others once those answer, since all of them at once hold each other up."""
         began = time.monotonic()
         print("Programs … ", end="", flush=True)
-        while reasons := reasons_not_ready(self.options.port):
+        self.supervisor.start_programs(FIRST_PROGRAMS)
+        web_socket = self.sockets / "web.sock"
+        while reasons := reasons_not_ready(self.options.port) if web_socket.exists() else ["the web program has not started"]:
             if time.monotonic() - began > READY_TIMEOUT_S:
+                print("failed", flush=True)
                 raise CannotStart(f"not ready after {READY_TIMEOUT_S:.0f} s: {'; '.join(reasons)}. The logs are in {self.places.logs}")
-            time.sleep(0.1)
+            time.sleep(0.05)
+        self.supervisor.start_programs(name for name in self.program_names if name not in FIRST_PROGRAMS)
         print(f"{time.monotonic() - began:.1f} s", flush=True)
 
     def _greet(self) -> None:

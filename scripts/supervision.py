@@ -143,13 +143,15 @@ class Supervisor:
 
     def stop(self) -> None:
         """Stop every program, the servers last, and the supervisor itself."""
-        programs = [state.name for state in self.states() if state.name not in SERVERS]
+        deadline = time.monotonic() + STOP_TIMEOUT_S
+        names = [state.name for state in self.states()]
         try:
-            for name in programs:  # all at once; a shutdown alone stops one after the other
-                self._stop_program(name)
-            deadline = time.monotonic() + STOP_TIMEOUT_S
-            while any(state.name in programs and state.state == "STOPPING" for state in self.states()) and time.monotonic() < deadline:
-                time.sleep(0.05)
+            # A shutdown alone stops one program after the other; these are stopped at once, each group together.
+            for group in ([name for name in names if name not in SERVERS], [name for name in names if name in SERVERS]):
+                for name in group:
+                    self._stop_program(name)
+                while any(state.name in group and state.state == "STOPPING" for state in self.states()) and time.monotonic() < deadline:
+                    time.sleep(0.05)
             self._call().shutdown()
         except (OSError, xmlrpc.client.Error):
             pass  # not there, or on its way out already
