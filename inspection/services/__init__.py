@@ -4,14 +4,18 @@ from inspection.services.curation import WrongGeometry, delete_asset, delete_zon
 from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
 from inspection.services.osm_import import import_osm
+from inspection.services.zone_import import import_zones
+from inspection.zones.zone_file import ZoneFileError
 
 __all__ = [
     "WrongGeometry",
+    "ZoneFileError",
     "build_graph",
     "delete_asset",
     "delete_zone",
     "geometry_fault",
     "import_osm",
+    "import_zones",
     "mark_ground_changed",
     "refresh_graph",
     "save_asset",

@@ -1,0 +1,96 @@
+"""Zones from GeoJSON: a FeatureCollection, a Feature or a bare geometry. A zone with only a name is permanent and reaches all heights."""
+
+from typing import Any
+
+from shapely import MultiPolygon
+
+from inspection.zones.circles import checked_radius_m, enclosing_polygon
+from inspection.zones.faults import FaultList
+from inspection.zones.geometry_gate import GeometryFault, VertexBudget, checked_area, checked_position
+from inspection.zones.height_bands import height_band
+from inspection.zones.records import ZoneRecord
+from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
+
+_WGS84_NAMES = ("CRS84", "EPSG::4326", "EPSG:4326", "OGC:CRS84")
+_AREAS = {"Polygon", "MultiPolygon"}
+_ALL_KINDS = _AREAS | {"Point", "GeometryCollection", "LineString", "MultiLineString", "MultiPoint"}
+
+
+def zones_of_geojson(document: dict[str, Any], faults: FaultList) -> list[ZoneRecord]:
+    with faults.gathering():
+        _check_crs(document.get("crs"))
+    kind = document.get("type")
+    budget = VertexBudget()
+    if kind == "FeatureCollection":
+        features = document.get("features")
+        if not isinstance(features, list):
+            raise GeometryFault("features", "a FeatureCollection has a list of features")
+        places = [(feature, f"features[{index}]") for index, feature in enumerate(features)]
+    elif kind == "Feature":
+        places = [(document, "")]
+    else:
+        places = [({"type": "Feature", "properties": {}, "geometry": document}, "")]
+    records: list[ZoneRecord] = []
+    for index, (feature, place) in enumerate(places):
+        with faults.gathering():
+            records += _zones_of_feature(feature, place, index, budget)
+    return records
+
+
+def _zones_of_feature(feature: Any, place: str, index: int, budget: VertexBudget) -> list[ZoneRecord]:
+    if not isinstance(feature, dict) or feature.get("type") != "Feature":
+        raise GeometryFault(place, "a Feature is expected")
+    properties = feature.get("properties") or {}
+    if not isinstance(properties, dict):
+        raise GeometryFault(_join(place, "properties"), "properties are an object")
+    if "zoneAuthority" in properties or "variant" in properties:
+        raise GeometryFault(_join(place, "properties"), "this is an ED-318 zone; ED-318 cannot be read yet")
+    properties_place = _join(place, "properties")
+    titles = (checked_text(properties.get(key), f"{properties_place}.{key}", MAX_NAME) for key in ("name", "Name", "title"))
+    name = next((title for title in titles if title), "")
+    identifier = checked_text(feature.get("id"), _join(place, "id"), MAX_IDENTIFIER)
+    identifier = identifier or checked_text(properties.get("identifier"), f"{properties_place}.identifier", MAX_IDENTIFIER)
+    identifier = identifier or name[:MAX_IDENTIFIER] or f"zone {index + 1}"
+    band = height_band(properties, properties_place)
+    return [
+        ZoneRecord(
+            identifier=identifier, layer=layer, name=name or identifier, geometry=area, circle=circle, band=band, properties=properties,
+            restriction=checked_text(properties.get("restriction"), f"{properties_place}.restriction", 100),
+        )
+        for layer, (area, circle) in enumerate(_areas(feature.get("geometry"), properties, _join(place, "geometry"), budget))
+    ]  # fmt: skip
+
+
+def _areas(geometry: Any, properties: dict[str, Any], place: str, budget: VertexBudget) -> list[tuple[MultiPolygon, dict[str, Any] | None]]:
+    """The areas of a geometry; a Point is one if the properties state a radius."""
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if kind == "GeometryCollection":
+        members = geometry.get("geometries")
+        if not isinstance(members, list) or not members:
+            raise GeometryFault(f"{place}.geometries", "the collection is empty")
+        if len(members) > 100:
+            raise GeometryFault(f"{place}.geometries", "the collection has more than 100 members")
+        return [(checked_area(member, f"{place}.geometries[{index}]", budget), None) for index, member in enumerate(members)]
+    if kind == "Point":
+        radius = properties.get("radius_m", properties.get("radius"))
+        if radius is None:
+            raise GeometryFault(place, "a point is no area; a circle needs a radius (metres) in its properties")
+        centre = checked_position(geometry.get("coordinates"), f"{place}.coordinates")
+        radius_m = checked_radius_m(radius, _join(place.rpartition("geometry")[0].rstrip("."), "properties.radius"))
+        return [(enclosing_polygon(centre, radius_m, place, budget), {"centre": list(centre), "radius_m": radius_m})]
+    if isinstance(kind, str) and kind in _ALL_KINDS - _AREAS:
+        raise GeometryFault(place, f"a {kind} is no area; a zone is a Polygon, a MultiPolygon or a Point with a radius")
+    return [(checked_area(geometry, place, budget), None)]
+
+
+def _check_crs(crs: Any) -> None:
+    """Old GeoJSON may name another reference system; only longitude and latitude on WGS84 are taken."""
+    if crs is None:
+        return
+    name = crs.get("properties", {}).get("name") if isinstance(crs, dict) and isinstance(crs.get("properties"), dict) else None
+    if not isinstance(name, str) or not name.endswith(_WGS84_NAMES):
+        raise GeometryFault("crs", "only longitude and latitude on WGS84 (EPSG:4326) are taken; convert the file first")
+
+
+def _join(place: str, key: str) -> str:
+    return f"{place}.{key}" if place else key

@@ -1,0 +1,54 @@
+"""JSON as the standard has it: no NaN, no Infinity, no number too large for a float, no endless nesting."""
+
+import json
+from math import isfinite
+from typing import Any, NoReturn
+
+MAX_DEPTH = 64
+
+
+class JsonFault(ValueError):
+    """The text is not the JSON that we accept; the message says where and why."""
+
+
+def parse_strict_json(data: bytes | str, *, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any:
+    """The value of a JSON text in UTF-8, a byte-order mark allowed. Raises JsonFault."""
+    if len(data) > max_bytes:
+        raise JsonFault(f"The file has {len(data) / 2**20:.1f} MiB; at most {max_bytes / 2**20:.0f} MiB are read.")
+    try:
+        text = data.decode("utf-8-sig") if isinstance(data, bytes) else data
+        value = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
+    except UnicodeDecodeError as error:
+        raise JsonFault(f"The text is not UTF-8: byte {error.start} cannot be read.") from error
+    except RecursionError as error:
+        raise JsonFault(f"The JSON is nested more than {max_depth} deep.") from error
+    except JsonFault:
+        raise
+    except json.JSONDecodeError as error:
+        raise JsonFault(f"This is no JSON: {error.msg} at line {error.lineno}, column {error.colno}.") from error
+    except ValueError as error:
+        raise JsonFault(f"This is no JSON: {error}") from error
+    _check_depth(value, max_depth)
+    return value
+
+
+def _refuse_constant(text: str) -> NoReturn:
+    raise JsonFault(f"{text} is no number in JSON.")
+
+
+def _finite(text: str) -> float:
+    number = float(text)
+    if not isfinite(number):
+        raise JsonFault(f"The number {text[:40]} is too large.")
+    return number
+
+
+def _check_depth(value: Any, max_depth: int) -> None:
+    """Level by level, so that it needs no stack."""
+    level = [value]
+    for _ in range(max_depth + 1):
+        holders = [item for item in level if isinstance(item, dict | list)]
+        if not holders:
+            return
+        level = [child for holder in holders for child in (holder.values() if isinstance(holder, dict) else holder)]
+    raise JsonFault(f"The JSON is nested more than {max_depth} deep.")
