@@ -11,3 +11,7 @@ class FlightRules:
     cruise_speed_mps: float = 12.0
     climb_speed_mps: float = 2.5
     terrain_tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints before one is put in
+
+    def __post_init__(self) -> None:
+        if not 0 < self.transit_agl_m <= self.max_agl_m:
+            raise ValueError(f"transit_agl_m ({self.transit_agl_m}) must be above 0 and not above max_agl_m ({self.max_agl_m})")

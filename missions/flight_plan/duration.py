@@ -1,0 +1,22 @@
+"""How long a route takes."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.waypoints import Waypoint
+
+
+def duration_s(waypoints: Sequence[Waypoint], *, length_m: float, cruise_speed_mps: float, lands: bool, rules: FlightRules) -> float:
+    """Seconds from take-off to landing, or to the hover at the end: level flight, then every climb, then every hold.
+
+    Climbs are added to the level flight although a UAV does both at once: this errs on the long side. Descents between waypoints are
+    as quick as climbs and cost as much; the first climb starts on the ground at the start, the last descent ends on the ground.
+    """
+    if not waypoints:
+        return 0.0
+    vertical_m = waypoints[0].point.agl_m + sum(abs(right.relative_m - left.relative_m) for left, right in pairwise(waypoints))
+    if lands:
+        vertical_m += waypoints[-1].point.agl_m
+    hold_s = sum(waypoint.point.task.hold_s for waypoint in waypoints if waypoint.point.task is not None)
+    return length_m / cruise_speed_mps + vertical_m / rules.climb_speed_mps + hold_s

@@ -1,0 +1,114 @@
+"""How high a UAV flies over what, and what that is above sea level and above its take-off."""
+
+import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.waypoints import RoutePoint, Waypoint, WaypointKind
+
+FloatArray = NDArray[np.float64]
+GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
+
+SAMPLE_SPACING_M = 50.0  # how densely the ground under a leg is looked at
+# Heights where no tag states one, towards the upper end of what is common, so that the error is on the safe side.
+DEFAULT_HEIGHT_M = {"pole": 14.0, "portal": 20.0, "tower": 45.0, "line": 45.0, "railway": 8.0, "bridge": 30.0}
+LINE_HEIGHT_M = ((300_000, 60.0), (100_000, 45.0), (50_000, 30.0), (1, 14.0))  # supports of a line of so many volts or more
+
+
+def asset_height_m(*, kind: str, subtype: str = "", tagged_m: float | None = None, voltage_v: int | None = None) -> float:
+    """The height above ground that an asset is taken to have: as tagged, else by voltage for a line, else by kind."""
+    if tagged_m is not None and math.isfinite(tagged_m):
+        return max(tagged_m, 0.0)
+    if kind == "line" and voltage_v:
+        return next(height_m for least_v, height_m in LINE_HEIGHT_M if voltage_v >= least_v)
+    return DEFAULT_HEIGHT_M.get(subtype, DEFAULT_HEIGHT_M.get(kind, 0.0))
+
+
+def is_above_limit(height_m: float, rules: FlightRules) -> bool:
+    """Whether an asset of this height cannot be flown over with clearance."""
+    return height_m + rules.clearance_m > rules.max_agl_m
+
+
+def pass_agl_m(height_m: float, rules: FlightRules) -> float:
+    """Height above ground at which an asset is passed."""
+    return max(rules.transit_agl_m, height_m + rules.clearance_m)
+
+
+def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
+    """Height above ground at which an asset is inspected; over a place without one, height 0, as high as between targets."""
+    return height_m + rules.clearance_m if height_m > 0 else rules.transit_agl_m
+
+
+def with_heights(points: Sequence[RoutePoint], ground_heights_m: GroundHeights, rules: FlightRules) -> tuple[tuple[Waypoint, ...], bool]:
+    """Waypoints with all three heights, and whether flat ground had to be assumed.
+
+    Where the ground between two points bulges or sags by more than the tolerance, waypoints are put in on the straight lon/lat line
+    between them. If the ground is unknown in even one place, nothing is put in and no height above sea level is given.
+    """
+    if not points:
+        return (), False
+    shares = [_sample_shares(left, right) for left, right in pairwise(points)]
+    samples = [_between(left, right, share) for (left, right), share in zip(pairwise(points), shares, strict=True)]
+    ground_m = ground_heights_m(np.concatenate([*samples, np.array([points[-1].position])]))
+    if np.isnan(ground_m).any():
+        return tuple(Waypoint(point, None, point.agl_m) for point in points), True
+
+    take_off_m = float(ground_m[0])
+    waypoints = []
+    first = 0
+    for (left, right), share, positions in zip(pairwise(points), shares, samples, strict=True):
+        under_m = ground_m[first : first + len(share) + 1]  # the next leg's first sample is this leg's end
+        first += len(share)
+        waypoints.append(_waypoint(left, float(under_m[0]), take_off_m))
+        for bend in _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m):
+            waypoints.append(_waypoint(_pass_point(left, right, positions[bend], float(share[bend])), float(under_m[bend]), take_off_m))
+    waypoints.append(_waypoint(points[-1], float(ground_m[-1]), take_off_m))
+    return tuple(waypoints), False
+
+
+def _waypoint(point: RoutePoint, ground_m: float, take_off_m: float) -> Waypoint:
+    amsl_m = ground_m + point.agl_m
+    return Waypoint(point, amsl_m, amsl_m - take_off_m)
+
+
+def _pass_point(left: RoutePoint, right: RoutePoint, position: FloatArray, share: float) -> RoutePoint:
+    target = left.target if left.target == right.target else None
+    return RoutePoint(
+        LonLat(float(position[0]), float(position[1])), WaypointKind.PASS, left.agl_m + share * (right.agl_m - left.agl_m), target=target
+    )
+
+
+def _sample_shares(left: RoutePoint, right: RoutePoint) -> FloatArray:
+    """Shares of the leg from its start, which is the first sample, up to but without its end."""
+    length_m = float(distance_m(np.array(left.position), np.array(right.position))[0])
+    count = max(1, math.ceil(length_m / SAMPLE_SPACING_M))
+    return np.arange(count) / count
+
+
+def _between(left: RoutePoint, right: RoutePoint, share: FloatArray) -> FloatArray:
+    start, end = np.array(left.position), np.array(right.position)
+    positions: FloatArray = start + share[:, None] * (end - start)
+    return positions
+
+
+def _bends(share: FloatArray, ground_m: FloatArray, tolerance_m: float) -> list[int]:
+    """The samples needed so that straight lines between them stay within the tolerance of the ground's shape (Douglas-Peucker)."""
+    bends: list[int] = []
+    open_spans = [(0, len(share) - 1)]
+    while open_spans:
+        first, last = open_spans.pop()
+        if last - first < 2:
+            continue
+        inner = slice(first + 1, last)
+        line_m = np.interp(share[inner], share[[first, last]], ground_m[[first, last]])
+        off_m = np.abs(ground_m[inner] - line_m)
+        if off_m.max() > tolerance_m:
+            bend = first + 1 + int(off_m.argmax())
+            bends.append(bend)
+            open_spans += [(first, bend), (bend, last)]
+    return sorted(bends)

@@ -1,0 +1,38 @@
+"""The points of a route, without and with heights above sea level and take-off."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from inspection.geodesy import LonLat
+from missions.routing.problem import Task
+
+
+class WaypointKind(StrEnum):
+    START = "start"
+    PASS = "pass"  # noqa: S105 (no password)
+    TARGET = "target"
+    END = "end"
+
+
+@dataclass(frozen=True)
+class RoutePoint:
+    """A point of a route at its planned height above ground.
+
+    asset is the primary key of the asset that is passed or inspected here; target the index of the target that is being done.
+    """
+
+    position: LonLat
+    kind: WaypointKind
+    agl_m: float
+    asset: int | None = None
+    target: int | None = None
+    task: Task | None = None
+
+
+@dataclass(frozen=True)
+class Waypoint:
+    """A route point and its height over the other two references; above sea level only where the ground's height is known."""
+
+    point: RoutePoint
+    amsl_m: float | None
+    relative_m: float
