@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from django.apps import AppConfig, apps
+from django.db.models.signals import post_migrate
 
 SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 
@@ -19,3 +21,14 @@ def shared_data() -> Callable[[str], Path]:
         return path
 
     return path_of
+
+
+@pytest.fixture(scope="session", autouse=True)
+def default_organisation_comes_back() -> None:
+    """Tests with real commits end with an emptied database, and what the migrations had put there is gone: Django then says "migrated"."""
+
+    def make(sender: AppConfig, **_: object) -> None:
+        if sender.label == "workspace":
+            apps.get_model("workspace", "Organisation").objects.get_or_create(pk=1, defaults={"name": "Default"})
+
+    post_migrate.connect(make, weak=False)

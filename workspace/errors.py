@@ -1,6 +1,7 @@
 """One shape for every error of the API: {"error": {"code", "message", "details"}}."""
 
 import logging
+from math import ceil
 from typing import Any
 
 from django.core.exceptions import PermissionDenied, RequestDataTooBig, SuspiciousOperation
@@ -9,7 +10,6 @@ from django.db import DataError, InterfaceError, OperationalError
 from django.http import Http404
 from rest_framework import exceptions
 from rest_framework.response import Response
-from rest_framework.views import exception_handler
 
 logger = logging.getLogger(__name__)
 
@@ -40,20 +40,25 @@ def database_away_problem() -> ApiProblem:
 def error_response(error: Exception, context: dict[str, Any]) -> Response | None:
     """REST framework's exception handler. Errors that are nobody's fault but ours stay unhandled and reach handler500."""
     error = _as_api_exception(error)
-    response = exception_handler(error, context)
-    if response is None:
+    if not isinstance(error, exceptions.APIException):
         return None
+    headers = {}
+    if challenge := getattr(error, "auth_header", None):
+        headers["WWW-Authenticate"] = challenge
+    retry_after_s = getattr(error, "retry_after_s", None) or getattr(error, "wait", None)
+    if retry_after_s:
+        headers["Retry-After"] = str(ceil(retry_after_s))
+    return Response(_body_of(error), status=error.status_code, headers=headers)
+
+
+def _body_of(error: exceptions.APIException) -> dict[str, Any]:
     if isinstance(error, ApiProblem):
-        response.data = error_body(error.code, error.message, error.details)
-        if error.retry_after_s is not None:
-            response["Retry-After"] = str(error.retry_after_s)
-    elif isinstance(error, exceptions.ValidationError):
+        return error_body(error.code, error.message, error.details)
+    if isinstance(error, exceptions.ValidationError):
         faults = _faults(error.detail)
         place, messages = next(iter(faults.items()), ("", ["The input is not valid."]))
-        response.data = error_body("invalid", f"{place}: {messages[0]}" if place else messages[0], faults)
-    elif isinstance(error, exceptions.APIException):
-        response.data = error_body(_code(error), str(error.detail))
-    return response
+        return error_body("invalid", f"{place}: {messages[0]}" if place else messages[0], faults)
+    return error_body(_code(error), str(error.detail))
 
 
 def _as_api_exception(error: Exception) -> Exception:

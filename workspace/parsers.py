@@ -50,20 +50,17 @@ def _check(root: Any) -> None:
     """Walk level by level, so that depth costs no stack."""
     level = [root]
     for _ in range(DEEPEST_NESTING + 1):
-        deeper: list[Any] = []
+        holders = []
         for value in level:
-            if isinstance(value, dict):
-                deeper.extend(value.keys())
-                deeper.extend(value.values())
-            elif isinstance(value, list):
-                deeper.extend(value)
-            elif isinstance(value, str) and ("\0" in value or not _is_encodable(value)):
+            if isinstance(value, dict | list):
+                holders.append(value)
+            elif isinstance(value, str) and not _can_be_stored(value):
                 raise ParseError("A text holds a NUL character or half a surrogate pair.")
-        if not deeper:
+        if not holders:
             return
-        level = deeper
+        level = [inner for holder in holders for inner in ((*holder.keys(), *holder.values()) if isinstance(holder, dict) else holder)]
     raise ParseError(f"The body is nested deeper than {DEEPEST_NESTING} levels.")
 
 
-def _is_encodable(text: str) -> bool:
-    return text.isascii() or not any("\ud800" <= character <= "\udfff" for character in text)
+def _can_be_stored(text: str) -> bool:
+    return "\0" not in text and (text.isascii() or not any("\ud800" <= character <= "\udfff" for character in text))

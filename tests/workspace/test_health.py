@@ -1,0 +1,71 @@
+"""Alive, and able to work: told apart."""
+
+from typing import Any
+
+import pytest
+from django.contrib.gis.geos import Point
+from django.core.cache import caches
+from django.db import OperationalError, connection
+from django.db.migrations.recorder import MigrationRecorder
+from django.test import Client, override_settings
+
+from inspection.models import Asset, GraphSnapshot
+from tests.workspace.people import client_of, somebody
+
+DEAD_REDIS = {"default": {"BACKEND": "django.core.cache.backends.redis.RedisCache", "LOCATION": "unix:///nonexistent/redis.sock"}}
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def ground() -> None:
+    """A tower, and a graph with its one node."""
+    place = Point(10.0, 56.0, srid=4326)
+    Asset.objects.create(kind="tower", subtype="tower", geometry=place, centre=place)
+    counts = dict.fromkeys(["edges", "excluded_nodes", "excluded_edges"], 0)
+    GraphSnapshot.objects.create(ground_revision=1, rules={}, nodes=1, components=1, arrays=b"", arrays_sha256="", build_s=0.1, **counts)
+
+
+def ready() -> tuple[int, Any]:
+    answer = Client(raise_request_exception=False).get("/readyz")
+    return answer.status_code, answer.json()
+
+
+def test_alive_asks_nobody(django_assert_num_queries: Any) -> None:
+    with django_assert_num_queries(0):
+        assert Client().get("/healthz").json() == {"alive": True}
+
+
+@pytest.mark.usefixtures("ground")
+def test_ready_with_data_and_a_graph() -> None:
+    assert ready() == (200, {"ready": True})
+
+
+def test_not_ready_without_data() -> None:
+    assert ready() == (503, {"ready": False, "reasons": ["no data is imported", "no graph is built"]})
+
+
+@pytest.mark.usefixtures("ground")
+def test_not_ready_before_the_migrations() -> None:
+    MigrationRecorder(connection).migration_qs.filter(app="missions").delete()
+    assert ready() == (503, {"ready": False, "reasons": ["migrations are not applied"]})
+
+
+@pytest.mark.usefixtures("ground")
+def test_not_ready_without_the_database(monkeypatch: pytest.MonkeyPatch) -> None:
+    def away(*args: object) -> None:
+        raise OperationalError("connection refused")
+
+    monkeypatch.setattr(MigrationRecorder, "applied_migrations", away)
+    assert ready() == (503, {"ready": False, "reasons": ["the database cannot be reached"]})
+
+
+@pytest.mark.usefixtures("ground")
+@pytest.mark.urls("tests.workspace.echo_urls")
+def test_without_redis_the_api_goes_on_and_ready_says_so() -> None:
+    client = client_of(somebody())
+    with override_settings(CACHES=DEAD_REDIS):
+        assert ready() == (503, {"ready": False, "reasons": ["Redis cannot be reached"]})
+        assert Client().get("/healthz").status_code == 200
+        assert client.get("/api/v1/assets").status_code == 200
+        assert client.post("/api/v1/echo", {}, content_type="application/json").status_code == 200
+    assert caches["default"].get("nothing") is None

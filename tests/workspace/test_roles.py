@@ -1,0 +1,100 @@
+"""Who may do what, for every operation that the OpenAPI document has."""
+
+import re
+
+import pytest
+from django.contrib.auth import get_user_model
+from django.test import Client
+from drf_spectacular.generators import SchemaGenerator
+
+from tests.workspace.people import client_of, somebody
+from workspace.models import Role
+
+pytestmark = pytest.mark.django_db
+
+SAFE = {"get", "head", "options"}
+ALSO_CURATORS = {"cancel_job"}
+
+
+def operations() -> list[tuple[str, str, str]]:
+    """(method, address with stand-ins for its parameters, name) of everything under /api/v1/."""
+    found = []
+    for path, methods in SchemaGenerator().get_schema(public=True)["paths"].items():
+        if path.startswith("/api/v1/"):
+            for method, operation in methods.items():
+                kinds = {parameter["name"]: parameter["schema"] for parameter in operation.get("parameters", [])}
+                address = re.sub(r"\{(\w+)\}", lambda match: stand_in(kinds[match[1]]), path)  # noqa: B023 - used at once
+                found.append((method, address, operation["operationId"]))
+    return found
+
+
+def stand_in(schema: dict[str, str]) -> str:
+    return "0" if schema["type"] == "integer" else "00000000-0000-4000-8000-000000000000"
+
+
+def status(client: Client, method: str, address: str) -> int:
+    return getattr(client, method)(address, **({} if method in SAFE else {"data": "{}", "content_type": "application/json"})).status_code
+
+
+def test_strangers_are_refused_everywhere() -> None:
+    assert {status(Client(), method, address) for method, address, _ in operations()} == {401}
+
+
+def test_whoever_is_signed_in_may_read_everything() -> None:
+    for role in Role:
+        client = client_of(somebody(role))
+        refused = [address for method, address, _ in operations() if method in SAFE and status(client, method, address) in {401, 403}]
+        assert not refused, role
+
+
+@pytest.mark.parametrize("role", [Role.VIEWER, Role.CURATOR])
+def test_only_operators_and_administrators_change_what_is_flown(role: Role) -> None:
+    client = client_of(somebody(role))
+    for method, address, name in operations():
+        if method not in SAFE and not (role == Role.CURATOR and name in ALSO_CURATORS):
+            assert status(client, method, address) == 403, (method, address)
+
+
+@pytest.mark.parametrize("role", [Role.OPERATOR, Role.ADMINISTRATOR])
+def test_operators_and_administrators_are_not_refused(role: Role) -> None:
+    client = client_of(somebody(role))
+    for method, address, _ in operations():
+        assert status(client, method, address) not in {401, 403, 500}, (method, address)
+
+
+def test_a_refusal_names_the_role_that_is_needed() -> None:
+    answer = client_of(somebody(Role.VIEWER)).post("/api/v1/jobs/00000000-0000-4000-8000-000000000000/cancel")
+    assert answer.json()["error"] == {
+        "code": "permission_denied",
+        "message": "Viewers cannot do this. Ask an administrator for the operator or curator role.",
+        "details": None,
+    }
+
+
+@pytest.mark.parametrize(
+    ("role", "is_staff", "is_superuser"),
+    [(Role.VIEWER, False, False), (Role.OPERATOR, False, False), (Role.CURATOR, True, False), (Role.ADMINISTRATOR, True, True)],
+)
+def test_what_django_calls_staff_follows_the_role(role: Role, is_staff: bool, is_superuser: bool) -> None:
+    user = somebody(role)
+    assert (user.is_staff, user.is_superuser) == (is_staff, is_superuser)
+
+
+def test_a_superuser_is_an_administrator() -> None:
+    assert get_user_model().objects.create_superuser("root", password="x").role == Role.ADMINISTRATOR
+
+
+@pytest.mark.parametrize(
+    ("role", "ground", "people"),
+    [(Role.VIEWER, False, False), (Role.OPERATOR, False, False), (Role.CURATOR, True, False), (Role.ADMINISTRATOR, True, True)],
+)
+def test_permissions_in_the_admin_follow_the_role(role: Role, ground: bool, people: bool) -> None:
+    user = somebody(role)
+    assert user.has_perm("inspection.change_asset") == user.has_module_perms("inspection") == ground
+    assert user.has_perm("workspace.change_user") == user.has_perm("missions.view_mission") == people
+
+
+def test_somebody_who_was_locked_out_has_no_permission() -> None:
+    user = somebody(Role.ADMINISTRATOR)
+    user.is_active = False
+    assert not user.has_perm("inspection.change_asset")
