@@ -1,0 +1,101 @@
+/** The one module that fetches: CSRF, the error shape, and words for what went wrong. */
+
+const ROOT = "/api/v1";
+
+export class ApiError extends Error {
+  constructor(message, { status = 0, code = "", details = null } = {}) {
+    super(message);
+    this.name = "ApiError";
+    this.status = status;
+    this.code = code;
+    this.details = details;
+  }
+
+  get isAway() {
+    return this.status === 0 || this.status === 502 || this.status === 504;
+  }
+}
+
+function cookie(name) {
+  const entry = document.cookie.split("; ").find((part) => part.startsWith(`${name}=`));
+  return entry ? decodeURIComponent(entry.slice(name.length + 1)) : "";
+}
+
+/** First message in DRF's nested details, with the place where it stands. */
+export function firstDetail(details, place = "") {
+  if (typeof details === "string") return place ? `${place}: ${details}` : details;
+  if (Array.isArray(details)) {
+    return details.map((detail) => firstDetail(detail, place)).find(Boolean) ?? "";
+  }
+  if (details && typeof details === "object") {
+    for (const [key, value] of Object.entries(details)) {
+      const name = key === "non_field_errors" ? place : [place, key].filter(Boolean).join(" ");
+      const found = firstDetail(value, name);
+      if (found) return found;
+    }
+  }
+  return "";
+}
+
+async function problemOf(response) {
+  const status = response.status;
+  let error = {};
+  try {
+    error = (await response.json()).error ?? {};
+  } catch {
+    /* not our server's answer: the status says what can be said */
+  }
+  const detail = status === 400 ? firstDetail(error.details) : "";
+  const words = {
+    401: "You are signed out. Sign in again; your selection is kept in this browser.",
+    413: "That is too much for one request.",
+    429: "Too many requests. Wait a moment, then try again.",
+    502: "The server cannot be reached.",
+    504: "The server did not answer in time.",
+  };
+  const message = detail || error.message || words[status] || `The server answered with ${status}.`;
+  return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null });
+}
+
+/** request("POST", "/plans", { body }) → { data, status, etag }. Throws ApiError; an abort passes as AbortError. */
+export async function request(method, path, { body, headers = {}, signal } = {}) {
+  const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
+  const send = { method, signal, credentials: "same-origin", headers: { Accept: "application/json", ...headers } };
+  if (method !== "GET") send.headers["X-CSRFToken"] = cookie("csrftoken");
+  if (body !== undefined) {
+    send.headers["Content-Type"] = "application/json";
+    send.body = JSON.stringify(body);
+  }
+  let response;
+  try {
+    response = await fetch(address, send);
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new ApiError("The server cannot be reached.", { code: "server_away" });
+  }
+  if (!response.ok) throw await problemOf(response);
+  const text = await response.text();
+  return { data: text ? JSON.parse(text) : null, status: response.status, etag: response.headers.get("ETag") };
+}
+
+export const get = (path, options) => request("GET", path, options);
+export const post = (path, body, options) => request("POST", path, { ...options, body });
+export const patch = (path, body, options) => request("PATCH", path, { ...options, body });
+export const remove = (path, options) => request("DELETE", path, options);
+
+const pause = (ms, signal) =>
+  new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, ms);
+    signal?.addEventListener("abort", () => (clearTimeout(timer), reject(new DOMException("stopped", "AbortError"))), { once: true });
+  });
+
+/** Follows a job until it ends; `onProgress(job)` is told on the way. Returns the job; throws where it failed. */
+export async function follow(jobId, { onProgress, signal, every_ms = 700 } = {}) {
+  for (;;) {
+    const { data: job } = await get(`/jobs/${jobId}`, { signal });
+    if (job.state === "failed") throw new ApiError(job.error?.message ?? "The job failed.", { status: 500, code: job.error?.code ?? "" });
+    if (job.state === "done" || job.state === "cancelled") return job;
+    onProgress?.(job);
+    await pause(every_ms, signal);
+  }
+}

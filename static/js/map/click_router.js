@@ -1,0 +1,111 @@
+/** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
+
+import { PICKABLE } from "./style.js";
+
+const REACH_PX = { fine: 6, coarse: 16 };
+const KINDS = { towers: "tower", bridges: "bridge", bridge_points: "bridge", railways: "railway", lines: "line", zones: "zone" };
+
+/** Of what lies under the pointer, the first in the order of picking: { kind, id, properties, geometry } or null. */
+export function firstInOrder(features) {
+  const rank = (feature) => PICKABLE.indexOf(feature.layer.id);
+  const best = features.filter((feature) => rank(feature) >= 0).sort((a, b) => rank(a) - rank(b))[0];
+  if (!best) return null;
+  return { kind: KINDS[best.sourceLayer], id: best.properties.id, properties: best.properties, geometry: best.geometry };
+}
+
+/** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */
+export function nearestOnLine(geometry, [longitude, latitude]) {
+  const shrink = Math.cos((latitude * Math.PI) / 180);
+  const parts = geometry.type === "MultiLineString" ? geometry.coordinates : [geometry.coordinates];
+  let best = null;
+  for (const part of parts) {
+    for (let index = 1; index < part.length; index += 1) {
+      const [ax, ay] = [part[index - 1][0] * shrink, part[index - 1][1]];
+      const [bx, by] = [part[index][0] * shrink, part[index][1]];
+      const [dx, dy] = [bx - ax, by - ay];
+      const square = dx * dx + dy * dy;
+      const share = square ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square)) : 0;
+      const [x, y] = [ax + share * dx, ay + share * dy];
+      const distance = (x - longitude * shrink) ** 2 + (y - latitude) ** 2;
+      if (!best || distance < best.distance) best = { distance, position: [x / shrink, y] };
+    }
+  }
+  return best?.position.map((degrees) => Number(degrees.toFixed(7))) ?? null;
+}
+
+/** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), tool() } */
+export function routeClicks(map, on) {
+  const canvas = map.getCanvasContainer();
+  const reach = matchMedia("(pointer: coarse)").matches ? REACH_PX.coarse : REACH_PX.fine;
+  const thingAt = (point) => {
+    const layers = PICKABLE.filter((id) => map.getLayer(id));
+    return firstInOrder(map.queryRenderedFeatures([[point.x - reach, point.y - reach], [point.x + reach, point.y + reach]], { layers }));
+  };
+
+  map.on("click", (event) => on.click(thingAt(event.point), [event.lngLat.lng, event.lngLat.lat], event.point));
+
+  let frame = 0;
+  map.on("mousemove", (event) => {
+    cancelAnimationFrame(frame);
+    frame = requestAnimationFrame(() => {
+      const thing = map.isMoving() ? null : thingAt(event.point);
+      canvas.classList.toggle("over-thing", Boolean(thing) && thing.kind !== "zone");
+      on.hover(thing, event.point, [event.lngLat.lng, event.lngLat.lat]);
+    });
+  });
+  map.on("mouseout", () => {
+    cancelAnimationFrame(frame);
+    on.hover(null, null, null);
+  });
+
+  dragBoxes(map, canvas, on);
+}
+
+/** Shift and drag, or the box tool and drag: a box in lon lat. */
+function dragBoxes(map, canvas, on) {
+  map.boxZoom.disable();
+  let start = null;
+  let frame = null;
+  const placeOf = (event) => {
+    const box = canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  };
+
+  canvas.addEventListener(
+    "pointerdown",
+    (event) => {
+      if (event.button !== 0 || (on.tool() !== "box" && !event.shiftKey)) return;
+      event.stopPropagation();
+      event.preventDefault();
+      start = placeOf(event);
+      map.dragPan.disable();
+      frame = document.createElement("div");
+      frame.className = "box-frame";
+      canvas.append(frame);
+      canvas.setPointerCapture(event.pointerId);
+    },
+    true,
+  );
+  canvas.addEventListener("pointermove", (event) => {
+    if (!start) return;
+    const [x, y] = placeOf(event);
+    frame.style.transform = `translate(${Math.min(x, start[0])}px, ${Math.min(y, start[1])}px)`;
+    frame.style.width = `${Math.abs(x - start[0])}px`;
+    frame.style.height = `${Math.abs(y - start[1])}px`;
+  });
+  const end = (event) => {
+    if (!start) return;
+    const [from, to] = [start, placeOf(event)];
+    start = null;
+    frame.remove();
+    map.dragPan.enable();
+    if (event.type === "pointerup" && Math.hypot(to[0] - from[0], to[1] - from[1]) > 6) {
+      const corners = [map.unproject(from), map.unproject(to)];
+      const longitudes = corners.map((corner) => corner.lng);
+      const latitudes = corners.map((corner) => corner.lat);
+      on.box([Math.min(...longitudes), Math.min(...latitudes), Math.max(...longitudes), Math.max(...latitudes)]);
+    }
+  };
+  canvas.addEventListener("pointerup", end);
+  canvas.addEventListener("pointercancel", end);
+}

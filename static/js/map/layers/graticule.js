@@ -1,0 +1,37 @@
+/** Quiet lines of longitude and latitude: the ground where there is no base map. */
+
+const STEPS_DEG = [30, 15, 10, 5, 2, 1, 0.5, 0.25, 0.1, 0.05, 0.025, 0.01, 0.005, 0.0025, 0.001];
+const WANTED_PX = 150;
+
+/** The step whose lines stand nearest to 150 px apart. */
+export function graticuleStep(zoom) {
+  const degrees_per_px = 360 / (512 * 2 ** zoom);
+  return STEPS_DEG.reduce((best, step) => (Math.abs(Math.log(step / degrees_per_px / WANTED_PX)) < Math.abs(Math.log(best / degrees_per_px / WANTED_PX)) ? step : best));
+}
+
+/** Lines over [west, south, east, north] and one step beyond, as a MultiLineString. */
+export function graticuleLines([west, south, east, north], step) {
+  const from = (low) => Math.floor(low / step) - 1;
+  const to = (high) => Math.ceil(high / step) + 1;
+  const bottom = Math.max(-85, from(south) * step);
+  const top = Math.min(85, to(north) * step);
+  const lines = [];
+  for (let index = from(west); index <= to(east); index += 1) lines.push([[index * step, bottom], [index * step, top]]);
+  for (let index = from(south); index <= to(north); index += 1) {
+    const latitude = index * step;
+    if (Math.abs(latitude) <= 85) lines.push([[from(west) * step, latitude], [to(east) * step, latitude]]);
+  }
+  return { type: "MultiLineString", coordinates: lines };
+}
+
+export function addTo(map) {
+  const draw = () => update(map);
+  map.on("moveend", draw);
+  draw();
+}
+
+export function update(map) {
+  const bounds = map.getBounds();
+  const frame = [bounds.getWest(), bounds.getSouth(), bounds.getEast(), bounds.getNorth()];
+  map.getSource("graticule").setData({ type: "Feature", properties: {}, geometry: graticuleLines(frame, graticuleStep(map.getZoom())) });
+}

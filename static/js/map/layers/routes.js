@@ -1,0 +1,34 @@
+/** Routes: one colour per UAV, drawn on the right of the way, with arrows. */
+
+import { ROUTE_COUNT, routeNumber } from "../palette.js";
+import { routeOpacity } from "../style.js";
+
+const LAYERS = { "routes-casing": "line-opacity", routes: "line-opacity", "routes-dashed": "line-opacity", "routes-arrows": "icon-opacity" };
+
+/** routes: [{ sequence, geometry }] */
+export function update(map, routes) {
+  map.getSource("routes").setData({
+    type: "FeatureCollection",
+    features: routes
+      .filter((route) => route.geometry)
+      .map((route) => ({
+        type: "Feature",
+        properties: { sequence: route.sequence, route: routeNumber(route.sequence), dashed: route.sequence >= ROUTE_COUNT },
+        geometry: route.geometry,
+      })),
+  });
+}
+
+/** Brings one route forward; null gives all of them back. */
+export function lookAt(map, palette, sequence) {
+  const opacity = routeOpacity(palette, sequence);
+  for (const [layer, property] of Object.entries(LAYERS)) map.setPaintProperty(layer, property, opacity);
+}
+
+/** The distance that the pointer shows in a strip, as a dot on the map; null takes it away. */
+export function showPoint(map, position) {
+  map.getSource("strip-point").setData({
+    type: "FeatureCollection",
+    features: position ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: position } }] : [],
+  });
+}

@@ -1,0 +1,67 @@
+/** Where UAVs stand: a square with the letter for those of the mission, a dart for the others. Squares can be dragged. */
+
+import { h, icon } from "../../dom.js";
+import { maplibre } from "../maplibre.js";
+import { routeNumber } from "../palette.js";
+
+const SQUARE_PX = 22;
+
+export function createUavs(map, { onMove, onPick, onLook }) {
+  let markers = [];
+
+  function square(uav) {
+    return h(
+      "button",
+      {
+        type: "button",
+        tabindex: "-1",
+        class: `map-base route-${routeNumber(uav.sequence)}`,
+        "aria-label": `${uav.name} starts here`,
+        title: uav.canMove ? `${uav.name}. Drag to another start` : uav.name,
+        onpointerenter: () => onLook(uav.sequence),
+        onpointerleave: () => onLook(null),
+        onclick: (event) => event.stopPropagation(),
+      },
+      h("span", { class: "letter" }, uav.letter),
+    );
+  }
+
+  function dart(uav) {
+    return h(
+      "button",
+      {
+        type: "button",
+        tabindex: "-1",
+        class: "map-dart",
+        "aria-label": `${uav.name}, not in this mission`,
+        title: `${uav.name}. Click to take it along`,
+        onclick: (event) => (event.stopPropagation(), onPick(uav.id)),
+      },
+      icon("uav"),
+    );
+  }
+
+  return {
+    /** uavs: [{ id, name, position, sequence or null, letter, canMove }] */
+    update(uavs) {
+      markers.forEach((marker) => marker.remove());
+      const standing = new Map();
+      markers = uavs.map((uav) => {
+        const isChosen = uav.sequence !== null;
+        const place = uav.position.map((degrees) => degrees.toFixed(5)).join();
+        const before = standing.get(place) ?? 0;
+        standing.set(place, before + 1);
+        const marker = new maplibre.Marker({
+          element: isChosen ? square(uav) : dart(uav),
+          draggable: isChosen && uav.canMove,
+          offset: [before * SQUARE_PX, 0],
+        });
+        marker.on("dragend", () => {
+          const { lng, lat } = marker.getLngLat();
+          onMove(uav.sequence, [Number(lng.toFixed(6)), Number(lat.toFixed(6))]);
+        });
+        return marker.setLngLat(uav.position).addTo(map);
+      });
+    },
+  };
+}

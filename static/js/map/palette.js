@@ -1,0 +1,62 @@
+/** The tokens that the map draws with, read from the style sheet as they stand now. */
+
+export const ROUTE_COUNT = 8;
+
+const NAMES = {
+  ground: "--ground",
+  raised: "--raised",
+  ink: "--ink",
+  inkSecond: "--ink-2",
+  graticule: "--map-graticule",
+  label: "--map-label",
+  halo: "--map-halo",
+  casing: "--map-casing",
+  volt400: "--volt-400",
+  volt220: "--volt-220",
+  volt132: "--volt-132",
+  volt66: "--volt-66",
+  volt20: "--volt-20",
+  voltUnknown: "--volt-unknown",
+  tower: "--tower",
+  railway: "--railway",
+  bridge: "--bridge",
+  zone: "--zone",
+  zoneFill: "--zone-fill",
+  select: "--select",
+  font: "--font",
+};
+
+/** Place in the row of route colours, 1 to 8; a ninth UAV starts again. */
+export function routeNumber(sequence) {
+  return (sequence % ROUTE_COUNT) + 1;
+}
+
+export function routeLetter(sequence) {
+  return sequence < 26 ? String.fromCharCode(65 + sequence) : `${String.fromCharCode(64 + Math.floor(sequence / 26))}${String.fromCharCode(65 + (sequence % 26))}`;
+}
+
+export function readPalette(read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim()) {
+  const palette = Object.fromEntries(Object.entries(NAMES).map(([name, token]) => [name, read(token)]));
+  palette.routes = Array.from({ length: ROUTE_COUNT }, (_, index) => read(`--route-${index + 1}`));
+  palette.fonts = palette.font
+    .split(",")
+    .map((family) => family.trim().replaceAll('"', ""))
+    .filter((family) => family && !family.startsWith("-"));
+  palette.isDark = luminance(palette.ground) < 0.2;
+  return palette;
+}
+
+/** Relative luminance of #rrggbb, WCAG 2.x. */
+export function luminance(hex) {
+  const [red, green, blue] = [1, 3, 5].map((start) => {
+    const share = parseInt(hex.slice(start, start + 2), 16) / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+/** Contrast of two colours, WCAG 2.x, 1 to 21. */
+export function contrast(a, b) {
+  const [dark, light] = [luminance(a), luminance(b)].sort((first, second) => first - second);
+  return (light + 0.05) / (dark + 0.05);
+}

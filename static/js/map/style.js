@@ -1,0 +1,256 @@
+/** The map's look as data: sources and layers in the order from below, made from the palette. */
+
+const NOTHING = { type: "FeatureCollection", features: [] };
+export const TILES = "ground-tiles";
+
+/** Layers that a click or the pointer can meet, in the order of picking. */
+export const PICKABLE = ["towers", "towers-ring", "bridges-fill", "bridges", "bridge-points", "railways", "lines", "lines-unknown", "zones-fill"];
+
+/** What the layers menu switches: words, and the layers behind them. */
+export const GROUPS = [
+  { name: "Power lines", layers: ["lines-casing", "lines", "lines-unknown", "line-labels"] },
+  { name: "Towers", layers: ["towers", "towers-ring", "tower-labels"] },
+  { name: "Railways", layers: ["railways", "railways-ties"] },
+  { name: "Bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
+  { name: "No-fly zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zone-labels"] },
+];
+
+const voltage = ["coalesce", ["get", "voltage"], -1];
+const byVoltage = (...values) => {
+  const [unknown, under50, from50, from100, from200, from380] = values;
+  return ["step", voltage, unknown, 0, under50, 50, from50, 100, from100, 200, from200, 380, from380];
+};
+const WIDTHS_PX = [1.2, 0.8, 1.1, 1.6, 2.2, 3]; // at zoom 12: not stated, under 50, 50, 100, 200, 380 kV and over
+const widthsTimes = (factor, more = 0) => byVoltage(...WIDTHS_PX.map((width) => width * factor + more));
+const lineWidth = (more = 0) => ["interpolate", ["linear"], ["zoom"], 5, widthsTimes(0.5, more), 9, widthsTimes(0.75, more), 12, widthsTimes(1, more), 17, widthsTimes(1.7, more)];
+const isPole = ["==", ["get", "subtype"], "pole"];
+
+/** Colour of a voltage in kV, for the legend and the tests. */
+export function voltageColour(palette, voltage_kv) {
+  if (voltage_kv === null || voltage_kv === undefined) return palette.voltUnknown;
+  const steps = [[380, "volt400"], [200, "volt220"], [100, "volt132"], [50, "volt66"]];
+  return palette[steps.find(([least]) => voltage_kv >= least)?.[1] ?? "volt20"];
+}
+
+const routeColour = (palette) => ["match", ["get", "route"], ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond];
+const routeWidth = (more = 0) => ["interpolate", ["linear"], ["zoom"], 10, 2.8 + more, 14, 4.5 + more];
+const ROUTE_OFFSET = ["interpolate", ["linear"], ["zoom"], 10, 2.4, 14, 4.5]; // drive on the right
+const whereDashed = (isDashed) => ["==", ["get", "dashed"], isDashed];
+
+function rasterSource(layer) {
+  return { type: "raster", tiles: [layer.tiles], tileSize: 256, maxzoom: 19 };
+}
+
+function rasterLayer(id, palette, visible) {
+  return {
+    id,
+    type: "raster",
+    source: id,
+    layout: { visibility: visible ? "visible" : "none" },
+    paint: {
+      "raster-opacity": id === "satellite" ? 0.85 : 0.6,
+      "raster-saturation": id === "satellite" ? -0.2 : -0.6,
+      "raster-brightness-max": palette.isDark ? 0.45 : 1,
+      "raster-fade-duration": 120,
+    },
+  };
+}
+
+/** options: { tilesAddress, baseMap, satellite, under: "base-map" | "satellite" | "" } */
+export function mapStyle(palette, options) {
+  const raster = [["base-map", options.baseMap], ["satellite", options.satellite]].filter(([, layer]) => layer?.tiles);
+  return {
+    version: 8,
+    sources: {
+      ...Object.fromEntries(raster.map(([id, layer]) => [id, rasterSource(layer)])),
+      graticule: { type: "geojson", data: NOTHING },
+      [TILES]: { type: "vector", tiles: [options.tilesAddress], minzoom: 0, maxzoom: 15 },
+      "picked-shapes": { type: "geojson", data: NOTHING },
+      routes: { type: "geojson", data: NOTHING },
+      "strip-point": { type: "geojson", data: NOTHING },
+      "many-targets": { type: "geojson", data: NOTHING },
+      selection: { type: "geojson", data: NOTHING },
+    },
+    layers: [
+      { id: "ground", type: "background", paint: { "background-color": palette.ground } },
+      ...raster.map(([id]) => rasterLayer(id, palette, options.under === id)),
+      { id: "graticule", type: "line", source: "graticule", paint: { "line-color": palette.graticule, "line-width": 1 } },
+      ...infrastructureLayers(palette),
+      ...routeLayers(palette),
+      ...labelLayers(palette),
+      ...selectionLayers(palette),
+    ],
+  };
+}
+
+function infrastructureLayers(palette) {
+  const tiles = (id, type, sourceLayer, rest) => ({ id, type, source: TILES, "source-layer": sourceLayer, ...rest });
+  const round = { "line-cap": "round", "line-join": "round" };
+  const lineColour = byVoltage(palette.voltUnknown, palette.volt20, palette.volt66, palette.volt132, palette.volt220, palette.volt400);
+  return [
+    tiles("zones-fill", "fill", "zones", { paint: { "fill-color": palette.zone, "fill-opacity": palette.isDark ? 0.08 : 0.07 } }),
+    tiles("zones-hatch", "fill", "zones", { paint: { "fill-pattern": "hatch", "fill-opacity": 0.75 } }),
+    tiles("railways", "line", "railways", {
+      minzoom: 8,
+      paint: { "line-color": palette.railway, "line-width": ["interpolate", ["linear"], ["zoom"], 8, 1, 12, 1.8, 15, 2.6] },
+    }),
+    tiles("railways-ties", "line", "railways", {
+      minzoom: 12,
+      paint: { "line-color": palette.ground, "line-width": ["interpolate", ["linear"], ["zoom"], 12, 0.8, 15, 1.4], "line-dasharray": [5, 5] },
+    }),
+    tiles("bridges-fill", "fill", "bridges", { minzoom: 13, paint: { "fill-color": palette.bridge, "fill-opacity": 0.14 } }),
+    tiles("bridges", "line", "bridges", {
+      minzoom: 10,
+      paint: { "line-color": palette.bridge, "line-width": ["interpolate", ["linear"], ["zoom"], 10.5, 2.4, 13, 2.4, 15, 1.5] },
+    }),
+    tiles("bridge-points", "circle", "bridge_points", {
+      minzoom: 10,
+      maxzoom: 13,
+      paint: { "circle-color": palette.bridge, "circle-radius": ["interpolate", ["linear"], ["zoom"], 10, 1.4, 13, 2.6] },
+    }),
+    tiles("lines-casing", "line", "lines", { minzoom: 11, layout: round, paint: { "line-color": palette.casing, "line-width": lineWidth(2), "line-opacity": 0.7 } }),
+    tiles("lines-unknown", "line", "lines", {
+      filter: ["!", ["has", "voltage"]],
+      paint: { "line-color": palette.voltUnknown, "line-width": lineWidth(), "line-dasharray": [4, 2] },
+    }),
+    tiles("lines", "line", "lines", { filter: ["has", "voltage"], layout: round, paint: { "line-color": lineColour, "line-width": lineWidth() } }),
+    tiles("towers", "circle", "towers", {
+      minzoom: 10,
+      maxzoom: 12.6,
+      paint: { "circle-color": palette.tower, "circle-radius": ["case", isPole, 0.8, 1.2] },
+    }),
+    tiles("towers-ring", "circle", "towers", {
+      minzoom: 12.6,
+      paint: {
+        "circle-color": palette.ground,
+        "circle-radius": ["interpolate", ["linear"], ["zoom"], 12.6, ["case", isPole, 1.6, 2.4], 14, ["case", isPole, 2.1, 2.8], 17, ["case", isPole, 3, 4]],
+        "circle-stroke-color": palette.tower,
+        "circle-stroke-width": ["case", isPole, 1, 1.4],
+      },
+    }),
+    tiles("zones-outline", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.75 } }),
+    {
+      id: "picked-shapes",
+      type: "line",
+      source: "picked-shapes",
+      layout: { "line-cap": "round", "line-join": "round" },
+      paint: { "line-color": palette.select, "line-width": 1.75, "line-gap-width": 7 },
+    },
+  ];
+}
+
+function routeLayers(palette) {
+  const base = { source: "routes", layout: { "line-cap": "round", "line-join": "round" } };
+  return [
+    { ...base, id: "routes-casing", type: "line", paint: { "line-color": palette.casing, "line-width": routeWidth(4), "line-offset": ROUTE_OFFSET } },
+    { ...base, id: "routes", type: "line", filter: whereDashed(false), paint: { "line-color": routeColour(palette), "line-width": routeWidth(), "line-offset": ROUTE_OFFSET } },
+    {
+      ...base,
+      id: "routes-dashed",
+      type: "line",
+      filter: whereDashed(true),
+      layout: { "line-join": "round" },
+      paint: { "line-color": routeColour(palette), "line-width": routeWidth(), "line-offset": ROUTE_OFFSET, "line-dasharray": [6, 2] },
+    },
+    {
+      id: "routes-arrows",
+      type: "symbol",
+      source: "routes",
+      layout: {
+        "symbol-placement": "line",
+        "symbol-spacing": 120,
+        "icon-image": ["concat", "arrow-", ["to-string", ["get", "route"]]],
+        "icon-offset": [0, 4],
+        "icon-allow-overlap": true,
+        "icon-rotation-alignment": "map",
+      },
+    },
+    {
+      id: "strip-point",
+      type: "circle",
+      source: "strip-point",
+      paint: { "circle-radius": 5, "circle-color": palette.raised, "circle-stroke-color": palette.ink, "circle-stroke-width": 2 },
+    },
+  ];
+}
+
+/** The opacity of everything that belongs to a route, when one of them is looked at. */
+export function routeOpacity(palette, lookedAt) {
+  return lookedAt === null ? 1 : ["case", ["==", ["get", "sequence"], lookedAt], 1, palette.isDark ? 0.42 : 0.3];
+}
+
+function labelLayers(palette) {
+  const halo = { "text-color": palette.label, "text-halo-color": palette.halo, "text-halo-width": 1.5 };
+  const text = (size = 11) => ({ "text-font": palette.fonts, "text-size": size });
+  const tiles = { type: "symbol", source: TILES };
+  return [
+    {
+      ...tiles,
+      id: "line-labels",
+      "source-layer": "lines",
+      minzoom: 11,
+      filter: ["has", "voltage"],
+      layout: { ...text(), "symbol-placement": "line", "symbol-spacing": 340, "text-field": ["concat", ["to-string", ["get", "voltage"]], " kV"] },
+      paint: halo,
+    },
+    {
+      ...tiles,
+      id: "tower-labels",
+      "source-layer": "towers",
+      minzoom: 14,
+      filter: ["all", ["has", "ref"], ["!=", ["get", "ref"], ""]],
+      layout: { ...text(), "text-field": ["get", "ref"], "text-anchor": "left", "text-offset": [0.8, 0], "text-optional": true },
+      paint: halo,
+    },
+    {
+      ...tiles,
+      id: "zone-labels",
+      "source-layer": "zone_labels",
+      minzoom: 9,
+      layout: { ...text(12), "text-field": ["coalesce", ["get", "name"], ["get", "label"], ""], "text-max-width": 9 },
+      paint: { ...halo, "text-color": palette.zone, "text-halo-width": 2 },
+    },
+  ];
+}
+
+function selectionLayers(palette) {
+  return [
+    {
+      id: "many-targets",
+      type: "circle",
+      source: "many-targets",
+      paint: { "circle-radius": 7, "circle-color": palette.raised, "circle-stroke-width": 2, "circle-stroke-color": routeColour(palette) },
+    },
+    {
+      id: "many-targets-labels",
+      type: "symbol",
+      source: "many-targets",
+      minzoom: 11,
+      layout: { "text-font": palette.fonts, "text-size": 11, "text-field": ["get", "label"], "text-offset": [0, 1.3] },
+      paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 1.5 },
+    },
+    {
+      id: "selection",
+      type: "circle",
+      source: "selection",
+      filter: ["==", ["geometry-type"], "Point"],
+      paint: { "circle-radius": 8, "circle-opacity": 0, "circle-stroke-color": palette.select, "circle-stroke-width": 2 },
+    },
+    {
+      id: "selection-line",
+      type: "line",
+      source: "selection",
+      filter: ["!=", ["geometry-type"], "Point"],
+      layout: { "line-cap": "round", "line-join": "round" },
+      paint: { "line-color": palette.select, "line-width": 2, "line-gap-width": 6 },
+    },
+  ];
+}
+
+/** Gives each layer of a living map the colours of another palette. */
+export function repaint(map, palette, options) {
+  for (const layer of mapStyle(palette, options).layers) {
+    if (!map.getLayer(layer.id)) continue;
+    for (const [name, value] of Object.entries(layer.paint ?? {})) map.setPaintProperty(layer.id, name, value);
+  }
+}

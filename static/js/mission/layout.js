@@ -1,0 +1,70 @@
+/** Folding the side and the dock, and on a phone the sheet with its three heights. */
+
+import { byId } from "../dom.js";
+
+const HEIGHTS = ["low", "half", "full"];
+const phone = matchMedia("(max-width: 720px)");
+
+export function mountLayout() {
+  const workbench = byId("workbench");
+  const dock = byId("dock");
+  const stage = byId("main");
+
+  /** One place for the routes: under the map, or first in the sheet. */
+  const place = () => {
+    if (phone.matches) byId("routes-on-phone").append(dock);
+    else stage.append(dock);
+  };
+  phone.addEventListener("change", place);
+  place();
+
+  dragSheet(workbench, byId("sheet-handle"));
+  return {
+    foldSide: () => toggle(workbench, "side"),
+    foldDock: () => toggle(workbench, "dock"),
+    isPhone: () => phone.matches,
+  };
+}
+
+function toggle(workbench, part) {
+  if (workbench.dataset[part] === "folded") delete workbench.dataset[part];
+  else workbench.dataset[part] = "folded";
+}
+
+function dragSheet(workbench, handle) {
+  let from = null;
+  const setHeight = (name) => {
+    workbench.style.removeProperty("--sheet");
+    workbench.dataset.sheet = name;
+    handle.setAttribute("aria-label", `Panel height: ${name}`);
+  };
+  setHeight("half");
+
+  handle.addEventListener("pointerdown", (event) => {
+    from = { y: event.clientY, height: byId("side").offsetHeight, moved: false };
+    handle.setPointerCapture(event.pointerId);
+  });
+  handle.addEventListener("pointermove", (event) => {
+    if (!from) return;
+    const height = from.height + from.y - event.clientY;
+    if (Math.abs(height - from.height) < 6 && !from.moved) return;
+    from.moved = true;
+    workbench.style.setProperty("--sheet", `${Math.max(72, Math.min(workbench.clientHeight, height))}px`);
+  });
+  handle.addEventListener("pointerup", () => {
+    if (!from) return;
+    const { moved } = from;
+    from = null;
+    if (!moved) return;
+    const share = byId("side").offsetHeight / workbench.clientHeight;
+    setHeight(share < 0.3 ? "low" : share < 0.8 ? "half" : "full");
+    handle.dataset.dragged = "true";
+  });
+  handle.addEventListener("click", () => {
+    if (handle.dataset.dragged) {
+      delete handle.dataset.dragged; // the click that ends a drag
+      return;
+    }
+    setHeight(HEIGHTS[(HEIGHTS.indexOf(workbench.dataset.sheet) + 1) % HEIGHTS.length]);
+  });
+}

@@ -1,0 +1,128 @@
+/** The operator's map: composes the page and loads what it shows. */
+
+import { ApiError, get } from "../api.js";
+import { readPage, startChrome } from "../page/chrome.js";
+import { createHistory, createStore } from "../store.js";
+import { createActions } from "./actions.js";
+import { mountLayout } from "./layout.js";
+import { mountMap } from "./map_panel.js";
+import { mountFinder } from "./panels/finder.js";
+import { mountFoot } from "./panels/foot.js";
+import { mountHeader } from "./panels/header.js";
+import { mountOptions } from "./panels/options.js";
+import { mountRoutes } from "./panels/routes.js";
+import { mountTargets } from "./panels/targets.js";
+import { mountUavs } from "./panels/uavs.js";
+import { isUnsaved } from "./plan_view.js";
+import { EMPTY, uavOf } from "./selection.js";
+
+const page = readPage();
+const store = createStore({
+  ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
+  plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null,
+  tool: "point", litTarget: null, chosenTarget: null, lookedAt: null, chosenRoute: null,
+});
+const history = createHistory(store, "selection");
+const actions = createActions(store, history, () => page.mission);
+
+let uavPanel = null;
+const layout = mountLayout();
+const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
+const targetOfFeature = (feature) => actions.targetOfFeature(feature);
+mountHeader(store, actions, page.canPlan);
+mountTargets(store, actions, page.canPlan, (target) => map.show(target));
+uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
+mountOptions(store, actions, page.canPlan);
+mountFoot(store, actions);
+mountRoutes(store, { onAlong: (position) => map.showPoint(position) });
+const finder = mountFinder({
+  canPlan: page.canPlan,
+  box: () => map.box(),
+  show: (feature) => map.show(targetOfFeature(feature)),
+  add: (feature) => actions.addTargets([targetOfFeature(feature)]),
+});
+
+const planner = (act) => () => (page.canPlan ? act() : false);
+const choose = (tool) => planner(() => store.update({ tool }));
+startChrome({
+  bindings: [
+    { keys: ["/"], words: "Find an asset", act: finder.focus },
+    { keys: ["p"], words: "Plan, plan again", act: planner(actions.plan) },
+    { keys: ["mod+s"], words: "Save", whileTyping: true, act: planner(() => void actions.save()) },
+    { keys: ["mod+z"], words: "Undo", act: planner(actions.undo) },
+    { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: planner(actions.redo) },
+    { keys: ["delete", "backspace"], words: "Remove the chosen target", act: planner(removeChosen) },
+    { keys: ["v"], words: "Pick points", act: choose("point") },
+    { keys: ["b"], words: "Pick by box", act: choose("box") },
+    { keys: ["w"], words: "Pick whole lines", act: choose("line") },
+    { keys: ["f"], words: "Fit the mission", act: () => map.fit() },
+    { keys: ["+", "="], words: "Zoom in", act: () => map.zoom(1) },
+    { keys: ["-"], words: "Zoom out", act: () => map.zoom(-1) },
+    { keys: ["["], words: "Fold the side", act: layout.foldSide },
+    { keys: ["]"], words: "Fold the routes", act: layout.foldDock },
+    { keys: ["escape"], words: "Close, back to points", act: escape },
+    { keys: ["enter"], act: placeInTheMiddle },
+  ],
+});
+
+function removeChosen() {
+  const key = store.state.chosenTarget;
+  if (!key) return false;
+  actions.removeTargets([key]);
+  return true;
+}
+
+function escape() {
+  if (map.closeTop()) return;
+  if (store.state.problem) store.update({ problem: null });
+  else if (store.state.tool !== "point") store.update({ tool: "point" });
+  else store.update({ chosenTarget: null, chosenRoute: null });
+}
+
+function placeInTheMiddle() {
+  if (store.state.tool !== "place") return false;
+  uavPanel.askForUav();
+  return true;
+}
+
+// The selection outlives the page: it is kept a moment after each change.
+let keepTimer = 0;
+let isKept = true;
+store.listen(["selection", "name"], (state) => {
+  clearTimeout(keepTimer);
+  if (!page.canPlan || !isUnsaved(state)) return;
+  keepTimer = setTimeout(() => (isKept = actions.keep()), 400);
+});
+addEventListener("pagehide", () => {
+  if (page.canPlan && isUnsaved(store.state)) actions.keep();
+});
+addEventListener("beforeunload", (event) => {
+  if (page.canPlan && !isKept && isUnsaved(store.state)) event.preventDefault(); // storage is closed: ask
+});
+
+async function fleetOfOrganisation() {
+  const features = [];
+  for (let next = "/uavs?limit=100"; next; ) {
+    const { data } = await get(next);
+    features.push(...data.features);
+    next = data.next;
+  }
+  return features.map(uavOf);
+}
+
+async function load() {
+  try {
+    const [{ data: ground }, fleet] = await Promise.all([get("/ground"), fleetOfOrganisation()]);
+    store.update({ ground, fleet });
+    if (page.mission) await actions.open(page.mission);
+    else if (page.canPlan) actions.openDraft();
+  } catch (error) {
+    actions.problem("Not loaded.", error instanceof ApiError ? error.message : "The page failed while it was loading.", [{ label: "Load again", act: () => location.reload() }]);
+    if (!(error instanceof ApiError)) throw error;
+  }
+  await map.ready;
+  if (!store.state.plan) map.fit({ animate: false });
+  document.documentElement.dataset.loaded = "true";
+}
+
+load();

@@ -1,0 +1,97 @@
+/** The mission's name, state and one line of facts; what has to be said stands below. */
+
+import { byId, h, icon } from "../../dom.js";
+import { menuOf, toggleMenu } from "../../page/chrome.js";
+import { clockText, countText } from "../../units.js";
+import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
+
+const STATE_WORDS = { draft: "Draft", planned: "Planned", approved: "Approved", dispatched: "Dispatched", active: "Active", completed: "Completed", aborted: "Aborted", failed: "Failed" };
+
+export function mountHeader(store, actions, canPlan) {
+  const name = byId("mission-name");
+  name.addEventListener("input", () => actions.rename(name.value));
+  name.addEventListener("keydown", (event) => {
+    if (event.key === "Enter" || event.key === "Escape") name.blur();
+  });
+
+  const more = byId("mission-menu");
+  more.addEventListener("click", () =>
+    toggleMenu(more, () => {
+      const { mission } = store.state;
+      const items = [{ icon: "trash-2", label: "Clear everything", act: actions.startEmpty }];
+      if (mission && canPlan) {
+        items[0] = { icon: "copy", label: "Save a copy", act: () => actions.save({ asCopy: true }) };
+        items.push({ icon: "trash-2", label: "Delete", act: actions.deleteMission });
+      }
+      items.push({ icon: "clipboard-list", label: "All missions", act: () => void (location.href = "/") });
+      return menuOf("This mission", items);
+    }),
+  );
+
+  store.listen(["name", "mission", "selection", "plan", "planIsStored", "savedBasis"], (state) => {
+    const shown = state.name || "New mission";
+    if (name.value !== state.name) name.value = state.name;
+    byId("page-title").textContent = shown;
+    byId("bar-title").textContent = shown;
+    document.title = `${shown} · Spanwise`;
+    const stateName = state.mission && !["draft", "planned"].includes(state.mission.state) ? state.mission.state : isPlanCurrent(state) ? "planned" : "draft";
+    const chip = byId("mission-state");
+    chip.className = `chip ${stateName}`;
+    chip.textContent = STATE_WORDS[stateName];
+    byId("mission-facts").textContent = factsOf(state).join(" · ");
+  });
+
+  store.listen(["problem", "plan", "selection", "mission"], (state) => {
+    byId("notices").replaceChildren(...noticesOf(state, actions, canPlan));
+  });
+}
+
+function factsOf(state) {
+  const targets = state.selection.targets.length;
+  const facts = [];
+  if (isPlanCurrent(state)) {
+    const missed = state.plan.result.unassigned.length;
+    facts.push(missed ? `${targets - missed} of ${countText(targets, "target")}` : countText(targets, "target"));
+    if (state.planIsStored && state.mission?.planned_at) facts.push(`planned ${clockText(state.mission.planned_at)}`);
+    if (state.plan.result.flat_ground_assumed) facts.push("flat ground assumed");
+  } else {
+    facts.push(targets ? countText(targets, "target") : "nothing picked yet");
+    if (state.plan) facts.push("changed since it was planned");
+  }
+  if (isUnsaved(state)) facts.push("not saved");
+  return facts;
+}
+
+function notice(level, image, title, text, acts = []) {
+  return h(
+    "div",
+    { class: `notice ${level}`, role: level === "critical" ? "alert" : null },
+    icon(image),
+    h("p", {}, h("strong", {}, title), ` ${text} `, acts.map((act) => h("button", { type: "button", class: "text-button", onclick: act.act }, act.label))),
+  );
+}
+
+function noticesOf(state, actions, canPlan) {
+  const notices = [];
+  if (state.problem) {
+    const isAway = state.problem.title.includes("cannot be reached");
+    notices.push(notice("critical", isAway ? "cloud-off" : "circle-alert", state.problem.title, state.problem.text, state.problem.actions));
+  }
+  const planAgain = canPlan ? [{ label: "Plan again", act: actions.plan }] : [];
+  if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) {
+    notices.push(notice("warning", "triangle-alert", "The ground has changed since this was planned.", state.mission.stale_reason ?? "", planAgain));
+  }
+  if (isPlanCurrent(state)) {
+    for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", warning.message));
+    const unreached = unreachedOf(state.plan);
+    for (const { target, sentence } of unreached.slice(0, 3)) {
+      const acts = canPlan ? [{ label: "Remove it", act: () => actions.removeTargets([target.key]) }] : [];
+      notices.push(notice("warning", "triangle-alert", `${target.label} is not reached.`, sentence, acts));
+    }
+    if (unreached.length > 3) {
+      const acts = canPlan ? [{ label: "Remove all that are not reached", act: () => actions.removeTargets(unreached.map(({ target }) => target.key)) }] : [];
+      notices.push(notice("warning", "triangle-alert", `${countText(unreached.length - 3, "more target is", "more targets are")} not reached.`, "The list below says which.", acts));
+    }
+  }
+  return notices;
+}

@@ -1,0 +1,94 @@
+/** What a plan means for the page: letters, numbers, sentences. Values in, values out. */
+
+import { routeLetter } from "../map/palette.js";
+import { countText, durationText, lengthText } from "../units.js";
+import { basisOf } from "./selection.js";
+
+const REASONS = {
+  no_path: "No way along the network leads there.",
+  inside_zone: "It stands inside a no-fly zone.",
+  beyond_range: "It is out of range.",
+  too_far_from_network: "It is too far from the network.",
+  above_height_limit: "It is higher than may be flown.",
+  asset_gone: "It is no longer in the data.",
+};
+
+export const OBJECTIVES = [
+  { value: "makespan", words: "Finish soonest" },
+  { value: "total", words: "Fly least" },
+];
+
+/** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
+export function routesOf(plan) {
+  if (!plan) return [];
+  return plan.result.routes.map((route, sequence) => ({ ...route, sequence, letter: routeLetter(sequence), name: route.uav }));
+}
+
+/** Where each target stands in the plan: key → { sequence, letter, number }. */
+export function placesOf(plan) {
+  const places = new Map();
+  for (const route of routesOf(plan)) {
+    route.targets.forEach((target, index) => {
+      const key = plan.targets[target]?.key;
+      if (key) places.set(key, { sequence: route.sequence, letter: route.letter, number: index + 1 });
+    });
+  }
+  return places;
+}
+
+/** Targets in the order of the plan, those without a place last, in the order they were picked. */
+export function inPlanOrder(targets, places) {
+  const rank = (target) => {
+    const place = places.get(target.key);
+    return place ? place.sequence * 100_000 + place.number : Number.MAX_SAFE_INTEGER;
+  };
+  return targets.map((target, index) => ({ target, index })).sort((a, b) => rank(a.target) - rank(b.target) || a.index - b.index).map(({ target }) => target);
+}
+
+/** [{ target, sentence, reason }] for the targets that no route visits. */
+export function unreachedOf(plan) {
+  if (!plan) return [];
+  return plan.result.unassigned.map((entry) => ({
+    target: plan.targets[entry.target],
+    reason: entry.reason,
+    sentence: entry.message || REASONS[entry.reason] || "No route visits it.",
+  }));
+}
+
+export function longestDuration_s(result) {
+  return Math.max(0, ...result.routes.map((route) => route.duration_s));
+}
+
+/** "Finish soonest 56 min, 79.5 km": what an objective gives, where it has been planned. */
+export function figuresOf(result) {
+  return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
+}
+
+/** The sentence first, then the figures. */
+export function sentenceOf(plan) {
+  const { routes, unassigned, total_length_m } = plan.result;
+  const flying = routes.filter((route) => route.geometry).length;
+  const visited = plan.targets.length - unassigned.length;
+  if (!flying) return { sentence: "No target can be reached", facts: countText(plan.targets.length, "target") };
+  const reached = unassigned.length ? `${visited} of ${countText(plan.targets.length, "target")}` : `all ${countText(visited, "target")}`;
+  const ends = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start) ? "All done in" : "All back in";
+  return { sentence: `${ends} ${durationText(longestDuration_s(plan.result))}`, facts: `${reached} · ${countText(flying, "UAV")} · ${lengthText(total_length_m)}` };
+}
+
+export function stripLabel(route, targets) {
+  const names = route.targets.map((target, index) => `${index + 1} ${targets[target]?.label ?? "target"}`).join(", ");
+  return `${route.name} flies ${lengthText(route.length_m)} in ${durationText(route.duration_s)}: ${names || "no targets"}.`;
+}
+
+/** Whether the plan on the page is the plan of what is picked. */
+export function isPlanCurrent(state) {
+  return state.plan !== null && state.plan.basis === basisOf(state.selection);
+}
+
+/** Whether leaving the page would lose something. */
+export function isUnsaved(state) {
+  if (!state.mission) return state.selection.targets.length > 0 || state.name.trim() !== "";
+  const basis = basisOf(state.selection);
+  const planUnsaved = state.plan !== null && state.plan.basis === basis && !state.planIsStored;
+  return planUnsaved || basis !== state.savedBasis || state.name !== state.mission.name;
+}

@@ -1,0 +1,107 @@
+/** What is to be flown, as plain values: targets, UAVs, options; and its shape on the wire. */
+
+export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true });
+
+/** Two picks of the same place are one target: the asset whole, or one point of it. */
+export function keyOf({ asset, position, stretch }) {
+  const places = stretch ?? (position ? [position] : []);
+  return [asset ?? "place", ...places.map((place) => place.map((degrees) => degrees.toFixed(5)).join(","))].join(" ");
+}
+
+/** A target from an asset feature of the API or a tile. `position` makes it one point of a line or railway. */
+export function targetOf({ id, kind, properties, centre = null, position = null, stretch = null, task = null }) {
+  const target = { asset: id, kind, label: properties.label || kind, detail: detailOf(kind, properties, position), position, stretch, centre: position ?? centre, task };
+  return { key: keyOf(target), ...target };
+}
+
+export function voltageWords(properties) {
+  if (properties.voltages) return properties.voltages;
+  if (properties.voltages_v?.length) return properties.voltages_v.map((volts) => `${volts / 1000} kV`).join(", ");
+  return "";
+}
+
+/** The second fact of a row, in secondary ink. */
+export function detailOf(kind, properties, position = null) {
+  const facts = [];
+  if (kind === "line") facts.push(position ? "one point" : "whole line", voltageWords(properties) || "voltage not stated");
+  else if (kind === "railway") facts.push(position ? "one point" : "whole track");
+  else if (kind === "tower") facts.push(voltageWords(properties));
+  if (properties.operator && properties.operator !== properties.label) facts.push(properties.operator);
+  return facts.filter((fact) => fact && !properties.label?.includes(fact)).join(" · ");
+}
+
+export function isWhole(target) {
+  return (target.kind === "line" || target.kind === "railway") && !target.position;
+}
+
+export function withTargets(selection, targets) {
+  const known = new Set(selection.targets.map((target) => target.key));
+  const fresh = targets.filter((target) => !known.has(target.key) && known.add(target.key));
+  return fresh.length ? { ...selection, targets: [...selection.targets, ...fresh] } : selection;
+}
+
+export function withoutTargets(selection, keys) {
+  return { ...selection, targets: selection.targets.filter((target) => !keys.includes(target.key)) };
+}
+
+export function uavOf(feature) {
+  const { name, base_name, max_range_m, cruise_speed_mps, end_action } = feature.properties;
+  return { id: feature.id, name, base_name: base_name ?? "", position: feature.geometry.coordinates.slice(0, 2), max_range_m, cruise_speed_mps, end_action };
+}
+
+export function withUav(selection, uav) {
+  return selection.uavs.some((chosen) => chosen.id === uav.id) ? selection : { ...selection, uavs: [...selection.uavs, uav] };
+}
+
+export function withoutUav(selection, id) {
+  return { ...selection, uavs: selection.uavs.filter((uav) => uav.id !== id) };
+}
+
+export function withUavAt(selection, sequence, position) {
+  return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, position } : uav)) };
+}
+
+/** The body of /plans and of a mission. */
+export function requestOf(selection) {
+  return {
+    uavs: selection.uavs.map((uav) => {
+      const body = { name: uav.name, position: uav.position };
+      if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
+      for (const name of ["max_range_m", "cruise_speed_mps", "end_action"]) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
+      return body;
+    }),
+    targets: selection.targets.map((target) => {
+      const body = {};
+      if (target.asset !== null) body.asset = target.asset;
+      if (target.position) body.position = target.position;
+      if (target.stretch) body.stretch = target.stretch;
+      if (target.task) body.task = target.task;
+      return body;
+    }),
+    objective: selection.objective,
+    return_to_start: selection.return_to_start,
+  };
+}
+
+/** Equal selections ask for equal plans. */
+export function basisOf(selection) {
+  return JSON.stringify(requestOf(selection));
+}
+
+/** The selection of a stored mission. */
+export function selectionOf(mission, fleet = []) {
+  return {
+    targets: mission.targets.map((target) => {
+      const position = target.is_whole === false || target.asset === null ? target.position : null;
+      const made = {
+        asset: target.asset, kind: target.kind ?? "place", label: target.label, detail: "", position,
+        stretch: target.stretch ?? null, centre: target.position, task: target.task ?? null,
+      };
+      made.detail = detailOf(made.kind, { label: made.label }, position);
+      return { key: keyOf(made), ...made };
+    }),
+    uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),
+    objective: mission.objective,
+    return_to_start: mission.return_to_start,
+  };
+}

@@ -1,0 +1,100 @@
+/** The bar around every page: theme, keys, account. */
+
+import { byId, h, icon } from "../dom.js";
+import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
+import { listenToKeys, showKeys } from "./keyboard.js";
+
+export function readPage() {
+  return JSON.parse(byId("page").textContent);
+}
+
+/** Everywhere the same keys, and the page's own before them. */
+export function startChrome({ bindings = [] } = {}) {
+  const go = (address) => () => void (location.href = address);
+  const all = [
+    ...bindings,
+    { keys: ["n"], words: "New mission", act: go("/missions/new") },
+    { keys: ["g m"], words: "Go to the missions", act: go("/") },
+    { keys: ["?"], words: "Show the keys", act: () => showKeys(all) },
+  ];
+  listenToKeys(all);
+
+  byId("open-keys").addEventListener("click", () => showKeys(all));
+  const themeButton = byId("switch-theme");
+  const label = () => {
+    const theme = chosenTheme();
+    themeButton.replaceChildren(icon(THEME_ICONS[theme]));
+    themeButton.setAttribute("aria-label", `Theme: ${theme}`);
+    themeButton.title = `Theme: ${theme}`;
+    document.querySelectorAll("[data-theme-name]").forEach((place) => (place.textContent = theme));
+  };
+  themeButton.addEventListener("click", nextTheme);
+  onTheme(label);
+  label();
+
+  const account = byId("open-account");
+  account.addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
+  byId("open-more").addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
+}
+
+function accountMenu(bindings) {
+  const menu = byId("account-menu").content.cloneNode(true).firstElementChild;
+  menu.querySelector("[data-theme-name]").textContent = chosenTheme();
+  menu.querySelector("[data-act=theme]").addEventListener("click", nextTheme);
+  menu.querySelector("[data-act=keys]").addEventListener("click", () => (closeMenu(), showKeys(bindings)));
+  return menu;
+}
+
+let openMenu = null;
+
+/** A menu below its opener; Escape and a click elsewhere close it. */
+export function toggleMenu(opener, make) {
+  const wasOpen = openMenu?.opener === opener;
+  closeMenu();
+  if (wasOpen) return;
+  const menu = make();
+  document.body.append(menu);
+  const box = opener.getBoundingClientRect();
+  const left = Math.min(Math.max(8, box.right - menu.offsetWidth), innerWidth - menu.offsetWidth - 8);
+  const below = box.bottom + 6 + scrollY;
+  menu.style.left = `${left}px`;
+  menu.style.top = `${box.bottom + menu.offsetHeight + 12 > innerHeight ? Math.max(8, box.top + scrollY - menu.offsetHeight - 6) : below}px`;
+  opener.setAttribute("aria-expanded", "true");
+  openMenu = { opener, menu };
+  menu.querySelector("button, a")?.focus({ preventScroll: true });
+  menu.addEventListener("keydown", (event) => {
+    const items = [...menu.querySelectorAll("button, a")];
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step) {
+      event.preventDefault();
+      items[(items.indexOf(document.activeElement) + step + items.length) % items.length].focus();
+    }
+  });
+}
+
+export function closeMenu() {
+  if (!openMenu) return false;
+  const { opener, menu } = openMenu;
+  openMenu = null;
+  const hadFocus = menu.contains(document.activeElement);
+  menu.remove();
+  opener.setAttribute("aria-expanded", "false");
+  if (hadFocus) opener.focus({ preventScroll: true });
+  return true;
+}
+
+document.addEventListener("pointerdown", (event) => {
+  if (openMenu && !openMenu.menu.contains(event.target) && !openMenu.opener.contains(event.target)) closeMenu();
+});
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && closeMenu()) event.preventDefault();
+});
+
+/** menuItems([{ icon, label, act }]) */
+export function menuOf(label, items) {
+  return h(
+    "div",
+    { class: "menu float", role: "group", "aria-label": label },
+    items.map((item) => h("button", { type: "button", onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.label)),
+  );
+}

@@ -1,0 +1,73 @@
+/** Keys of the page, and the sheet that shows them. Single keys are off while somebody types. */
+
+import { h } from "../dom.js";
+
+const NAMES = { mod: "Ctrl", shift: "Shift", delete: "Del", escape: "Esc" };
+
+export function isTyping(target) {
+  return target instanceof HTMLElement && (target.isContentEditable || target.matches("input:not([type=checkbox], [type=radio], [type=range]), textarea, select"));
+}
+
+/** "mod+shift+z", "/", "?" — a letter or sign names itself; Shift counts only with letters and with Ctrl. */
+export function keyName(event) {
+  const key = event.key.toLowerCase();
+  const parts = [];
+  if (event.ctrlKey || event.metaKey) parts.push("mod");
+  if (event.altKey) parts.push("alt");
+  if (event.shiftKey && (parts.length || /^[a-z]$/.test(key))) parts.push("shift");
+  return [...parts, key].join("+");
+}
+
+/** bindings: [{ keys: ["p"], words: "Plan", act, whileTyping? }]. An act that returns false leaves the key to the browser. */
+export function listenToKeys(bindings) {
+  let prefix = "";
+  let prefixAt = 0;
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.isComposing) return;
+    if (document.querySelector("dialog[open]")) return;
+    const name = keyName(event);
+    const isChord = prefix && Date.now() - prefixAt < 1200;
+    const whole = isChord ? `${prefix} ${name}` : name;
+    prefix = "";
+    const binding = bindings.find((candidate) => candidate.keys.includes(whole));
+    if (!binding) {
+      if (!isTyping(event.target) && bindings.some((candidate) => candidate.keys.some((keys) => keys.startsWith(`${name} `)))) {
+        prefix = name;
+        prefixAt = Date.now();
+      }
+      return;
+    }
+    if (isTyping(event.target) && !binding.whileTyping) return;
+    if (binding.act(event) !== false) event.preventDefault();
+  });
+}
+
+function caps(keys) {
+  return keys.split(/[+ ]/).map((key) => h("kbd", {}, NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key)));
+}
+
+export function showKeys(bindings) {
+  const dialog = h(
+    "dialog",
+    { class: "keys", "aria-labelledby": "keys-title" },
+    h("h2", { id: "keys-title" }, "Keyboard"),
+    h("p", { class: "caption" }, "Single keys rest while you type."),
+    h("dl", { class: "key-list" }, bindings.filter((binding) => binding.words).map((binding) => h("div", {}, h("dt", {}, caps(binding.keys[0])), h("dd", {}, binding.words)))),
+    h("form", { method: "dialog", class: "acts" }, h("button", { class: "button" }, "Close")),
+  );
+  open(dialog);
+}
+
+/** Shows a dialog, takes it away when it closes, and gives focus back to where it was. */
+export function open(dialog) {
+  const opener = document.activeElement;
+  document.body.append(dialog);
+  dialog.addEventListener("close", () => {
+    dialog.remove();
+    if (opener instanceof HTMLElement && opener.isConnected) opener.focus();
+  });
+  dialog.addEventListener("click", (event) => {
+    if (event.target === dialog) dialog.close();
+  });
+  dialog.showModal();
+}
