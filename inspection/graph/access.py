@@ -19,7 +19,7 @@ class NodeLocator:
 
     def __init__(self, graph: InspectionGraph) -> None:
         self.tree = cKDTree(on_unit_sphere(graph.position)) if graph.node_count else None
-        self.component = component_labels(graph.node_count, graph.edge)[1]
+        self.component_count, self.component = component_labels(graph.node_count, graph.edge)
 
 
 _locator_of_graph: WeakKeyDictionary[InspectionGraph, NodeLocator] = WeakKeyDictionary()
@@ -43,33 +43,43 @@ def clear_legs(
     locator = node_locator(graph)
     if locator.tree is None:
         return []
-    around = np.asarray(locator.tree.query_ball_point(on_unit_sphere(np.array([position]))[0], chord(radius_m)))
-    around = around.astype(np.int64)
-    here = np.broadcast_to(np.asarray(position, dtype=np.float64), (len(around), 2))
-    length_m = distance_m(here, graph.position[around])
-    usable = (length_m <= radius_m) & (np.abs(graph.position[around, 0] - position[0]) <= 180.0)
-    around, length_m = around[usable], length_m[usable]
-    order = np.lexsort((around, length_m))
-    around, length_m = around[order], length_m[order]
+    here = on_unit_sphere(np.array([position]))[0]
+    legs: list[Attachment] = []
+    tried, asked = 0, 2 * want
+    while len(legs) < want and tried < graph.node_count:
+        distance, nodes = locator.tree.query(
+            here, k=np.arange(tried + 1, min(asked, graph.node_count) + 1), distance_upper_bound=chord(radius_m)
+        )
+        is_near = np.isfinite(np.asarray(distance))
+        legs += _clear(graph, zones, position, np.asarray(nodes, dtype=np.int64)[is_near], radius_m, factor, clearance_m)
+        if not is_near.all():
+            break
+        tried, asked = asked, 2 * asked
+    legs = legs[:want]
 
-    kept: list[int] = []
-    tried = 0
-    while len(kept) < want and tried < len(around):
-        batch = np.arange(tried, min(len(around), tried + max(want, tried)))
-        kept.extend(batch[_is_clear(graph, zones, position, around[batch], clearance_m)].tolist())
-        tried += len(batch)
-    kept = kept[:want]
-
-    component = locator.component[around]
-    elsewhere = np.flatnonzero(~np.isin(component, component[kept]))
-    clear = elsewhere[_is_clear(graph, zones, position, around[elsewhere], clearance_m)]
-    _, nearest = np.unique(component[clear], return_index=True)
-    kept.extend(sorted(clear[nearest].tolist()))
-    return [Attachment(int(around[leg]), float(length_m[leg]), float(length_m[leg]) * factor) for leg in kept]
+    served = np.zeros(locator.component_count, dtype=bool)
+    served[locator.component[[leg.node for leg in legs]]] = True
+    if not served.all():
+        around = np.array(locator.tree.query_ball_point(here, chord(radius_m)), dtype=np.int64)
+        for leg in _clear(graph, zones, position, around[~served[locator.component[around]]], radius_m, factor, clearance_m):
+            if not served[locator.component[leg.node]]:
+                served[locator.component[leg.node]] = True
+                legs.append(leg)
+    return legs
 
 
-def _is_clear(
-    graph: InspectionGraph, zones: ZoneIndex, position: LonLat, nodes: NDArray[np.int64], clearance_m: float
-) -> NDArray[np.bool_]:
+def _clear(
+    graph: InspectionGraph, zones: ZoneIndex, position: LonLat, nodes: NDArray[np.int64], radius_m: float, factor: float, clearance_m: float
+) -> list[Attachment]:
+    """The legs to these nodes that are within the radius and clear, the shortest first."""
     here = np.broadcast_to(np.asarray(position, dtype=np.float64), (len(nodes), 2))
-    return ~zones.meets(here, graph.position[nodes], clearance_m)
+    length_m = distance_m(here, graph.position[nodes])
+    usable = (length_m <= radius_m) & (np.abs(graph.position[nodes, 0] - position[0]) <= 180.0)
+    nodes, length_m = nodes[usable], length_m[usable]
+    order = np.lexsort((nodes, length_m))
+    nodes, length_m = nodes[order], length_m[order]
+    is_clear = ~zones.meets(here[: len(nodes)], graph.position[nodes], clearance_m)
+    return [
+        Attachment(node, metres, metres * factor)
+        for node, metres in zip(nodes[is_clear].tolist(), length_m[is_clear].tolist(), strict=True)
+    ]

@@ -21,7 +21,7 @@ from inspection.graph.ground_data import GroundData, Places, Ways
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.joining import join_vertices
 from inspection.graph.links import bridge_links, bridge_to_tower_links, crossing_links, railway_to_tower_links
-from inspection.graph.railway_points import thin
+from inspection.graph.railway_points import railway_points
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
 
@@ -101,34 +101,30 @@ def build(ground: GroundData, rules: LinkingRules, progress: Callable[[str, floa
 def _network(ground: GroundData, rules: LinkingRules) -> tuple[_Nodes, Edges]:
     """All nodes, and the edges that depend on no other edge, as if there were no zones."""
     on_lines = join_vertices(ground.supports, ground.lines)
-    on_railways = join_vertices(NO_PLACES, ground.railways)
-    stays = thin(ground.railways, on_railways.node_of_vertex, rules.railway_spacing_m)
-    railway_nodes, thinned_node = np.unique(on_railways.node_of_vertex[stays], return_inverse=True)
-
+    railways = railway_points(ground.railways, join_vertices(NO_PLACES, ground.railways), rules.railway_spacing_m)
     first_railway = len(on_lines.position)
-    first_bridge = first_railway + len(railway_nodes)
+    first_bridge = first_railway + len(railways.position)
     vertices = on_lines.way[len(ground.supports) :]
-    railway = on_railways.way[railway_nodes]
     nodes = _Nodes(
-        position=np.concatenate([on_lines.position, on_railways.position[railway_nodes], ground.bridges.position]),
+        position=np.concatenate([on_lines.position, railways.position, ground.bridges.position]),
         kind=np.repeat(
             np.array([NodeKind.SUPPORT, NodeKind.LINE_VERTEX, NodeKind.RAILWAY, NodeKind.BRIDGE], dtype=np.uint8),
-            [len(ground.supports), len(vertices), len(railway), len(ground.bridges)],
+            [len(ground.supports), len(vertices), len(railways.way), len(ground.bridges)],
         ),
-        asset=np.concatenate([ground.supports.asset, ground.lines.asset[vertices], ground.railways.asset[railway], ground.bridges.asset]),
+        asset=np.concatenate(
+            [ground.supports.asset, ground.lines.asset[vertices], ground.railways.asset[railways.way], ground.bridges.asset]
+        ),
         height_m=np.concatenate(
-            [ground.supports.height_m, ground.lines.height_m[vertices], ground.railways.height_m[railway], ground.bridges.height_m]
+            [ground.supports.height_m, ground.lines.height_m[vertices], ground.railways.height_m[railways.way], ground.bridges.height_m]
         ),
     )
 
     along_lines = _edges_along(EdgeKind.LINE, ground.lines, on_lines.node_of_vertex)
-    kept_vertices = np.flatnonzero(stays)
-    goes_on = np.diff(ground.railways.way_of_vertex[kept_vertices]) == 0
     along_railways = edges_of(
         EdgeKind.RAILWAY,
-        first_railway + thinned_node[:-1][goes_on],
-        first_railway + thinned_node[1:][goes_on],
-        ground.railways.asset[ground.railways.way_of_vertex[kept_vertices[:-1][goes_on]]],
+        first_railway + railways.leg[:, 0],
+        first_railway + railways.leg[:, 1],
+        ground.railways.asset[railways.way_of_leg],
     )
     degree = np.bincount(np.unique(along_lines.pair, axis=0).ravel(), minlength=len(nodes.kind))
     ends = np.flatnonzero((degree == 1) & (nodes.kind == NodeKind.LINE_VERTEX))

@@ -1,17 +1,58 @@
-"""Thinning of a railway's vertices to the points that a UAV needs to follow it."""
+"""The points that a UAV needs to follow a railway: of its vertices as few as it takes, and more on long straight legs."""
 
+from dataclasses import dataclass
 from math import asin, atan2, cos, hypot, pi, radians
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inspection.geodesy import distance_m
 from inspection.graph.ground_data import Ways
+from inspection.graph.joining import JoinedVertices
 
 MAX_STRAY_M = 15.0  # how far a straight leg may pass from a vertex that it skips
-METRES_PER_DEGREE = 111_320.0
+METRES_PER_DEGREE = 111_695.0  # the most on WGS84 (of latitude, at a pole): what counts as short enough here is so on the ground
 
 IntArray = NDArray[np.int64]
+FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class RailwayPoints:
+    position: FloatArray  # (n, 2) lon, lat [deg]
+    way: IntArray  # (n,) the first way at the point
+    leg: IntArray  # (m, 2) points that follow one another
+    way_of_leg: IntArray  # (m,)
+
+
+def railway_points(ways: Ways, joined: JoinedVertices, spacing_m: float) -> RailwayPoints:
+    """Thin the vertices, then divide the legs that are longer than the spacing into equal pieces."""
+    kept = np.flatnonzero(thin(ways, joined.node_of_vertex, spacing_m))
+    nodes, point = np.unique(joined.node_of_vertex[kept], return_inverse=True)
+    way_of_vertex = ways.way_of_vertex[kept]
+    goes_on = np.flatnonzero((np.diff(way_of_vertex) == 0) & (np.diff(point) != 0))
+    position, way = joined.position[nodes], joined.way[nodes]
+    start, end, way_of_leg = point[goes_on], point[goes_on + 1], way_of_vertex[goes_on]
+
+    pieces = np.maximum(np.ceil(distance_m(position[start], position[end]) / spacing_m), 1).astype(np.int64)
+    pieces[np.abs(position[start, 0] - position[end, 0]) > 180.0] = 1
+    leg = np.repeat(np.arange(len(pieces)), pieces)
+    step = np.arange(len(leg)) - np.repeat(np.cumsum(pieces) - pieces, pieces)  # 0, 1, ... along each leg
+    is_inner = step > 0
+    fraction = (step / pieces[leg])[is_inner, None]
+    inner = position[start[leg[is_inner]]] * (1 - fraction) + position[end[leg[is_inner]]] * fraction
+    begins = start[leg]
+    begins[is_inner] = len(nodes) + np.arange(len(inner))
+    finishes = np.empty_like(begins)
+    finishes[:-1] = begins[1:]
+    finishes[np.cumsum(pieces) - 1] = end
+    return RailwayPoints(
+        position=np.concatenate([position, inner]),
+        way=np.concatenate([way, way_of_leg[leg[is_inner]]]),
+        leg=np.column_stack([begins, finishes]),
+        way_of_leg=way_of_leg[leg],
+    )
 
 
 def thin(ways: Ways, node_of_vertex: IntArray, spacing_m: float) -> BoolArray:

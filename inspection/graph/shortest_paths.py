@@ -1,7 +1,8 @@
 """Shortest paths between places that are attached to the graph for one planning."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,9 +13,18 @@ from scipy.sparse.csgraph import dijkstra
 from inspection.graph.inspection_graph import InspectionGraph
 
 ENTRIES_PER_BLOCK = 8_000_000  # sources x nodes searched at once: 100 MB
+KEPT_SEARCHES = 16  # of sources whose paths are asked for, when not all are kept
 
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
+
+
+NO_WAY = -1
+DIRECT = -2
+
+
+class NoWay(LookupError):
+    """No way leads from the source to the sink."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +56,22 @@ class Travel:
 
     length_m: FloatArray
     cost: FloatArray
-    _ways: dict[tuple[int, int], IntArray]
+    _last: IntArray  # (s, t) the node before the sink, or NO_WAY or DIRECT
+    _previous: Callable[[int], NDArray[np.int32]]  # for a source: the node before each node
 
     def path(self, source: int, sink: int) -> IntArray:
-        """Nodes from the source to the sink; none for a direct leg. Raises KeyError when there is no way."""
-        return self._ways[source, sink]
+        """Nodes from the source to the sink; none for a direct leg. Raises NoWay where the length is inf."""
+        last = int(self._last[source, sink])
+        if last == NO_WAY:
+            raise NoWay(source, sink)
+        if last == DIRECT:
+            return np.zeros(0, dtype=np.int64)
+        previous = self._previous(source)
+        before, size = previous.data, len(previous)
+        way = [last]
+        while (node := before[way[-1]]) < size:
+            way.append(node)
+        return np.array(way[::-1], dtype=np.int64)
 
 
 class _Adjacency:
@@ -68,17 +89,26 @@ class _Adjacency:
         self.cost = np.tile(graph.cost, 2)[order]
         self.length_m = np.tile(graph.length_m, 2)[order]
 
-    def with_sources(self, outward: Sequence[Sequence[Attachment]]) -> csr_array:
-        """The matrix of costs with one row more per source, whose entries are its attachments; nothing leads into these."""
+    def search(self, outward: Sequence[Sequence[Attachment]]) -> tuple[FloatArray, NDArray[np.int32]]:
+        """For each source the cost of reaching each node, and the node before it: one from node_count on where the source is."""
         legs = [leg for legs in outward for leg in legs]
         size = self.node_count + len(outward)
         first = self.first[-1] + np.cumsum([len(legs) for legs in outward])
-        data = np.concatenate([self.cost, [leg.cost for leg in legs]])
-        indices = np.concatenate([self.head, np.array([leg.node for leg in legs], dtype=np.int32)])
-        return csr_array((data, indices, np.concatenate([self.first, first.astype(np.int32)])), shape=(size, size))
+        # One row more per source, whose entries are its attachments; nothing leads into these.
+        matrix = csr_array(
+            (
+                np.concatenate([self.cost, [leg.cost for leg in legs]]),
+                np.concatenate([self.head, np.array([leg.node for leg in legs], dtype=np.int32)]),
+                np.concatenate([self.first, first.astype(np.int32)]),
+            ),
+            shape=(size, size),
+        )
+        reached, previous = dijkstra(matrix, indices=self.node_count + np.arange(len(outward)), return_predecessors=True)
+        return reached[:, : self.node_count], np.ascontiguousarray(previous[:, : self.node_count])
 
-    def way_length_m(self, way: IntArray) -> float:
-        return float(self.length_m[np.searchsorted(self.key, way[:-1] * self.node_count + way[1:])].sum())
+    def step_lengths_m(self, way: list[int]) -> FloatArray:
+        nodes = np.array(way, dtype=np.int64)
+        return self.length_m[np.searchsorted(self.key, nodes[:-1] * self.node_count + nodes[1:])]
 
 
 _adjacency_of_graph: WeakKeyDictionary[InspectionGraph, _Adjacency] = WeakKeyDictionary()
@@ -104,48 +134,71 @@ def travel_between(
     adjacency = _adjacency(graph)
     cost = np.full((len(outward), len(inward)), np.inf)
     length_m = cost.copy()
-    ways: dict[tuple[int, int], IntArray] = {}
+    last = np.full(cost.shape, NO_WAY, dtype=np.int64)
     block = max(1, ENTRIES_PER_BLOCK // max(1, graph.node_count))
-    for begin in range(0, len(outward), block):
-        _search(adjacency, begin, outward[begin : begin + block], inward, cost, length_m, ways)
+
+    predecessors: dict[int, NDArray[np.int32]] = {}
+    if graph.node_count:
+        for begin in range(0, len(outward), block):
+            reached, previous = adjacency.search(outward[begin : begin + block])
+            for row, source in enumerate(range(begin, begin + len(reached))):
+                _arrive(reached[row], inward, cost[source], last[source])
+                _measure(adjacency, previous[row], outward[source], inward, last[source], length_m[source])
+            if len(outward) <= block:
+                predecessors = dict(enumerate(previous))
     for leg in direct:
         if leg.cost <= cost[leg.source, leg.sink]:
             cost[leg.source, leg.sink] = leg.cost
             length_m[leg.source, leg.sink] = leg.length_m
-            ways[leg.source, leg.sink] = np.zeros(0, dtype=np.int64)
-    return Travel(length_m, cost, ways)
+            last[leg.source, leg.sink] = DIRECT
+
+    @lru_cache(maxsize=KEPT_SEARCHES)
+    def searched_again(source: int) -> NDArray[np.int32]:
+        _, previous = adjacency.search(outward[source : source + 1])
+        alone: NDArray[np.int32] = previous[0]
+        return alone
+
+    return Travel(length_m, cost, last, lambda source: predecessors[source] if predecessors else searched_again(source))
 
 
-def _search(
-    adjacency: _Adjacency,
-    begin: int,
-    outward: Sequence[Sequence[Attachment]],
-    inward: Sequence[Sequence[Attachment]],
-    cost: FloatArray,
-    length_m: FloatArray,
-    ways: dict[tuple[int, int], IntArray],
-) -> None:
-    """Fill in the rows of the given sources, the first of which is number `begin`."""
-    n = adjacency.node_count
-    if n == 0:
-        return
-    reached, previous = dijkstra(adjacency.with_sources(outward), indices=n + np.arange(len(outward)), return_predecessors=True)
-    for row, exits in enumerate(outward):
-        exit_length_m: dict[int, tuple[float, float]] = {}
-        for leg in exits:
-            exit_length_m[leg.node] = min(exit_length_m.get(leg.node, (np.inf, np.inf)), (leg.cost, leg.length_m))
-        before = memoryview(previous[row])
-        for column, entries in enumerate(inward):
-            if not entries:
-                continue
-            total = reached[row, [leg.node for leg in entries]] + [leg.cost for leg in entries]
+def _arrive(reached: FloatArray, inward: Sequence[Sequence[Attachment]], cost: FloatArray, last: IntArray) -> None:
+    """Choose the node from which each sink is reached at the least cost."""
+    for sink, legs in enumerate(inward):
+        if legs:
+            total = reached[[leg.node for leg in legs]] + [leg.cost for leg in legs]
             best = int(np.argmin(total))
-            if np.isinf(total[best]):
-                continue
-            way = [entries[best].node]
-            while (node := before[way[-1]]) < n:
-                way.append(node)
-            nodes = np.array(way[::-1], dtype=np.int64)
-            cost[begin + row, column] = total[best]
-            length_m[begin + row, column] = exit_length_m[way[-1]][1] + adjacency.way_length_m(nodes) + entries[best].length_m
-            ways[begin + row, column] = nodes
+            if np.isfinite(total[best]):
+                cost[sink], last[sink] = total[best], legs[best].node
+
+
+def _measure(
+    adjacency: _Adjacency,
+    previous: NDArray[np.int32],
+    outward: Sequence[Attachment],
+    inward: Sequence[Sequence[Attachment]],
+    last: IntArray,
+    length_m: FloatArray,
+) -> None:
+    """Metres flown to each sink along the tree of least-cost ways; what ways share is walked once."""
+    first_leg_m = _cheapest_lengths_m(outward)
+    flown_m: dict[int, float] = {}
+    before = previous.data
+    for sink, node in enumerate(last.tolist()):
+        if node == NO_WAY:
+            continue
+        way = [node]
+        while way[-1] not in flown_m:
+            parent = before[way[-1]]
+            if parent >= adjacency.node_count:
+                flown_m[way[-1]] = first_leg_m[way[-1]]
+            else:
+                way.append(parent)
+        way.reverse()
+        along_m = flown_m[way[0]] + np.cumsum(adjacency.step_lengths_m(way))
+        flown_m.update(zip(way[1:], along_m.tolist(), strict=True))
+        length_m[sink] = flown_m[node] + _cheapest_lengths_m(inward[sink])[node]
+
+
+def _cheapest_lengths_m(legs: Sequence[Attachment]) -> dict[int, float]:
+    """For each node the length of the leg that costs least."""
+    return {leg.node: leg.length_m for leg in sorted(legs, key=lambda leg: leg.cost, reverse=True)}

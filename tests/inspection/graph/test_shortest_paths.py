@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.graph import shortest_paths
-from inspection.graph.shortest_paths import Attachment, DirectLeg, travel_between
+from inspection.graph.shortest_paths import Attachment, DirectLeg, NoWay, travel_between
 from tests.inspection.graph.drawn_graphs import drawn_graph
 
 
@@ -45,7 +45,7 @@ def test_a_sink_in_another_component_is_out_of_reach():
     graph = drawn_graph([(0, 0), (1, 0), (5, 0), (6, 0)], [(0, 1, 100.0), (2, 3, 100.0)])
     travel = travel_between(graph, [[leg(0, 0)]], [[leg(3, 0)], []])
     assert np.isinf(travel.length_m).all()
-    with pytest.raises(KeyError):
+    with pytest.raises(NoWay):
         travel.path(0, 0)
 
 
@@ -147,4 +147,7 @@ def test_a_search_in_blocks_of_sources_finds_the_same(monkeypatch):
     outward = [[leg(number % 3, number)] for number in range(5)]
     whole = travel_between(graph, outward, [[leg(2, 0)]])
     monkeypatch.setattr(shortest_paths, "ENTRIES_PER_BLOCK", 6)
-    assert travel_between(graph, outward, [[leg(2, 0)]]).cost.tolist() == whole.cost.tolist()
+    in_blocks = travel_between(graph, outward, [[leg(2, 0)]])
+    assert in_blocks.cost.tolist() == whole.cost.tolist()
+    assert in_blocks.length_m.tolist() == whole.length_m.tolist() == [[180.0], [81.0], [2.0], [183.0], [84.0]]
+    assert [in_blocks.path(source, 0).tolist() for source in range(5)] == [[0, 1, 2], [1, 2], [2], [0, 1, 2], [1, 2]]

@@ -1,0 +1,99 @@
+"""A graph survives the way to bytes and files and back, and a broken cache is noticed."""
+
+from dataclasses import fields
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shapely import box
+
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.snapshot_file import CorruptSnapshot, from_bytes, read_cache, to_bytes, write_cache
+from tests.inspection.graph.drawn_graphs import drawn_graph
+
+GRAPH = drawn_graph(
+    [(9.0, 47.0), (9.1, 47.0), (9.2, 47.1)], [(0, 1, 7_600.0), (1, 2, 13_500.0)], zones=[box(8, 46, 8.1, 46.1), box(8, 45, 8.1, 45.1)]
+)
+
+
+def hash_of(content: bytes) -> str:
+    return sha256(content).hexdigest()
+
+
+def is_equal(one: InspectionGraph, other: InspectionGraph) -> bool:
+    for field in fields(InspectionGraph):
+        left, right = getattr(one, field.name), getattr(other, field.name)
+        if isinstance(left, np.ndarray):
+            if left.dtype != right.dtype or left.shape != right.shape or left.tobytes() != right.tobytes():
+                return False
+        elif left != right:
+            return False
+    return True
+
+
+@pytest.mark.parametrize("graph", [GRAPH, drawn_graph([], [])], ids=["small", "empty"])
+def test_bytes_give_the_graph_back(graph):
+    content = to_bytes(graph)
+    assert is_equal(from_bytes(content, content_sha256=hash_of(content), version=1, ground_revision=1), graph)
+    assert to_bytes(graph) == content
+
+
+@pytest.mark.parametrize("graph", [GRAPH, drawn_graph([], [])], ids=["small", "empty"])
+def test_files_give_the_graph_back_read_only(graph, tmp_path: Path):
+    content = to_bytes(graph)
+    write_cache(tmp_path, content, content_sha256=hash_of(content), version=1)
+    cached = read_cache(tmp_path, content_sha256=hash_of(content), version=1, ground_revision=1)
+    assert is_equal(cached, graph)
+    with pytest.raises(ValueError, match="read-only"):
+        cached.length_m[:1] = 0.0
+    assert [path.name for path in tmp_path.iterdir()] == ["1"]
+
+
+def test_bytes_that_are_not_what_was_stored_are_refused():
+    content = to_bytes(GRAPH)
+    with pytest.raises(CorruptSnapshot):
+        from_bytes(content[:-1], content_sha256=hash_of(content), version=1, ground_revision=1)
+
+
+def spoil_one_byte(place: Path) -> None:
+    content = bytearray((place / "length_m.npy").read_bytes())
+    content[-1] ^= 1
+    (place / "length_m.npy").write_bytes(bytes(content))
+
+
+def cut_off(place: Path) -> None:
+    path = place / "edge.npy"
+    path.write_bytes(path.read_bytes()[:-4])
+
+
+def remove_a_file(place: Path) -> None:
+    (place / "cost.npy").unlink()
+
+
+def spoil_the_manifest(place: Path) -> None:
+    (place / "manifest.json").write_text('{"files": 3}')
+
+
+@pytest.mark.parametrize("spoil", [spoil_one_byte, cut_off, remove_a_file, spoil_the_manifest])
+def test_a_broken_cache_is_not_read_and_can_be_written_anew(spoil, tmp_path: Path):
+    content = to_bytes(GRAPH)
+    write_cache(tmp_path, content, content_sha256=hash_of(content), version=1)
+    spoil(tmp_path / "1")
+    assert read_cache(tmp_path, content_sha256=hash_of(content), version=1, ground_revision=1) is None
+    write_cache(tmp_path, content, content_sha256=hash_of(content), version=1)
+    assert is_equal(read_cache(tmp_path, content_sha256=hash_of(content), version=1, ground_revision=1), GRAPH)
+
+
+def test_a_cache_of_another_snapshot_of_that_version_is_not_read(tmp_path: Path):
+    """As after the database was made anew and its versions began at 1 again."""
+    content = to_bytes(GRAPH)
+    write_cache(tmp_path, content, content_sha256=hash_of(content), version=1)
+    assert read_cache(tmp_path, content_sha256=hash_of(b"other"), version=1, ground_revision=1) is None
+
+
+def test_folders_of_old_versions_are_removed(tmp_path: Path):
+    content = to_bytes(GRAPH)
+    for version in (1, 2, 9, 10, 11, 12):
+        write_cache(tmp_path, content, content_sha256=hash_of(content), version=version)
+    assert sorted(int(path.name) for path in tmp_path.iterdir()) == [9, 10, 11, 12]
