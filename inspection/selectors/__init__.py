@@ -3,6 +3,7 @@
 from inspection.selectors.assets import Box, asset_label, asset_with_geometry, assets_on_the_ground, voltage_text, zones
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
 from inspection.selectors.ground import GroundSummary, ground_revision, ground_summary
+from inspection.selectors.terrain import ground_heights_m, has_terrain
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
 from inspection.selectors.tiles import NoSuchTile, vector_tile
 
@@ -17,8 +18,10 @@ __all__ = [
     "assets_on_the_ground",
     "current_graph",
     "graph_of_version",
+    "ground_heights_m",
     "ground_revision",
     "ground_summary",
+    "has_terrain",
     "vector_tile",
     "voltage_text",
     "zones",

@@ -4,10 +4,13 @@ from inspection.services.curation import WrongGeometry, delete_asset, delete_zon
 from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
 from inspection.services.osm_import import import_osm
+from inspection.services.terrain_import import import_terrain
 from inspection.services.zone_import import import_zones
+from inspection.terrain.errors import TerrainFileError
 from inspection.zones.zone_file import ZoneFileError
 
 __all__ = [
+    "TerrainFileError",
     "WrongGeometry",
     "ZoneFileError",
     "build_graph",
@@ -15,6 +18,7 @@ __all__ = [
     "delete_zone",
     "geometry_fault",
     "import_osm",
+    "import_terrain",
     "import_zones",
     "mark_ground_changed",
     "refresh_graph",
