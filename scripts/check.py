@@ -135,7 +135,7 @@ def main(arguments: list[str]) -> int:
         for name, code, duration_s in results:
             print(f"  {'ok' if code == 0 else f'FAILED ({code})':<12} {duration_s:7.1f} s  {name}")
         print(f"  {'':<12} {time.monotonic() - began:7.1f} s  in all", flush=True)
-    return 1 if any(code for _, code, _ in results) else 0
+    return next((code for _, code, _ in results if code), 0)
 
 
 if __name__ == "__main__":

@@ -65,6 +65,10 @@ def parse(arguments: list[str], project: Path) -> argparse.Namespace:
     action.add_argument("--stop", action="store_true", help="stop what runs on this state")
     options = parser.parse_args(arguments)
     options.var = (options.var or Path(os.environ.get("SPANWISE_VAR") or project / "var")).resolve()
+    try:
+        (options.var / "instance.json").exists()
+    except PermissionError:
+        parser.error(f"this user may not enter {options.var}")
     return options
 
 

@@ -102,14 +102,15 @@ def prepare_state(state: Path) -> Places:
     """Make the folders of a state. Raises CannotStart if this user may not write there."""
     places = Places(state)
     try:
+        if places.lock.exists() and (owner := places.lock.stat().st_uid) != os.geteuid():
+            raise CannotStart(f"{state} belongs to user id {owner}: start Spanwise as that user, or choose another folder with --var")
         for folder in (state, places.redis, places.logs, places.generated):
             folder.mkdir(parents=True, exist_ok=True)
         for folder in (places.redis, places.logs):
             folder.chmod(0o700)
-    except PermissionError as error:
-        raise CannotStart(f"this user may not write in {state} ({error.strerror}); choose another folder with --var") from None
-    if not os.access(state, os.W_OK | os.X_OK):
-        raise CannotStart(f"this user may not write in {state}; choose another folder with --var")
+        places.lock.touch()
+    except OSError as error:
+        raise CannotStart(f"this user cannot write in {state} ({error.strerror}); choose another folder with --var") from None
     return places
 
 
