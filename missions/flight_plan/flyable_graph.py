@@ -16,7 +16,7 @@ HEIGHT_OF_NODE_KIND_M = {
     NodeKind.BRIDGE: DEFAULT_HEIGHT_M["bridge"],
 }
 
-_flyable_of_graph: WeakKeyDictionary[InspectionGraph, dict[float, InspectionGraph]] = WeakKeyDictionary()
+_flyable_of_graph: WeakKeyDictionary[InspectionGraph, dict[float, InspectionGraph | None]] = WeakKeyDictionary()
 
 
 def node_heights_m(graph: InspectionGraph) -> FloatArray:
@@ -32,8 +32,8 @@ def flyable_graph(graph: InspectionGraph, rules: FlightRules) -> InspectionGraph
     made = _flyable_of_graph.setdefault(graph, {})
     if tallest_m not in made:
         kept = node_heights_m(graph) <= tallest_m
-        made[tallest_m] = graph if kept.all() else _with_nodes(graph, kept)
-    return made[tallest_m]
+        made[tallest_m] = None if kept.all() else _with_nodes(graph, kept)  # a graph kept under itself would never be forgotten
+    return made[tallest_m] or graph
 
 
 def _with_nodes(graph: InspectionGraph, kept: np.ndarray) -> InspectionGraph:

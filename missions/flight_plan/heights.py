@@ -44,31 +44,39 @@ def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
     return height_m + rules.clearance_m if height_m > 0 else rules.transit_agl_m
 
 
-def with_heights(points: Sequence[RoutePoint], ground_heights_m: GroundHeights, rules: FlightRules) -> tuple[tuple[Waypoint, ...], bool]:
-    """Waypoints with all three heights, and whether flat ground had to be assumed.
+def with_heights(
+    points: Sequence[RoutePoint], ground_heights_m: GroundHeights | None, rules: FlightRules
+) -> tuple[tuple[Waypoint, ...], bool]:
+    """Waypoints with all three heights, and whether flat ground had to be assumed: without a terrain model, or where it has a gap.
 
     Where the ground between two points bulges or sags by more than the tolerance, waypoints are put in on the straight lon/lat line
     between them. If the ground is unknown in even one place, nothing is put in and no height above sea level is given.
     """
-    if not points:
-        return (), False
-    shares = [_sample_shares(left, right) for left, right in pairwise(points)]
-    samples = [_between(left, right, share) for (left, right), share in zip(pairwise(points), shares, strict=True)]
-    ground_m = ground_heights_m(np.concatenate([*samples, np.array([points[-1].position])]))
+    flat = tuple(Waypoint(point, None, point.agl_m) for point in points)
+    if ground_heights_m is None or not points:
+        return flat, bool(points)
+    position = np.array([point.position for point in points])
+    shares = [np.arange(count) / count for count in _sample_counts(position)]  # from each leg's start up to but without its end
+    samples = [start + share[:, None] * (end - start) for start, end, share in zip(position[:-1], position[1:], shares, strict=True)]
+    ground_m = ground_heights_m(np.concatenate([*samples, position[-1:]]))
     if np.isnan(ground_m).any():
-        return tuple(Waypoint(point, None, point.agl_m) for point in points), True
+        return flat, True
 
     take_off_m = float(ground_m[0])
     waypoints = []
     first = 0
-    for (left, right), share, positions in zip(pairwise(points), shares, samples, strict=True):
+    for (left, right), share, places in zip(pairwise(points), shares, samples, strict=True):
         under_m = ground_m[first : first + len(share) + 1]  # the next leg's first sample is this leg's end
         first += len(share)
         waypoints.append(_waypoint(left, float(under_m[0]), take_off_m))
         for bend in _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m):
-            waypoints.append(_waypoint(_pass_point(left, right, positions[bend], float(share[bend])), float(under_m[bend]), take_off_m))
+            waypoints.append(_waypoint(_pass_point(left, right, places[bend], float(share[bend])), float(under_m[bend]), take_off_m))
     waypoints.append(_waypoint(points[-1], float(ground_m[-1]), take_off_m))
     return tuple(waypoints), False
+
+
+def _sample_counts(position: FloatArray) -> list[int]:
+    return [max(1, math.ceil(length_m / SAMPLE_SPACING_M)) for length_m in distance_m(position[:-1], position[1:]).tolist()]
 
 
 def _waypoint(point: RoutePoint, ground_m: float, take_off_m: float) -> Waypoint:
@@ -81,19 +89,6 @@ def _pass_point(left: RoutePoint, right: RoutePoint, position: FloatArray, share
     return RoutePoint(
         LonLat(float(position[0]), float(position[1])), WaypointKind.PASS, left.agl_m + share * (right.agl_m - left.agl_m), target=target
     )
-
-
-def _sample_shares(left: RoutePoint, right: RoutePoint) -> FloatArray:
-    """Shares of the leg from its start, which is the first sample, up to but without its end."""
-    length_m = float(distance_m(np.array(left.position), np.array(right.position))[0])
-    count = max(1, math.ceil(length_m / SAMPLE_SPACING_M))
-    return np.arange(count) / count
-
-
-def _between(left: RoutePoint, right: RoutePoint, share: FloatArray) -> FloatArray:
-    start, end = np.array(left.position), np.array(right.position)
-    positions: FloatArray = start + share[:, None] * (end - start)
-    return positions
 
 
 def _bends(share: FloatArray, ground_m: FloatArray, tolerance_m: float) -> list[int]:

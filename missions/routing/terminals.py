@@ -1,0 +1,208 @@
+"""Where UAVs and targets meet the network, and the ways between all of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.graph.access import clear_legs, node_locator
+from inspection.graph.inspection_graph import InspectionGraph, NodeKind
+from inspection.graph.nearness import chord, on_unit_sphere
+from inspection.graph.shortest_paths import Attachment, DirectLeg, Travel, travel_between
+from inspection.graph.zone_index import ZoneIndex
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """One end of a visit, or a UAV's start. `asset` is the asset that it lies on, if any."""
+
+    position: LonLat
+    asset: int | None = None
+
+
+@dataclass(frozen=True)
+class AccessRules:
+    """Metres, and the cost of a metre flown away from infrastructure."""
+
+    access_leg_m: float
+    direct_leg_m: float
+    on_asset_m: float  # how far a place on a line or railway may lie from the graph's edge: the spacing of thinned vertices
+    off_network_factor: float
+    zone_clearance_m: float
+
+
+class _AssetPlaces:
+    """Which node stands for a tower or bridge, and which edges for a line or railway."""
+
+    def __init__(self, graph: InspectionGraph) -> None:
+        single = np.flatnonzero(np.isin(graph.node_kind, (NodeKind.SUPPORT, NodeKind.BRIDGE)))
+        self.node_of = dict(zip(graph.node_asset[single].tolist(), single.tolist(), strict=True))
+        self._edges_by_asset = np.argsort(graph.edge_asset, kind="stable")
+        self._assets = graph.edge_asset[self._edges_by_asset]
+
+    def edges_of(self, asset: int) -> NDArray[np.int64]:
+        first, last = np.searchsorted(self._assets, [asset, asset + 1])
+        return self._edges_by_asset[first:last]
+
+
+_places_of_graph: WeakKeyDictionary[InspectionGraph, _AssetPlaces] = WeakKeyDictionary()
+
+
+def _asset_places(graph: InspectionGraph) -> _AssetPlaces:
+    if graph not in _places_of_graph:
+        _places_of_graph[graph] = _AssetPlaces(graph)
+    return _places_of_graph[graph]
+
+
+def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> list[Attachment]:
+    """How a terminal meets the network: at its own node, along its own line, else over access legs that are clear of zones."""
+    if terminal.asset is not None:
+        places = _asset_places(graph)
+        node = places.node_of.get(terminal.asset)
+        if node is not None and tuple(graph.position[node]) == tuple(terminal.position):
+            return [Attachment(node, 0.0, 0.0)]
+        along = _along_own_line(graph, zones, terminal.position, places.edges_of(terminal.asset), rules)
+        if along:
+            return along
+    return access_legs(graph, zones, terminal, rules)
+
+
+def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> list[Attachment]:
+    return clear_legs(
+        graph, zones, terminal.position, radius_m=rules.access_leg_m, factor=rules.off_network_factor, clearance_m=rules.zone_clearance_m
+    )
+
+
+def is_near_network(graph: InspectionGraph, position: LonLat, radius_m: float) -> bool:
+    """Whether any node lies within the radius, zones or not."""
+    tree = node_locator(graph).tree
+    if tree is None:
+        return False
+    _, nearest = tree.query(on_unit_sphere(np.array([position]))[0])
+    return float(distance_m(graph.position[nearest], np.array(position))[0]) <= radius_m
+
+
+def _along_own_line(
+    graph: InspectionGraph, zones: ZoneIndex, position: LonLat, edges: NDArray[np.int64], rules: AccessRules
+) -> list[Attachment]:
+    """Legs to both ends of the asset's edge nearest to the position; flown along the asset, they cost what they measure."""
+    if not len(edges):
+        return []
+    frame = LocalFrame.around(position.lon, position.lat)
+    tail, head = frame.to_metres(graph.position[graph.edge[edges, 0]]), frame.to_metres(graph.position[graph.edge[edges, 1]])
+    along = head - tail
+    squared = (along**2).sum(axis=1)
+    share = np.clip(-(tail * along).sum(axis=1) / np.where(squared > 0, squared, 1.0), 0.0, 1.0)
+    gap_m = np.hypot(*(tail + share[:, None] * along).T)
+    nearest = int(gap_m.argmin())
+    if gap_m[nearest] > rules.on_asset_m:
+        return []
+    nodes = graph.edge[edges[nearest]]
+    here = np.broadcast_to(np.array(position), (2, 2))
+    length_m = distance_m(here, graph.position[nodes])
+    clear = ~zones.meets(here, graph.position[nodes], rules.zone_clearance_m)
+    if (length_m == 0).any():
+        clear &= length_m == 0  # the place is a node
+    return [Attachment(int(nodes[end]), float(length_m[end]), float(length_m[end])) for end in np.flatnonzero(clear)]
+
+
+def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLat]) -> float:
+    """The greatest tagged height among the supports at the vertices of a line's stretch; 0 if none is tagged."""
+    nodes = np.unique(graph.edge[_asset_places(graph).edges_of(asset)])
+    tagged = nodes[graph.node_height_m[nodes] > 0]
+    vertices = {tuple(position) for position in course}
+    heights_m = [float(graph.node_height_m[node]) for node in tagged if tuple(graph.position[node].tolist()) in vertices]
+    return max(heights_m, default=0.0)
+
+
+def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: ZoneIndex, rules: AccessRules) -> list[DirectLeg]:
+    """Legs straight from place to place, no longer than the rule allows and clear of zones."""
+    if not sources or not sinks:
+        return []
+    start, end = np.array([place.position for place in sources]), np.array([place.position for place in sinks])
+    gap = np.linalg.norm(on_unit_sphere(start)[:, None] - on_unit_sphere(end)[None], axis=2)
+    near = gap <= chord(rules.direct_leg_m)
+    near &= np.abs(start[:, None, 0] - end[None, :, 0]) <= 180.0
+    source, sink = np.nonzero(near)
+    length_m = distance_m(start[source], end[sink])
+    clear = (length_m <= rules.direct_leg_m) & ~zones.meets(start[source], end[sink], rules.zone_clearance_m)
+    return [
+        DirectLeg(int(source[leg]), int(sink[leg]), float(length_m[leg]), float(length_m[leg]) * rules.off_network_factor)
+        for leg in np.flatnonzero(clear)
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class Ways:
+    """Metres and paths between u starts and v visits: the ends of each are terminals."""
+
+    travel: Travel
+    uavs: int
+    visits: int
+    uav_attached: tuple[bool, ...]  # whether each start meets the network
+    visit_attached: tuple[bool, ...]  # whether each visit's entry does
+
+    @property
+    def from_start_m(self) -> FloatArray:
+        return self.travel.length_m[: self.uavs, : self.visits]
+
+    @property
+    def between_m(self) -> FloatArray:
+        return self.travel.length_m[self.uavs :, : self.visits]
+
+    @property
+    def to_start_m(self) -> FloatArray:
+        return self.travel.length_m[self.uavs :, self.visits :]
+
+    def out(self, uav: int, visit: int) -> NDArray[np.int64]:
+        return self.travel.path(uav, visit)
+
+    def onward(self, left: int, right: int) -> NDArray[np.int64]:
+        return self.travel.path(self.uavs + left, right)
+
+    def home(self, visit: int, uav: int) -> NDArray[np.int64]:
+        return self.travel.path(self.uavs + visit, self.visits + uav)
+
+
+def ways_between(
+    graph: InspectionGraph,
+    zones: ZoneIndex,
+    starts: Sequence[Terminal],
+    entries: Sequence[Terminal],
+    exits: Sequence[Terminal],
+    rules: AccessRules,
+) -> Ways:
+    """Least-cost ways from starts and exits to entries and starts.
+
+    A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
+    """
+    legs_of: dict[Terminal, list[Attachment]] = {}
+    for terminal in [*starts, *entries, *exits]:
+        if terminal not in legs_of:
+            legs_of[terminal] = attachments(graph, zones, terminal, rules)
+    sources, sinks = [*starts, *exits], [*entries, *starts]
+    direct = direct_legs(sources, sinks, zones, rules)
+
+    def travel() -> Travel:
+        return travel_between(graph, [legs_of[place] for place in sources], [legs_of[place] for place in sinks], direct)
+
+    found = travel()
+    cut_off = np.flatnonzero(np.isinf(found.length_m[: len(starts), : len(entries)]).all(axis=0)).tolist() if starts else []
+    alone = {place for visit in cut_off for place in (entries[visit], exits[visit])}
+    if alone:
+        for place in alone:
+            legs_of[place] = [*legs_of[place], *access_legs(graph, zones, place, rules)]
+        found = travel()
+    return Ways(
+        found,
+        len(starts),
+        len(entries),
+        uav_attached=tuple(bool(legs_of[place]) for place in starts),
+        visit_attached=tuple(bool(legs_of[place]) for place in entries),
+    )

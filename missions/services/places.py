@@ -1,0 +1,147 @@
+"""From what the operator picked to places on the ground: a point, or the course of a line."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.models import Asset, AssetKind
+from inspection.selectors import asset_label
+from missions.flight_plan.heights import FloatArray, asset_height_m
+from missions.flight_plan.stretches import PlaceOnLine, nearest_on_line, stretch_between
+from missions.routing.problem import Task, default_task
+from missions.services.requests import InvalidRequest, TargetRequest
+
+NEAR_ASSET_M = 500.0  # a picked point farther from the asset than this is a mistake, not a point on it
+LINEAR = {AssetKind.LINE, AssetKind.RAILWAY}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A target on the ground. `course` has one position for a point and the vertices in the line's direction for a stretch."""
+
+    target: int
+    label: str
+    course: tuple[LonLat, ...]
+    task: Task
+    height_m: float
+    asset: int | None = None
+    kind: str | None = None
+
+    @property
+    def is_stretch(self) -> bool:
+        return len(self.course) > 1
+
+    @property
+    def centre(self) -> LonLat:
+        """Where a point is; for a stretch its middle vertex."""
+        return self.course[len(self.course) // 2]
+
+
+def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]:
+    """The place of each target, and the targets whose asset has been deleted since they were picked.
+
+    Raises InvalidRequest with every fault: an unknown asset, a point or stretch that is not on its asset.
+    """
+    assets = Asset.objects.defer("tags", "node_osm_ids", "parts").in_bulk({target.asset for target in targets if target.asset is not None})
+    places, gone, faults = [], [], {}
+    for index, target in enumerate(targets):
+        if target.asset is None:
+            if target.position is None:
+                gone.append(index)
+            else:
+                places.append(Place(index, position_label(target.position), (target.position,), _task(target, None, is_path=False), 0.0))
+        elif target.asset not in assets:
+            faults[f"targets.{index}.asset"] = f"There is no asset {target.asset}."
+        else:
+            try:
+                places.append(_place_on(assets[target.asset], index, target))
+            except InvalidRequest as error:
+                faults |= error.faults
+    if faults:
+        raise InvalidRequest(faults)
+    return places, gone
+
+
+def position_label(position: LonLat) -> str:
+    return f"{position.lat:.5f}, {position.lon:.5f}"
+
+
+def _place_on(asset: Asset, index: int, target: TargetRequest) -> Place:
+    course = _course(asset, index, target)
+    return Place(
+        target=index,
+        label=asset_label(asset),
+        course=course,
+        task=_task(target, asset.kind, is_path=len(course) > 1),
+        height_m=asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v),
+        asset=asset.pk,
+        kind=asset.kind,
+    )
+
+
+def _task(target: TargetRequest, kind: str | None, *, is_path: bool) -> Task:
+    return target.task or default_task(kind, is_path=is_path)
+
+
+def _course(asset: Asset, index: int, target: TargetRequest) -> tuple[LonLat, ...]:
+    if asset.kind in LINEAR:
+        return _course_on_line(asset, index, target)
+    if target.stretch is not None:
+        raise InvalidRequest({f"targets.{index}.stretch": "Only a line or a railway has stretches."})
+    centre = LonLat(*asset.centre.coords)
+    if target.position is None:
+        return (centre,)
+    if asset.kind == AssetKind.TOWER:
+        _refuse_far(f"targets.{index}.position", float(distance_m(np.array(centre), np.array(target.position))[0]))
+        return (centre,)
+    return (_on_area(asset.geometry, index, target.position),)
+
+
+def _course_on_line(asset: Asset, index: int, target: TargetRequest) -> tuple[LonLat, ...]:
+    line = _line(asset, index)
+    if target.position is not None:
+        place = nearest_on_line(line, target.position)
+        _refuse_far(f"targets.{index}.position", place.distance_m)
+        return (place.position,)
+    if target.stretch is None:
+        return stretch_between(line, _end(line, 0), _end(line, -1))
+    ends = []
+    for number, position in enumerate(target.stretch):
+        ends.append(nearest_on_line(line, position))
+        _refuse_far(f"targets.{index}.stretch.{number}", ends[-1].distance_m)
+    course = stretch_between(line, *ends)
+    if len(course) < 2:
+        raise InvalidRequest({f"targets.{index}.stretch": "Both ends are the same point of the line."})
+    return course
+
+
+def _line(asset: Asset, index: int) -> FloatArray:
+    if not isinstance(asset.geometry, LineString):
+        raise InvalidRequest({f"targets.{index}.asset": "This asset is not drawn as one line, so it cannot be flown along."})
+    return np.array(asset.geometry.coords, dtype=np.float64)[:, :2]
+
+
+def _end(line: FloatArray, which: int) -> PlaceOnLine:
+    at = LonLat(float(line[which][0]), float(line[which][1]))
+    return PlaceOnLine(0, 0.0, at, 0.0) if which == 0 else PlaceOnLine(len(line) - 2, 1.0, at, 0.0)
+
+
+def _on_area(geometry: GEOSGeometry, index: int, position: LonLat) -> LonLat:
+    """The position itself if it lies on the bridge's area, else the nearest point of its outline."""
+    if geometry.contains(Point(*position, srid=4326)):
+        return position
+    polygons = geometry if isinstance(geometry, MultiPolygon) else [geometry]
+    outlines = [np.array(ring.coords)[:, :2] for polygon in polygons for ring in polygon]
+    nearest = min((nearest_on_line(outline, position) for outline in outlines), key=lambda place: place.distance_m)
+    _refuse_far(f"targets.{index}.position", nearest.distance_m)
+    return nearest.position
+
+
+def _refuse_far(where: str, metres: float) -> None:
+    if metres > NEAR_ASSET_M:
+        raise InvalidRequest(
+            {where: f"This point is {metres:,.0f} m from the asset; up to {NEAR_ASSET_M:.0f} m is taken as a point on it."}
+        )

@@ -1,0 +1,83 @@
+"""A plan in the shape of the API."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from missions.flight_plan.heights import FloatArray
+from missions.flight_plan.waypoints import Waypoint
+from missions.models import EndAction
+from missions.services.refusals import LeftOut
+from missions.services.requests import PlanRequest, task_to_json
+
+FLAT_GROUND = "flat ground assumed"
+TERRAIN_MODEL = "terrain model"
+
+
+@dataclass(frozen=True)
+class PlannedRoute:
+    """What one UAV flies; without targets it stays where it is."""
+
+    targets: tuple[int, ...] = ()
+    waypoints: tuple[Waypoint, ...] = ()
+    line: FloatArray | None = None
+    length_m: float = 0.0
+    duration_s: float = 0.0
+    end_action: EndAction = EndAction.HOVER
+    is_flat: bool = False
+
+
+def plan_to_json(
+    request: PlanRequest,
+    routes: Sequence[PlannedRoute],
+    left_out: Sequence[LeftOut],
+    warnings: Sequence[dict[str, Any]],
+    *,
+    graph_version: int,
+    ground_revision: int,
+    has_terrain: bool,
+) -> dict[str, Any]:
+    lengths_m = [round(route.length_m, 3) for route in routes]
+    flat_ground_assumed = not has_terrain or any(route.is_flat for route in routes)
+    return {
+        "objective": request.objective.value,
+        "return_to_start": request.return_to_start,
+        "total_length_m": round(sum(lengths_m), 3),
+        "longest_route_m": max(lengths_m, default=0.0),
+        "graph_version": graph_version,
+        "ground_revision": ground_revision,
+        "flat_ground_assumed": flat_ground_assumed,
+        "terrain": FLAT_GROUND if flat_ground_assumed else TERRAIN_MODEL,
+        "warnings": list(warnings),
+        "routes": [
+            {
+                "uav": uav.name,
+                "uav_id": uav.uav,
+                "end_action": route.end_action.value,
+                "length_m": length_m,
+                "duration_s": round(route.duration_s, 1),
+                "targets": list(route.targets),
+                "geometry": None if route.line is None else {"type": "LineString", "coordinates": route.line.tolist()},
+                "waypoints": [waypoint_to_json(waypoint) for waypoint in route.waypoints],
+            }
+            for uav, route, length_m in zip(request.uavs, routes, lengths_m, strict=True)
+        ],
+        "unassigned": [
+            {"target": item.target, "reason": item.reason, "message": item.message}
+            for item in sorted(left_out, key=lambda item: item.target)
+        ],
+    }
+
+
+def waypoint_to_json(waypoint: Waypoint) -> dict[str, Any]:
+    point = waypoint.point
+    return {
+        "position": list(point.position),
+        "kind": point.kind.value,
+        "asset": point.asset,
+        "target": point.target,
+        "task": task_to_json(point.task) if point.task else None,
+        "altitude_agl_m": round(point.agl_m, 2),
+        "altitude_amsl_m": None if waypoint.amsl_m is None else round(waypoint.amsl_m, 2),
+        "altitude_relative_m": round(waypoint.relative_m, 2),
+    }

@@ -1,0 +1,196 @@
+"""One plan from request to answer: places, ways, assignment, waypoints, heights, and the last look at the zones."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+
+from inspection.geodesy import LonLat, path_length_m
+from inspection.selectors import current_graph, ground_heights_m, ground_revision, has_terrain, zones_in_force
+from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
+from missions.flight_plan.duration import duration_s
+from missions.flight_plan.flyable_graph import flyable_graph, node_heights_m
+from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
+from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points
+from missions.models import EndAction
+from missions.routing.problem import Problem, UavStart, Visit
+from missions.routing.solver import OnProgress, Stop, never, no_report, solve
+from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
+from missions.services.places import Place, places_of
+from missions.services.plan_json import PlannedRoute, plan_to_json
+from missions.services.refusals import Scene, asset_gone, grounded_reason, place_height_m, refused_place, unreached_place
+from missions.services.requests import PlanRequest
+
+
+class GraphOutdated(Exception):
+    """A zone is in force that the graph does not know yet, and a route would meet it. A new graph is seconds away."""
+
+    def __init__(self, zone_name: str) -> None:
+        super().__init__(f"{zone_name} has just changed, and the network is being rebuilt for it. Plan again in a moment.")
+
+
+def make_plan(
+    *, request: PlanRequest, stop: Stop = never, on_progress: OnProgress = no_report, seed: int = 7, search_s: float = 0.0
+) -> dict[str, Any]:
+    """The plan in the shape of the API. Raises InvalidRequest, NoGraph or GraphOutdated."""
+    on_progress(0.0, "Looking up the targets")
+    every_place, gone = places_of(request.targets)
+    scene = current_scene()
+    refusals = {place.target: refused_place(place, scene) for place in every_place}
+    left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
+    places = [place for place in every_place if refusals[place.target] is None]
+    grounded = {number: reason for number, uav in enumerate(request.uavs) if (reason := grounded_reason(uav, scene)) is not None}
+    uavs = [number for number in range(len(request.uavs)) if number not in grounded]
+
+    on_progress(0.05, "Measuring the ways between the targets")
+    visits, courses = _visits(places)
+    ways = ways_between(
+        scene.graph,
+        scene.zones,
+        starts=[Terminal(request.uavs[uav].position) for uav in uavs],
+        entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
+        exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
+        rules=scene.access,
+    )
+    problem = Problem(
+        uavs=tuple(UavStart(request.uavs[uav].max_range_m, end_action(request, uav) is EndAction.RETURN) for uav in uavs),
+        visits=tuple(visits),
+        target_count=len(places),
+        from_start_m=ways.from_start_m,
+        between_m=ways.between_m,
+        to_start_m=ways.to_start_m,
+        objective=request.objective,
+    )
+    solution = solve(
+        problem, stop=stop, on_progress=lambda share, message: on_progress(0.1 + 0.85 * share, message), seed=seed, search_s=search_s
+    )
+    visits_of = problem.visits_of_target()
+    left_out += [unreached_place(places[item.target], item, visits_of[item.target], ways, scene) for item in solution.unassigned]
+
+    on_progress(0.95, "Working out heights and checking every leg")
+    drawing = _Drawing(request, scene, places, visits, courses, ways)
+    flown = {uav: drawing.route(uav, number, solution.routes[number]) for number, uav in enumerate(uavs) if solution.routes[number]}
+    routes = [flown.get(uav, PlannedRoute(end_action=end_action(request, uav))) for uav in range(len(request.uavs))]
+    revision = _look_at_zones_again(routes, scene)
+    return plan_to_json(
+        request,
+        routes,
+        left_out,
+        [{"code": "uav_inside_zone", "uav": number, "message": reason} for number, reason in grounded.items()],
+        graph_version=scene.graph.version,
+        ground_revision=revision,
+        has_terrain=drawing.ground is not None,
+    )
+
+
+def current_scene() -> Scene:
+    linking, routing, flight = settings.GRAPH_RULES, settings.ROUTING_RULES, settings.FLIGHT_RULES
+    graph = current_graph()
+    access = AccessRules(
+        access_leg_m=routing.access_leg_m,
+        direct_leg_m=routing.direct_leg_m,
+        on_asset_m=linking.railway_spacing_m,
+        off_network_factor=linking.off_network_factor,
+        zone_clearance_m=linking.zone_clearance_m,
+    )
+    return Scene(graph, flyable_graph(graph, flight), zones_in_force(), access, flight)
+
+
+def end_action(request: PlanRequest, uav: int) -> EndAction:
+    return EndAction.RETURN if request.return_to_start else request.uavs[uav].end_action
+
+
+def _visits(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
+    """The ways of doing each place, with the course of each: a stretch can be flown from either end."""
+    visits, courses = [], []
+    for number, place in enumerate(places):
+        length_m = path_length_m(np.array(place.course))
+        visits.append(Visit(number, is_reversed=False, length_m=length_m))
+        courses.append(place.course)
+        if place.is_stretch:
+            visits.append(Visit(number, is_reversed=True, length_m=length_m))
+            courses.append(tuple(reversed(place.course)))
+    return visits, courses
+
+
+class _Drawing:
+    """Turns the visits of one UAV into its waypoints."""
+
+    def __init__(
+        self,
+        request: PlanRequest,
+        scene: Scene,
+        places: Sequence[Place],
+        visits: Sequence[Visit],
+        courses: Sequence[tuple[LonLat, ...]],
+        ways: Ways,
+    ) -> None:
+        self.request = request
+        self.scene = scene
+        self.places = places
+        self.visits = visits
+        self.courses = courses
+        self.ways = ways
+        self.ground = ground_heights_m if has_terrain() else None
+        self.node_height_m = node_heights_m(scene.graph)
+
+    def route(self, uav: int, start: int, order: Sequence[int]) -> PlannedRoute:
+        """uav is the UAV's number in the request, start its number among those that fly."""
+        flight, asked = self.scene.flight, self.request.uavs[uav]
+        action = end_action(self.request, uav)
+        legs = [self.ways.out(start, order[0]), *(self.ways.onward(left, right) for left, right in pairwise(order))]
+        points = route_points(
+            start=asked.position,
+            transit_agl_m=flight.transit_agl_m,
+            targets=[self._target(visit) for visit in order],
+            ways=[self._passed(nodes) for nodes in legs],
+            way_home=self._passed(self.ways.home(order[-1], start)) if action is EndAction.RETURN else None,
+        )
+        waypoints, is_flat = with_heights(points, self.ground, flight)
+        length_m = path_length_m(np.array([point.position for point in points]))
+        return PlannedRoute(
+            targets=tuple(self.places[self.visits[visit].target].target for visit in order),
+            waypoints=waypoints,
+            line=line_of([waypoint.point for waypoint in waypoints]),
+            length_m=length_m,
+            duration_s=duration_s(
+                waypoints,
+                length_m=length_m,
+                cruise_speed_mps=asked.cruise_speed_mps,
+                lands=action is not EndAction.HOVER,
+                rules=flight,
+            ),
+            end_action=action,
+            is_flat=is_flat,
+        )
+
+    def _target(self, visit: int) -> TargetPoints:
+        place = self.places[self.visits[visit].target]
+        agl_m = inspection_agl_m(place_height_m(place, self.scene), self.scene.flight)
+        return TargetPoints(place.target, self.courses[visit], agl_m, place.task, place.asset)
+
+    def _passed(self, nodes: np.ndarray) -> list[PassedNode]:
+        graph = self.scene.graph
+        positions, assets, heights_m = graph.position[nodes].tolist(), graph.node_asset[nodes].tolist(), self.node_height_m[nodes].tolist()
+        return [
+            PassedNode(LonLat(*position), pass_agl_m(height_m, self.scene.flight), asset if asset >= 0 else None)
+            for position, asset, height_m in zip(positions, assets, heights_m, strict=True)
+        ]
+
+
+def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> int:
+    """Check every leg against the zones in force at this moment; returns the ground's revision that they belong to."""
+    revision = ground_revision()
+    zones = zones_in_force()
+    for route in routes:
+        if route.line is None:
+            continue
+        try:
+            refuse_legs_in_zones(route.line, list(zones.polygons))
+        except RouteMeetsZone as error:
+            if scene.graph.ground_revision < revision:
+                raise GraphOutdated(zones.names[error.zone]) from error
+            raise
+    return revision

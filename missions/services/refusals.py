@@ -1,0 +1,107 @@
+"""Why a target is left out of a plan before or after the routes are found, and why a UAV stays on the ground."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.zone_index import ZoneIndex
+from missions.flight_plan.heights import is_above_limit
+from missions.flight_plan.rules import FlightRules
+from missions.routing.problem import Reason, Unassigned
+from missions.routing.terminals import AccessRules, Ways, is_near_network, tallest_support_m
+from missions.services.places import Place
+from missions.services.requests import UavRequest
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What every step of one plan looks at. `graph` is the part of `whole_graph` that can be flown over."""
+
+    whole_graph: InspectionGraph
+    graph: InspectionGraph
+    zones: ZoneIndex
+    access: AccessRules
+    flight: FlightRules
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A target that no route visits; `target` is its place in the request."""
+
+    target: int
+    reason: str
+    message: str
+
+
+def asset_gone(target: int) -> LeftOut:
+    return LeftOut(target, "asset_gone", "The asset has been deleted since it was picked.")
+
+
+def refused_place(place: Place, scene: Scene) -> LeftOut | None:
+    """Why a place can be on no route at all, or None."""
+    if place.is_stretch:
+        zone = _zone_along(place.course, scene)
+        if zone is not None:
+            return LeftOut(place.target, "inside_zone", f"It runs through {zone}.")
+    else:
+        zone = zone_at(place.course[0], scene)
+        if zone is not None:
+            return LeftOut(place.target, "inside_zone", f"It stands inside {zone}.")
+    height_m = place_height_m(place, scene)
+    if is_above_limit(height_m, scene.flight):
+        needed_m = height_m + scene.flight.clearance_m
+        limit_m = scene.flight.max_agl_m
+        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
+        return LeftOut(place.target, "above_height_limit", message)
+    return None
+
+
+def place_height_m(place: Place, scene: Scene) -> float:
+    """The asset's height; over a stretch of a line not less than its tallest support."""
+    if place.is_stretch and place.asset is not None:
+        return max(place.height_m, tallest_support_m(scene.whole_graph, place.asset, place.course))
+    return place.height_m
+
+
+def grounded_reason(uav: UavRequest, scene: Scene) -> str | None:
+    """Why a UAV cannot take off where it stands, or None."""
+    zone = zone_at(uav.position, scene)
+    return f"{uav.name} stands inside {zone} and cannot take off." if zone is not None else None
+
+
+def zone_at(position: LonLat, scene: Scene) -> str | None:
+    """Name of the zone that holds the position; a place nearer to a zone than the clearance counts as inside it."""
+    if not scene.zones.contains([position], scene.access.zone_clearance_m)[0]:
+        return None
+    found = scene.zones.zone_at(position)
+    return found[1] if found else f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
+
+
+def _zone_along(course: tuple[LonLat, ...], scene: Scene) -> str | None:
+    line = np.array(course)
+    met = np.flatnonzero(scene.zones.meets(line[:-1], line[1:], scene.access.zone_clearance_m))
+    if not len(met):
+        return None
+    for leg in met.tolist():
+        found = scene.zones.first_met(course[leg], course[leg + 1])
+        if found is not None:
+            return found[1]
+    return f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
+
+
+def unreached_place(place: Place, item: Unassigned, visits: list[int], ways: Ways, scene: Scene) -> LeftOut:
+    """The solver's reason in full: where it found no way, whether that is the distance to the network or the zones around."""
+    if item.reason is not Reason.NO_PATH or not ways.uavs:
+        return LeftOut(place.target, item.reason.value, item.message)
+    reach = f"{scene.access.access_leg_m / 1_000:g} km"
+    if not any(ways.visit_attached[visit] for visit in visits):
+        if any(is_near_network(scene.graph, end, scene.access.access_leg_m) for end in (place.course[0], place.course[-1])):
+            return LeftOut(
+                place.target, Reason.NO_PATH.value, f"Every straight way to it from the network within {reach} meets a no-fly zone."
+            )
+        return LeftOut(place.target, "too_far_from_network", f"It is more than {reach} from the network.")
+    if not any(ways.uav_attached):
+        return LeftOut(place.target, Reason.NO_PATH.value, f"No UAV has a clear way of up to {reach} to the network from where it stands.")
+    return LeftOut(place.target, item.reason.value, item.message)
