@@ -108,6 +108,8 @@ class _KindAdmin(AssetAdmin):
     def get_form(self, request: HttpRequest, obj: Any = None, change: bool = False, **options: Any) -> Any:
         form = super().get_form(request, obj, change, **options)
         form.kind = self.kind
+        if "geometry" in form.base_fields:
+            form.base_fields["geometry"].widget.is_point = self.kind == AssetKind.TOWER
         return form
 
 

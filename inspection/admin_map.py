@@ -41,7 +41,8 @@ class GeoJSONField(forms.Field):
 
     widget = MapWidget
 
-    def __init__(self, *, geom_type: str = "GEOMETRY", srid: int = WGS84_SRID, **options: Any) -> None:
+    def __init__(self, *, geom_type: str, srid: int, max_geom_collections: int | None = None, **options: Any) -> None:
+        """srid and max_geom_collections come from the model field: the gate takes WGS84 alone, and no collections."""
         super().__init__(**options)
         self.geom_type = geom_type
         self.widget.is_point = geom_type == "POINT"

@@ -1,0 +1,227 @@
+"""The admin: every page opens, curators' changes are recorded, and nothing comes from outside."""
+
+import json
+import re
+from typing import Any
+
+import pytest
+from django.contrib import admin
+from django.contrib.gis.geos import LineString
+from django.test import Client
+from django.urls import reverse
+
+from inspection.graph.ground_data import NO_OSM_NODE
+from inspection.models import Asset, AssetKind, NoFlyZone, ZoneSet
+from inspection.selectors import ground_revision
+from inspection.services import WrongGeometry, save_asset
+from missions.models import Uav
+from tests.inspection.ground import bridge, line, railway, tower, zone
+from tests.workspace.people import client_of, somebody
+from workspace.models import ApiToken, AuditEntry, Role, User
+
+pytestmark = pytest.mark.django_db
+
+MODELS = sorted((model._meta.app_label, model._meta.model_name) for model in admin.site._registry)
+
+
+@pytest.fixture
+def curator() -> User:
+    return somebody(Role.CURATOR)
+
+
+@pytest.fixture
+def client(curator: User) -> Client:
+    return client_of(curator)
+
+
+def change_address(row: Any) -> str:
+    return reverse(f"admin:{row._meta.app_label}_{row._meta.model_name}_change", args=[row.pk])
+
+
+def form_of(answer: Any) -> dict[str, Any]:
+    """What a browser would send back unchanged."""
+    form = answer.context["adminform"].form
+    values = {name: form[name].value() for name in form.fields}
+    return {name: "" if value is None or value is False else value for name, value in values.items()}
+
+
+def point(lon: float, lat: float) -> str:
+    return json.dumps({"type": "Point", "coordinates": [lon, lat]})
+
+
+@pytest.mark.parametrize(("app", "model"), MODELS)
+def test_every_list_opens_for_administrators(app: str, model: str) -> None:
+    assert client_of(somebody(Role.ADMINISTRATOR)).get(reverse(f"admin:{app}_{model}_changelist")).status_code == 200
+
+
+@pytest.mark.parametrize(("app", "model"), MODELS)
+def test_curators_see_the_ground_and_nothing_else(client: Client, app: str, model: str) -> None:
+    status = client.get(reverse(f"admin:{app}_{model}_changelist")).status_code
+    assert status == (200 if app == "inspection" else 403)
+
+
+def test_strangers_are_sent_to_the_programs_own_sign_in() -> None:
+    answer = Client().get("/admin/", follow=True)
+    assert [step for step, _ in answer.redirect_chain] == ["/admin/login/?next=/admin/", "/sign-in?next=/admin/"]
+
+
+@pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
+def test_other_roles_are_refused_and_not_sent_in_circles(role: Role) -> None:
+    assert client_of(somebody(role)).get("/admin/", follow=True).status_code == 403
+
+
+@pytest.mark.parametrize("make", [tower, line, railway, bridge, zone])
+def test_a_page_with_a_map_asks_nobody_outside(client: Client, make: Any) -> None:
+    page = client.get(change_address(make())).content.decode()
+    assert "data-geometry" in page
+    loaded = re.findall(r'<(?:script|link|img|iframe)[^>]*(?:src|href)="([^"]+)"', page)
+    assert "/static/js/admin/geometry_map.js" in loaded
+    assert all(address.startswith("/") for address in loaded)
+    assert not re.search(r"<script(?![^>]*\bsrc=)[^>]*>\s*\S", page), "an inline script would need a hole in the content policy"
+
+
+def test_a_change_is_kept_recorded_and_counted(client: Client, curator: User) -> None:
+    asset = tower(ref="18")
+    revision = ground_revision()
+    form = form_of(client.get(change_address(asset)))
+    answer = client.post(change_address(asset), form | {"ref": "19", "geometry": point(10.5, 56.5)})
+    assert answer.status_code == 302, answer.context["adminform"].form.errors
+    asset.refresh_from_db()
+    assert (asset.ref, asset.is_edited, asset.geometry.coords, asset.centre.coords) == ("19", True, (10.5, 56.5), (10.5, 56.5))
+    assert ground_revision() == revision + 1
+    entry = AuditEntry.objects.get()
+    assert (entry.actor, entry.action, entry.subject_type, entry.subject_id) == (curator, "changed", "asset", str(asset.pk))
+    assert (entry.before["ref"], entry.after["ref"]) == ("18", "19")
+    assert entry.after["geometry"] == {"type": "Point", "coordinates": [10.5, 56.5]}
+
+
+def test_a_line_that_was_drawn_anew_keeps_the_nodes_that_did_not_move(curator: User) -> None:
+    asset = line((10.0, 56.0), (10.1, 56.0), (10.2, 56.0), node_osm_ids=[1, 2, 3])
+    asset.geometry = LineString((10.0, 56.0), (10.1, 56.1), (10.2, 56.0), srid=4326)
+    asset.voltages_v = [20_000, 110_000]
+    save_asset(asset=asset, actor=curator)
+    asset.refresh_from_db()
+    assert asset.node_osm_ids == [1, NO_OSM_NODE, 3]
+    assert (asset.voltages_v, asset.max_voltage_v) == ([110_000, 20_000], 110_000)
+    assert asset.length_m == pytest.approx(25_500, rel=0.01)  # two legs of 12.8 km, Pythagoras on 6.24 km by 11.13 km
+
+
+def test_a_new_tower_is_drawn_by_hand(client: Client) -> None:
+    address = reverse("admin:inspection_powertower_add")
+    form = form_of(client.get(address)) | {"subtype": "tower", "tags": "{}", "geometry": point(10.0, 56.0)}
+    answer = client.post(address, form)
+    assert answer.status_code == 302, answer.context["adminform"].form.errors
+    asset = Asset.objects.get()
+    assert (asset.kind, asset.is_edited, asset.osm_id) == (AssetKind.TOWER, True, None)
+    assert AuditEntry.objects.get().action == "created"
+
+
+@pytest.mark.parametrize(
+    ("geometry", "fault"),
+    [
+        ("", "This field is required."),
+        ("{", "This is no JSON"),
+        ('{"type": "Point", "coordinates": [NaN, 1]}', "NaN is no number"),
+        (point(500, 95), "beyond"),
+        ('{"type": "LineString", "coordinates": [[10, 56], [11, 56]]}', "drawn as Point"),
+    ],
+)
+def test_a_wrong_geometry_is_shown_back_with_its_fault(client: Client, geometry: str, fault: str) -> None:
+    asset = tower()
+    answer = client.post(change_address(asset), form_of(client.get(change_address(asset))) | {"geometry": geometry})
+    assert answer.status_code == 200
+    assert fault in str(answer.context["adminform"].form.errors["geometry"])
+    assert not AuditEntry.objects.exists()
+
+
+def test_the_service_too_refuses_a_geometry_of_another_kind(curator: User) -> None:
+    asset = tower()
+    asset.kind = AssetKind.LINE
+    with pytest.raises(WrongGeometry, match="A power line is drawn as LineString, not as Point"):
+        save_asset(asset=asset, actor=curator)
+
+
+def test_an_asset_that_is_removed_is_recorded(client: Client) -> None:
+    asset = tower(ref="18")
+    revision = ground_revision()
+    client.post(reverse("admin:inspection_asset_delete", args=[asset.pk]), {"post": "yes"})
+    assert not Asset.objects.exists()
+    entry = AuditEntry.objects.get()
+    assert (entry.action, entry.before["ref"], entry.after) == ("deleted", "18", None)
+    assert ground_revision() == revision + 1
+
+
+def test_removing_several_zones_at_once_records_each(client: Client) -> None:
+    zones = [zone(), zone()]
+    form = {"action": "delete_selected", "_selected_action": [row.pk for row in zones], "post": "yes"}
+    client.post(reverse("admin:inspection_noflyzone_changelist"), form)
+    assert not NoFlyZone.objects.exists()
+    assert AuditEntry.objects.filter(subject_type="zone", action="deleted").count() == 2
+
+
+SQUARE = [[10.0, 56.0], [10.1, 56.0], [10.1, 56.1], [10.0, 56.1], [10.0, 56.0]]
+BOWTIE = [[10.0, 56.0], [10.1, 56.1], [10.1, 56.0], [10.0, 56.1], [10.0, 56.0]]
+
+
+def area(ring: list[list[float]]) -> str:
+    return json.dumps({"type": "Polygon", "coordinates": [ring]})
+
+
+def test_a_zone_is_drawn_by_hand(client: Client) -> None:
+    address = reverse("admin:inspection_noflyzone_add")
+    form = form_of(client.get(address)) | {"name": "Fair", "geometry": area(SQUARE), "upper_limit_m": "120", "upper_reference": "AGL"}
+    answer = client.post(address, form)
+    assert answer.status_code == 302, answer.context["adminform"].form.errors
+    stored = NoFlyZone.objects.get()
+    assert (stored.geometry.geom_type, stored.lower_limit_m, stored.upper_limit_m) == ("MultiPolygon", None, 120.0)
+    assert stored.identifier
+    assert AuditEntry.objects.get().after["name"] == "Fair"
+    assert ground_revision() == 1
+
+
+def test_a_zone_that_crosses_itself_is_refused_with_the_place(client: Client) -> None:
+    stored = zone()
+    answer = client.post(change_address(stored), form_of(client.get(change_address(stored))) | {"geometry": area(BOWTIE)})
+    assert "self-intersection at 10.05, 56.05" in str(answer.context["adminform"].form.errors["geometry"])
+
+
+def test_a_band_upside_down_is_refused(client: Client) -> None:
+    stored = zone()
+    band = {"lower_limit_m": "200", "lower_reference": "AGL", "upper_limit_m": "100", "upper_reference": "AGL"}
+    answer = client.post(change_address(stored), form_of(client.get(change_address(stored))) | band)
+    assert answer.status_code == 200
+    assert answer.context["adminform"].form.errors
+
+
+def test_who_changes_an_imported_zone_is_warned(client: Client) -> None:
+    stored = zone(zone_set=ZoneSet.objects.create(name="Denmark"))
+    answer = client.post(change_address(stored), form_of(client.get(change_address(stored))) | {"name": "Fair"}, follow=True)
+    assert "the next import of that source replaces it" in answer.content.decode()
+
+
+def test_a_uavs_place_is_a_point_that_can_be_dragged() -> None:
+    client = client_of(somebody(Role.ADMINISTRATOR))
+    address = reverse("admin:missions_uav_add")
+    page = client.get(address)
+    assert "data-is-point" in page.content.decode()
+    answer = client.post(address, form_of(page) | {"name": "Kite", "location": point(10.0, 56.0)})
+    assert answer.status_code == 302, answer.context["adminform"].form.errors
+    assert Uav.objects.get().location.coords == (10.0, 56.0)
+
+
+def test_tokens_are_revoked_and_never_made_here() -> None:
+    client = client_of(somebody(Role.ADMINISTRATOR))
+    token = ApiToken.objects.create(user=somebody(), token_sha256="0" * 64, expires_at="2100-01-01T00:00Z")
+    page = client.get(change_address(token)).content.decode()
+    assert "0" * 64 not in page
+    assert client.get(reverse("admin:workspace_apitoken_add")).status_code == 403
+    client.post(reverse("admin:workspace_apitoken_changelist"), {"action": "revoke", "_selected_action": [token.pk]})
+    token.refresh_from_db()
+    assert token.revoked_at is not None
+
+
+def test_what_the_program_writes_cannot_be_changed(client: Client, curator: User) -> None:
+    administrator = client_of(somebody(Role.ADMINISTRATOR))
+    entry = AuditEntry.objects.create(organisation=curator.organisation, actor=curator, action="x", subject_type="x", subject_id="1")
+    assert administrator.post(change_address(entry), {"action": "y"}).status_code == 403
+    assert administrator.post(reverse("admin:workspace_auditentry_delete", args=[entry.pk]), {"post": "yes"}).status_code == 403

@@ -1,0 +1,187 @@
+"""Vector tiles: what is in them, at which zoom, and when they are asked for again."""
+
+import math
+from typing import Any
+
+import pytest
+from django.contrib.gis.geos import MultiPolygon, Polygon
+from django.test import Client
+from django.utils import timezone
+
+from inspection.models import NoFlyZone
+from inspection.selectors import asset_label, vector_tile
+from inspection.services import mark_ground_changed
+from tests.inspection.ground import bridge, line, railway, tower, zone
+from tests.inspection.vector_tile import Feature, read_tile
+from tests.workspace.people import client_of, somebody
+from workspace.models import Role
+
+pytestmark = pytest.mark.django_db
+
+
+def tile_at(zoom: int, lon: float = 10.0, lat: float = 56.0) -> tuple[int, int, int]:
+    column = (lon + 180.0) / 360.0 * 2**zoom
+    row = (1.0 - math.asinh(math.tan(math.radians(lat))) / math.pi) / 2.0 * 2**zoom
+    return zoom, int(column), int(row)
+
+
+def layers_at(zoom: int, lon: float = 10.0, lat: float = 56.0) -> dict[str, list[Feature]]:
+    return read_tile(vector_tile(*tile_at(zoom, lon, lat)))
+
+
+def test_all_layers_are_in_a_near_tile() -> None:
+    made = {"towers": tower(), "lines": line(), "railways": railway(), "bridges": bridge(), "zones": zone()}
+    layers = layers_at(14)
+    assert set(layers) == {*made, "bridge_points", "zone_labels"}
+    for name, row in made.items():
+        assert [feature.id for feature in layers[name]] == [row.pk], name
+        assert layers[name][0].properties["id"] == row.pk
+    types = {name: features[0].type for name, features in layers.items()}
+    assert types == {"towers": 1, "bridge_points": 1, "zone_labels": 1, "lines": 2, "railways": 2, "bridges": 3, "zones": 3}
+
+
+def test_a_line_says_what_the_map_needs() -> None:
+    row = line(name="Ring", ref="R1", operator="AEP", voltages_v=[380_000, 12_470])
+    [feature] = layers_at(14)["lines"]
+    assert feature.properties == {
+        "id": row.pk,
+        "kind": "line",
+        "subtype": "line",
+        "label": "R1",
+        "ref": "R1",
+        "name": "Ring",
+        "operator": "AEP",
+        "flyable": True,
+        "voltage": 380,
+        "voltages": "380 kV, 12.47 kV",
+    }
+
+
+def test_what_is_not_stated_is_absent() -> None:
+    row = line(osm_id=9)
+    [feature] = layers_at(14)["lines"]
+    assert feature.properties == {"id": row.pk, "kind": "line", "subtype": "line", "label": "Line w9", "flyable": True}
+
+
+@pytest.mark.parametrize(
+    ("kind", "facts"),
+    [
+        (tower, {"ref": "18", "name": "Big"}),
+        (tower, {"name": "Big"}),
+        (tower, {}),
+        (tower, {"subtype": "pole"}),
+        (tower, {"subtype": "portal", "osm_id": None, "osm_type": ""}),
+        (line, {"operator": "AEP", "voltages_v": [138_000]}),
+        (line, {"voltages_v": [12_470]}),
+        (line, {"operator": "AEP"}),
+        (line, {"subtype": "minor_line"}),
+        (line, {"subtype": "cable"}),
+        (railway, {"operator": "CSX"}),
+        (railway, {"subtype": "tram"}),
+        (railway, {"subtype": "subway"}),
+        (railway, {"subtype": "light_rail"}),
+        (bridge, {}),
+    ],
+)
+def test_the_map_and_the_api_call_an_asset_alike(kind: Any, facts: dict[str, Any]) -> None:
+    asset = kind(**facts)
+    [feature, *_] = [feature for features in layers_at(14).values() for feature in features]
+    assert feature.properties["label"] == asset_label(asset)
+
+
+@pytest.mark.parametrize(
+    ("kind", "facts", "layer", "zoom"),
+    [
+        (line, {"voltages_v": [50_000]}, "lines", 8),
+        (line, {"voltages_v": [20_000]}, "lines", 10),
+        (line, {}, "lines", 8),
+        (line, {"subtype": "minor_line"}, "lines", 10),
+        (line, {"voltages_v": [380_000], "is_flyable": False}, "lines", 13),
+        (railway, {}, "railways", 8),
+        (bridge, {}, "bridge_points", 10),
+        (tower, {}, "towers", 10),
+    ],
+)
+def test_things_appear_at_their_zoom(kind: Any, facts: dict[str, Any], layer: str, zoom: int) -> None:
+    kind(**facts)
+    assert layers_at(zoom).get(layer)
+    assert not layers_at(zoom - 1).get(layer)
+
+
+def test_high_voltage_is_on_every_map() -> None:
+    line((9.0, 56.0), (11.0, 56.0), voltages_v=[100_000])
+    assert all(layers_at(zoom).get("lines") for zoom in (0, 3, 7))
+
+
+def test_zones_are_on_every_map() -> None:
+    zone(half_deg=1.0)
+    assert all(layers_at(zoom).get("zones") for zoom in (0, 5, 10))
+    assert not layers_at(8).get("zone_labels")
+    assert layers_at(9)["zone_labels"][0].properties["name"] == "Airport"
+
+
+def test_a_vanished_asset_is_not_on_the_map() -> None:
+    tower(vanished_at=timezone.now())
+    assert "towers" not in layers_at(14)
+
+
+def test_a_position_is_where_it_belongs() -> None:
+    """A tower a quarter of the way into the tile from the west and the north."""
+    zoom, column, row = tile_at(14)
+    lon = (column + 0.25) / 2**14 * 360.0 - 180.0
+    lat = math.degrees(math.atan(math.sinh(math.pi * (1.0 - 2.0 * (row + 0.25) / 2**14))))
+    tower((lon, lat))
+    [feature] = read_tile(vector_tile(zoom, column, row))["towers"]
+    assert feature.first_position == (1024, 1024)
+
+
+def test_a_line_has_fewer_vertices_from_afar() -> None:
+    path = [(10.0 + index / 1e4, 56.0 + (index % 2) / 1e4) for index in range(500)]
+    line(*path, voltages_v=[380_000])
+    assert layers_at(12, *path[250])["lines"][0].vertex_count > layers_at(6)["lines"][0].vertex_count
+
+
+def test_what_reaches_in_from_next_door_is_drawn_up_to_the_edge() -> None:
+    line((9.0, 56.0), (11.0, 56.0), voltages_v=[380_000])
+    assert layers_at(12, 10.5)["lines"]
+    assert not layers_at(12, 11.5).get("lines")
+
+
+def test_a_zone_up_to_the_pole_and_round_the_earth_can_be_drawn() -> None:
+    cap = Polygon.from_bbox((-180.0, 80.0, 180.0, 90.0))
+    NoFlyZone.objects.create(identifier="pole", name="Pole", geometry=MultiPolygon(cap, srid=4326))
+    assert read_tile(vector_tile(0, 0, 0))["zones"]
+    assert read_tile(vector_tile(3, 7, 0))["zones"]
+
+
+def get(client: Client, address: str, **headers: str) -> Any:
+    return client.get(f"/api/v1/tiles/{address}", headers=headers)
+
+
+def test_a_tile_needs_somebody_who_is_signed_in() -> None:
+    assert get(Client(), "0/0/0").status_code == 401
+
+
+def test_an_empty_tile_is_an_empty_body() -> None:
+    answer = get(client_of(somebody(Role.VIEWER)), "14/0/0")
+    assert (answer.status_code, answer.content) == (200, b"")
+    assert answer["Content-Type"] == "application/vnd.mapbox-vector-tile"
+
+
+@pytest.mark.parametrize("address", ["0/1/0", "0/0/1", "23/0/0", "4/16/0", "99999999999999999999/0/0", "-1/0/0", "a/b/c"])
+def test_a_tile_outside_the_pyramid_is_not_found(address: str) -> None:
+    answer = get(client_of(somebody()), address)
+    assert answer.status_code == 404
+    assert answer.json()["error"]["code"] == "not_found"
+
+
+def test_a_tile_is_kept_until_the_ground_changes() -> None:
+    client = client_of(somebody())
+    tower()
+    address = "/".join(map(str, tile_at(14)))
+    first = get(client, address)
+    assert first["Cache-Control"] == "private, no-cache"
+    again = get(client, address, **{"If-None-Match": first["ETag"]})
+    assert (again.status_code, again.content, again["ETag"]) == (304, b"", first["ETag"])
+    mark_ground_changed()
+    assert get(client, address, **{"If-None-Match": first["ETag"]}).status_code == 200
