@@ -126,10 +126,7 @@ def _network(ground: GroundData, rules: LinkingRules) -> tuple[_Nodes, Edges]:
         first_railway + railways.leg[:, 1],
         ground.railways.asset[railways.way_of_leg],
     )
-    degree = np.bincount(np.unique(along_lines.pair, axis=0).ravel(), minlength=len(nodes.kind))
-    ends = np.flatnonzero((degree == 1) & (nodes.kind == NodeKind.LINE_VERTEX))
-    joints = np.concatenate([np.arange(len(ground.supports)), ends])
-    crossings = crossing_links(joints, nodes.position, ground.lines, on_lines.node_of_vertex, rules)
+    crossings = crossing_links(nodes.position[:first_railway], ground.lines, on_lines.node_of_vertex, rules)
     bridges = bridge_links(first_bridge + np.arange(len(ground.bridges)), nodes.position, rules)
     return nodes, without_seam(joined(along_lines, along_railways, crossings, bridges), nodes.position)
 

@@ -25,13 +25,13 @@ def bridge_links(bridges: IntArray, position: FloatArray, rules: LinkingRules) -
     return edges_of(EdgeKind.BRIDGE_TO_BRIDGE, bridges[pairs[:, 0]], bridges[pairs[:, 1]])
 
 
-def crossing_links(joints: IntArray, position: FloatArray, lines: Ways, node_of_vertex: IntArray, rules: LinkingRules) -> Edges:
+def crossing_links(position: FloatArray, lines: Ways, node_of_vertex: IntArray, rules: LinkingRules) -> Edges:
     """Supports that stand within the radius and have no line in common: where lines cross, run close by, or meet in a substation.
 
-    `joints` are the supports and the nodes where a line ends, for a line often ends in a substation at a node that is not tagged as one.
-    A support without line shares none.
+    `position` is that of all supports and line vertices: a vertex is mostly a support that nobody has tagged.
+    A support without line has none in common with any other.
     """
-    pairs = joints[pairs_within(position[joints], rules.crossing_m)]
+    pairs = pairs_within(position, rules.crossing_m)
     pairs = pairs[~_share_a_way(pairs, lines, node_of_vertex)]
     return edges_of(EdgeKind.CROSSING, pairs[:, 0], pairs[:, 1])
 

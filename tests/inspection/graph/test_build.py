@@ -123,8 +123,8 @@ def test_a_lonely_support_links_to_a_line_near_by():
     assert edges(graph, EdgeKind.CROSSING) == [(100, 101)]
 
 
-def test_line_ends_in_a_substation_link_without_being_supports():
-    """Two lines end 100 m apart at nodes that carry no tag; their inner vertices are no joints."""
+def test_vertices_that_nobody_tagged_as_supports_link_like_them():
+    """Two lines end 100 m apart in a substation, at nodes that carry no tag."""
     graph = built(lines=ways([(-600, 0), (-300, 0), (0, 0)], [(100, 0), (400, 0)], first_asset=200, osm=[[1, 2, 3], [4, 5]]))
     assert edges(graph, EdgeKind.CROSSING) == [(200, 201)]
 
