@@ -10,7 +10,9 @@ import pytest
 from django.contrib.gis.gdal import GDALRaster
 from django.core.management import call_command
 
-from inspection.demo_region import make_region
+from inspection.demo_region import BASES, make_region
+from inspection.selectors import ground_heights_m
+from inspection.services import import_terrain
 
 NAMES = ["demo-terrain.tif", "demo-zones.json", "demo.osm.pbf"]
 
@@ -52,3 +54,13 @@ def test_the_terrain_file_holds_the_drawn_heights_where_they_were_drawn(written:
     assert (raster.origin.x, raster.origin.y) == pytest.approx((terrain.west_deg, terrain.north_deg), abs=1e-12)
     assert (raster.scale.x, raster.scale.y) == pytest.approx((terrain.step_deg, -terrain.step_deg), abs=1e-15)
     assert np.array_equal(raster.bands[0].data(), terrain.heights_amsl_m)
+
+
+@pytest.mark.django_db
+def test_the_imported_terrain_gives_the_drawn_heights_at_the_bases(written: tuple[Path, str]) -> None:
+    import_terrain(path=written[0] / "demo-terrain.tif", is_synthetic=True)
+    terrain = make_region().terrain
+    positions = np.array([base.position for base in BASES])
+    columns = ((positions[:, 0] - terrain.west_deg) / terrain.step_deg).astype(int)
+    rows = ((terrain.north_deg - positions[:, 1]) / terrain.step_deg).astype(int)
+    assert ground_heights_m(positions) == pytest.approx(terrain.heights_amsl_m[rows, columns], abs=5.0)
