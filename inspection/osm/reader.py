@@ -52,7 +52,7 @@ def read_osm(path: Path, progress: Progress | None = None) -> OsmContent:
             rewritten = Path(folder) / "overpass.osm.pbf"
             timestamp = rewrite_as_pbf(path, file_format, rewritten)
             return _Reader(osmium.io.File(str(rewritten), "pbf"), progress).content(timestamp)
-    except (RuntimeError, ValueError, OSError, EOFError) as error:
+    except (RuntimeError, ValueError, OSError, EOFError, IndexError, OverflowError, osmium.InvalidLocationError) as error:
         if isinstance(error, OsmFileError):
             raise
         raise OsmFileError(f"The file is damaged: {error}") from error
