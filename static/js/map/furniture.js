@@ -10,26 +10,47 @@ const WIDEST_SCALE_PX = 90;
 const sample = (...drawing) => svg("svg", { width: 26, height: 12, viewBox: "0 0 26 12", "aria-hidden": "true" }, drawing);
 const stroke = (token, width, rest = {}) => svg("path", { d: "M1 6H25", stroke: `var(${token})`, "stroke-width": width, fill: "none", ...rest });
 
-/** Rows of the legend: [words, drawing]. */
-function legendRows() {
-  return [
-    ["380 kV and over", sample(stroke("--volt-400", 3))],
-    ["100 to 379 kV", sample(stroke("--volt-132", 1.8))],
-    ["under 100 kV", sample(stroke("--volt-66", 1.1))],
-    ["Voltage not stated", sample(stroke("--volt-unknown", 1.3, { "stroke-dasharray": "5 3" }))],
-    ["Railway", sample(stroke("--railway", 2.6), stroke("--ground", 1.3, { "stroke-dasharray": "5 5" }))],
-    ["Bridge", sample(svg("path", { d: "M1 4H25M1 8H25", stroke: "var(--bridge)", "stroke-width": 1.5 }))],
-    [
-      "No-fly zone",
+const line = (token, width, rest) => () => sample(stroke(token, width, rest));
+
+/** Rows of the legend: what counts as being in view, words, drawing. */
+const LEGEND = [
+  { layer: "lines", test: ({ voltage }) => voltage >= 380, words: "380 kV and over", draw: line("--volt-400", 3) },
+  { layer: "lines", test: ({ voltage }) => voltage >= 200 && voltage < 380, words: "200 to 379 kV", draw: line("--volt-220", 2.2) },
+  { layer: "lines", test: ({ voltage }) => voltage >= 100 && voltage < 200, words: "100 to 199 kV", draw: line("--volt-132", 1.6) },
+  { layer: "lines", test: ({ voltage }) => voltage >= 50 && voltage < 100, words: "50 to 99 kV", draw: line("--volt-66", 1.1) },
+  { layer: "lines", test: ({ voltage }) => voltage < 50, words: "under 50 kV", draw: line("--volt-20", 0.9) },
+  { layer: "lines-unknown", test: () => true, words: "Voltage not stated", draw: line("--volt-unknown", 1.3, { "stroke-dasharray": "5 3" }) },
+  { layer: "railways", test: () => true, words: "Railway", draw: () => sample(stroke("--railway", 2.6), stroke("--ground", 1.3, { "stroke-dasharray": "5 5" })) },
+  { layer: "bridges", test: () => true, words: "Bridge", draw: () => sample(svg("path", { d: "M1 4H25M1 8H25", stroke: "var(--bridge)", "stroke-width": 1.5 })) },
+  {
+    layer: "zones-fill",
+    test: () => true,
+    words: "No-fly zone",
+    draw: () =>
       sample(
         svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3 }),
         svg("path", { d: "M5 10l8-8M11 10l8-8M17 10l5-5", stroke: "var(--zone)", "stroke-width": 0.9 }),
       ),
-    ],
-  ];
-}
+  },
+];
 
-export const legendItems = () => legendRows().map(([words, drawing]) => h("li", {}, drawing, words));
+const legendItems = (rows) => rows.map(({ words, draw }) => h("li", {}, draw(), words));
+
+/** A legend of what is in view. */
+export function mountLegend(map) {
+  const legend = byId("legend");
+  let shown = "";
+  map.on("idle", () => {
+    const layers = [...new Set(LEGEND.map((row) => row.layer))].filter((id) => map.getLayer(id));
+    const seen = map.queryRenderedFeatures({ layers });
+    const rows = LEGEND.filter((row) => seen.some((feature) => feature.layer.id === row.layer && row.test(feature.properties)));
+    const words = rows.map((row) => row.words).join();
+    if (words === shown) return;
+    shown = words;
+    legend.hidden = rows.length === 0;
+    legend.replaceChildren(...legendItems(rows));
+  });
+}
 
 /** The longest round distance that is at most 90 px: { length_m, width_px }. */
 export function scaleOf(metres_per_px) {
@@ -142,7 +163,7 @@ export function layersMenu({ under, isShown, show }) {
     h("h2", {}, "Shown"),
     ...GROUPS.map((group) => h("label", {}, h("input", { type: "checkbox", class: "check", checked: isShown(group), onchange: (event) => show(group, event.target.checked) }), group.name)),
     h("h2", { class: "legend-head" }, "Legend"),
-    h("ul", { class: "legend" }, legendItems()),
+    h("ul", { class: "legend" }, legendItems(LEGEND)),
   );
   return menu;
 }

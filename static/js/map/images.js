@@ -12,15 +12,17 @@ function canvasOf(size_px) {
 
 const pixels = (pen) => pen.getImageData(0, 0, pen.canvas.width, pen.canvas.height);
 
-/** 45 degrees, 10 px; the corners are drawn too, so that the pattern meets itself. */
+const HATCH_PX = 8;
+
+/** 45 degrees; the corners are drawn too, so that the pattern meets itself. */
 function hatch(palette) {
-  const pen = canvasOf(10);
+  const pen = canvasOf(HATCH_PX);
   pen.strokeStyle = palette.zone;
-  pen.lineWidth = 1.1;
-  for (const shift of [-10, 0, 10]) {
+  pen.lineWidth = 0.9;
+  for (const shift of [-HATCH_PX, 0, HATCH_PX]) {
     pen.beginPath();
-    pen.moveTo(shift - 1, 11);
-    pen.lineTo(shift + 11, -1);
+    pen.moveTo(shift - 1, HATCH_PX + 1);
+    pen.lineTo(shift + HATCH_PX + 1, -1);
     pen.stroke();
   }
   return pixels(pen);
@@ -52,7 +54,7 @@ function draw(id, palette) {
 /** `palette()` gives the one in use. Returns a function that draws all again after a theme change. */
 export function provideImages(map, palette) {
   const given = new Set();
-  map.on("styleimagemissing", ({ id }) => {
+  map.setMissingStyleImageResolver((id) => {
     const image = draw(id, palette());
     if (!image || map.hasImage(id)) return;
     given.add(id);

@@ -180,7 +180,7 @@ export function routeOpacity(palette, lookedAt) {
 }
 
 function labelLayers(palette) {
-  const halo = { "text-color": palette.label, "text-halo-color": palette.halo, "text-halo-width": 1.5 };
+  const halo = { "text-color": palette.label, "text-halo-color": palette.halo, "text-halo-width": 2 };
   const text = (size = 11) => ({ "text-font": palette.fonts, "text-size": size });
   const tiles = { type: "symbol", source: TILES };
   return [
@@ -208,7 +208,7 @@ function labelLayers(palette) {
       "source-layer": "zone_labels",
       minzoom: 9,
       layout: { ...text(12), "text-field": ["coalesce", ["get", "name"], ["get", "label"], ""], "text-max-width": 9 },
-      paint: { ...halo, "text-color": palette.zone, "text-halo-width": 2 },
+      paint: { ...halo, "text-color": palette.zone },
     },
   ];
 }

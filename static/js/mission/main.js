@@ -112,8 +112,10 @@ async function fleetOfOrganisation() {
 
 async function load() {
   try {
-    const [{ data: ground }, fleet] = await Promise.all([get("/ground"), fleetOfOrganisation()]);
-    store.update({ ground, fleet });
+    const fleet = fleetOfOrganisation();
+    fleet.catch(() => {}); // told below, after the map has its ground
+    store.update({ ground: (await get("/ground")).data });
+    store.update({ fleet: await fleet });
     if (page.mission) await actions.open(page.mission);
     else if (page.canPlan) actions.openDraft();
   } catch (error) {

@@ -3,7 +3,7 @@
 import { get } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { routeClicks, nearestOnLine } from "../map/click_router.js";
-import { createTip, layersMenu, legendItems, mountCoordinates, mountScale, setAttribution, tipOf } from "../map/furniture.js";
+import { createTip, layersMenu, mountCoordinates, mountLegend, mountScale, setAttribution, tipOf } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createTargets } from "../map/layers/targets.js";
@@ -49,7 +49,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   map.on("idle", () => (container.dataset.idle = "true"));
   map.on("movestart", () => delete container.dataset.idle);
   mountScale(map);
-  byId("legend").append(...legendItems());
+  mountLegend(map);
   byId("zoom-in").addEventListener("click", () => map.zoomIn());
   byId("zoom-out").addEventListener("click", () => map.zoomOut());
   byId("fit").addEventListener("click", () => fit());
@@ -231,6 +231,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   }
 
   function fit(options) {
+    map.resize(); // the dock may just have come: fit into what is left
     const positions = positionsOfMission(store.state);
     view.fit(positions.length > 1 ? boxAround(positions) : (store.state.ground?.extent ?? boxAround(positions)), options);
   }

@@ -56,7 +56,7 @@ export function mountFinder({ box, show, add, canPlan }) {
     if (!feature) return;
     show(feature);
     if (canPlan) add(feature);
-    input.select();
+    input.value = "";
     close();
   }
 

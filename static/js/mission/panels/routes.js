@@ -66,6 +66,7 @@ export function mountRoutes(store, { onAlong }) {
   }
 
   store.listen(["plan", "selection"], draw);
+  store.listen(["plan"], () => dock.closest(".side-scroll")?.scrollTo({ top: 0 })); // on a phone the result stands first
   store.listen(["lookedAt", "chosenRoute"], mark);
   new ResizeObserver(() => {
     if (store.state.plan && measure() !== width_px) draw(store.state);

@@ -28,7 +28,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       letter.className = `letter ${uav.sequence === null ? "none" : `route-${routeNumber(uav.sequence)}`}`;
       letter.textContent = uav.letter;
       row.querySelector(".end").textContent = uav.max_range_m ? `range ${lengthText(uav.max_range_m)}` : "";
-      row.querySelector("button")?.toggleAttribute("hidden", uav.sequence === null);
+      row.querySelector("button")?.classList.toggle("absent", uav.sequence === null);
     },
   );
 

@@ -1,0 +1,55 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
+import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
+import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
+import { placeSketch } from "../../static/js/missions/sketch.js";
+
+const feature = (id, sourceLayer, properties = { id: 1 }) => ({ layer: { id }, sourceLayer, properties, geometry: { type: "Point", coordinates: [0, 0] } });
+
+test("a click takes the tower before the line that it carries, and the zone last", () => {
+  const under = [feature("zones-fill", "zones"), feature("lines", "lines"), feature("towers-ring", "towers", { id: 42 }), feature("routes", undefined)];
+  assert.deepEqual([firstInOrder(under).kind, firstInOrder(under).id], ["tower", 42]);
+  assert.equal(firstInOrder(under.slice(0, 2)).kind, "line");
+  assert.equal(firstInOrder([feature("routes", undefined)]), null);
+});
+
+test("a point on a track is the nearest one of what is drawn", () => {
+  const track = { type: "LineString", coordinates: [[10, 60], [12, 60]] };
+  assert.deepEqual(nearestOnLine(track, [11, 60.4]), [11, 60]);
+  assert.deepEqual(nearestOnLine(track, [13, 60.4]), [12, 60]);
+});
+
+test("the nearest point is measured on the ground, not in degrees", () => {
+  // at 60° north a degree of longitude is half as long as one of latitude
+  const corner = { type: "MultiLineString", coordinates: [[[10, 60], [10, 61]], [[9, 60.7], [12, 60.7]]] };
+  assert.deepEqual(nearestOnLine(corner, [10.3, 60.5]), [10, 60.5]);
+});
+
+test("the graticule keeps its lines some 150 px apart", () => {
+  for (const zoom of [2, 5, 8, 11, 14]) {
+    const px = graticuleStep(zoom) / (360 / (512 * 2 ** zoom));
+    assert.ok(px > 70 && px < 320, `${px} px at zoom ${zoom}`);
+  }
+  const lines = graticuleLines([9.5, 49.5, 10.5, 50.5], 1);
+  assert.ok(lines.coordinates.some((line) => line.every(([longitude]) => longitude === 10)));
+});
+
+test("letters and colours go by the place in the mission", () => {
+  assert.deepEqual([0, 7, 8, 26].map(routeLetter), ["A", "H", "I", "AA"]);
+  assert.deepEqual([0, 7, 8].map(routeNumber), [1, 8, 1]);
+});
+
+test("a sketch fits its frame and keeps the shape", () => {
+  const [route] = placeSketch([[[10, 0], [11, 0], [11, 1]]], 112, 56, 8);
+  const width = route[1][0] - route[0][0];
+  const height = route[1][1] - route[2][1];
+  assert.ok(Math.abs(height - 40) < 1e-6 && Math.abs(width - height) < 0.05);
+  for (const [x, y] of route) assert.ok(x >= 8 - 1e-6 && x <= 104 + 1e-6 && y >= 8 - 1e-6 && y <= 48 + 1e-6);
+});
+
+test("a sketch of nothing and of one point does not fail", () => {
+  assert.deepEqual(placeSketch([]), []);
+  assert.deepEqual(placeSketch([[[10, 50]]]), [[[56, 28]]]);
+});

@@ -1,0 +1,72 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { firstDetail } from "../../static/js/api.js";
+import { inPlanOrder, isPlanCurrent, isUnsaved, placesOf, sentenceOf, unreachedOf } from "../../static/js/mission/plan_view.js";
+import { basisOf, EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";
+
+const target = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [id, 50] });
+const selection = withTargets(EMPTY, [1, 2, 3].map(target));
+const geometry = { type: "LineString", coordinates: [[0, 0], [1, 1]] };
+const plan = {
+  basis: basisOf(selection),
+  targets: selection.targets,
+  result: {
+    return_to_start: true, total_length_m: 42_500,
+    routes: [
+      { uav: "Heron", targets: [2], length_m: 19_100, duration_s: 1_620, geometry, end_action: "hover" },
+      { uav: "Kite", targets: [0], length_m: 23_400, duration_s: 1_980, geometry, end_action: "hover" },
+    ],
+    unassigned: [{ target: 1, reason: "inside_zone", message: "It stands inside Alum Creek reserve." }],
+  },
+};
+const plain = (text) => text.replaceAll("\u00a0", " ");
+
+test("each target knows its UAV and its number there", () => {
+  const places = placesOf(plan);
+  assert.deepEqual([places.get("3").letter, places.get("3").number], ["A", 1]);
+  assert.equal(places.get("1").letter, "B");
+  assert.equal(places.has("2"), false);
+});
+
+test("the list follows the plan, those without a route last", () => {
+  assert.deepEqual(inPlanOrder(selection.targets, placesOf(plan)).map(({ asset }) => asset), [3, 1, 2]);
+});
+
+test("the sentence says what happens, then the figures", () => {
+  const { sentence, facts } = sentenceOf(plan);
+  assert.equal(plain(sentence), "All back in 33 min");
+  assert.equal(plain(facts), "2 of 3 targets · 2 UAVs · 42.5 km");
+});
+
+test("UAVs that stay out are not said to be back", () => {
+  const open = { ...plan, result: { ...plan.result, return_to_start: false } };
+  assert.equal(plain(sentenceOf(open).sentence), "All done in 33 min");
+});
+
+test("what is not reached is told with the server's reason", () => {
+  const [{ target: missed, sentence }] = unreachedOf(plan);
+  assert.equal(missed.label, "Tower 2");
+  assert.equal(sentence, "It stands inside Alum Creek reserve.");
+});
+
+test("a plan is current only for the selection it was made for", () => {
+  assert.equal(isPlanCurrent({ plan, selection }), true);
+  assert.equal(isPlanCurrent({ plan, selection: { ...selection, objective: "total" } }), false);
+  assert.equal(isPlanCurrent({ plan: null, selection }), false);
+});
+
+test("a stored mission is unsaved once its name, selection or plan differs", () => {
+  const stored = { mission: { name: "North" }, name: "North", selection, plan, planIsStored: true, savedBasis: basisOf(selection) };
+  assert.equal(isUnsaved(stored), false);
+  assert.equal(isUnsaved({ ...stored, name: "South" }), true);
+  assert.equal(isUnsaved({ ...stored, planIsStored: false }), true);
+  assert.equal(isUnsaved({ ...stored, selection: { ...selection, return_to_start: false } }), true);
+  assert.equal(isUnsaved({ ...stored, mission: null, name: "", selection: EMPTY, plan: null }), false);
+});
+
+test("the first fault is found in nested details", () => {
+  assert.equal(firstDetail({ targets: { 1: { asset: ["There is no asset 99."] } } }), "targets 1 asset: There is no asset 99.");
+  assert.equal(firstDetail({ non_field_errors: ["Too many."] }), "Too many.");
+  assert.equal(firstDetail(null), "");
+});

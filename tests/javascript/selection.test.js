@@ -1,0 +1,54 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { basisOf, EMPTY, keyOf, requestOf, selectionOf, targetOf, withoutTargets, withTargets, withUav, withUavAt } from "../../static/js/mission/selection.js";
+
+const tower = targetOf({ id: 7, kind: "tower", properties: { label: "18", voltages: "138 kV" }, centre: [10, 50] });
+const wholeLine = targetOf({ id: 9, kind: "line", properties: { label: "North" }, centre: [10, 50] });
+const pointOnLine = targetOf({ id: 9, kind: "line", properties: { label: "North" }, position: [10.5, 50.5] });
+const heron = { id: 3, name: "Heron", base_name: "West", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" };
+
+test("the same thing is picked once, a line and a point on it are two", () => {
+  const selection = withTargets(EMPTY, [tower, wholeLine, tower, pointOnLine]);
+  assert.equal(selection.targets.length, 3);
+  assert.equal(withTargets(selection, [tower]), selection);
+});
+
+test("removing leaves the order of the rest", () => {
+  const selection = withTargets(EMPTY, [tower, wholeLine, pointOnLine]);
+  assert.deepEqual(withoutTargets(selection, [wholeLine.key]).targets.map(({ key }) => key), [tower.key, pointOnLine.key]);
+});
+
+test("the request has positions only where a point was picked", () => {
+  const request = requestOf(withUav(withTargets(EMPTY, [tower, wholeLine, pointOnLine]), heron));
+  assert.deepEqual(request.targets, [{ asset: 7 }, { asset: 9 }, { asset: 9, position: [10.5, 50.5] }]);
+  assert.deepEqual(request.uavs, [{ name: "Heron", position: [9, 49], id: 3, cruise_speed_mps: 12, end_action: "hover" }]);
+});
+
+test("a moved start asks for another plan, moved back for the same", () => {
+  const selection = withUav(withTargets(EMPTY, [tower]), heron);
+  const moved = withUavAt(selection, 0, [9.1, 49.1]);
+  assert.notEqual(basisOf(moved), basisOf(selection));
+  assert.equal(basisOf(withUavAt(moved, 0, [9, 49])), basisOf(selection));
+});
+
+test("a stored mission opens as it was picked", () => {
+  const mission = {
+    objective: "total", return_to_start: false,
+    uavs: [{ id: 3, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" }],
+    targets: [
+      { asset: 7, label: "18", kind: "tower", position: [10, 50], is_whole: true, stretch: null, task: null },
+      { asset: 9, label: "North", kind: "line", position: [10, 50], is_whole: true, stretch: null, task: null },
+      { asset: 9, label: "North", kind: "line", position: [10.5, 50.5], is_whole: false, stretch: null, task: null },
+      { asset: null, label: "Place", kind: null, position: [11, 51], is_whole: false, stretch: null, task: null },
+    ],
+  };
+  const selection = selectionOf(mission);
+  assert.deepEqual(requestOf(selection).targets, [{ asset: 7 }, { asset: 9 }, { asset: 9, position: [10.5, 50.5] }, { position: [11, 51] }]);
+  assert.deepEqual(selection.targets.map(({ centre }) => centre), [[10, 50], [10, 50], [10.5, 50.5], [11, 51]]);
+});
+
+test("a key names asset and place", () => {
+  assert.equal(keyOf({ asset: 9, position: [10.5, 50.5] }), "9 10.50000,50.50000");
+  assert.equal(keyOf({ asset: 9 }), "9");
+});
