@@ -80,6 +80,7 @@ class Mission(models.Model):
     flat_ground_assumed = models.BooleanField(null=True, blank=True)
     total_length_m = models.FloatField(null=True, blank=True)
     longest_route_m = models.FloatField(null=True, blank=True)
+    plan_warnings = models.JSONField(default=list, blank=True, help_text="what the plan says about UAVs that cannot start")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)
     deleted_at = models.DateTimeField(null=True, blank=True, help_text="deleted missions can be brought back")
@@ -111,6 +112,8 @@ class MissionUav(models.Model):
 
     class Meta:
         ordering = ["sequence"]
+        verbose_name = "UAV in a mission"
+        verbose_name_plural = "UAVs in missions"
         constraints = [models.UniqueConstraint(fields=["mission", "sequence"], name="mission_uav_sequence")]
 
     def __str__(self) -> str:

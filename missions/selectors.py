@@ -1,0 +1,93 @@
+"""Reads of missions and UAVs, always within one organisation."""
+
+from uuid import UUID
+
+import numpy as np
+from django.db.models import Count, Max, Prefetch, Q, QuerySet
+
+from inspection.models import Asset
+from inspection.selectors import ground_revision, zones_in_force
+from missions.flight_plan.clearance import legs_that_meet
+from missions.models import InspectionTarget, Mission, MissionState, Route, Uav, Waypoint
+from workspace.models import AuditEntry, Organisation
+
+SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
+
+
+def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:
+    return Uav.objects.filter(organisation=organisation)
+
+
+def missions_of_organisation(organisation: Organisation, *, text: str = "", state: str = "", deleted: bool = False) -> QuerySet[Mission]:
+    """Missions with what the list shows of each: counts, duration and routes."""
+    missions = Mission.objects.filter(organisation=organisation, deleted_at__isnull=not deleted)
+    if text:
+        missions = missions.filter(Q(name__icontains=text) | Q(author__username__icontains=text))
+    if state:
+        missions = missions.filter(state=state)
+    return (
+        missions.select_related("author")
+        .annotate(
+            target_count=Count("targets", distinct=True),
+            uav_count=Count("mission_uavs", distinct=True),
+            duration_s=Max("routes__duration_s"),
+        )
+        .prefetch_related("routes")
+    )
+
+
+def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, deleted: bool = False) -> Mission:
+    """One mission with all that belongs to it. Raises Mission.DoesNotExist also for another organisation's mission."""
+    routes = Route.objects.select_related("mission_uav").prefetch_related(Prefetch("waypoints", Waypoint.objects.order_by("sequence")))
+    targets = InspectionTarget.objects.select_related("asset").defer(
+        "asset__geometry", "asset__tags", "asset__node_osm_ids", "asset__parts"
+    )
+    return (
+        Mission.objects.filter(organisation=organisation, deleted_at__isnull=not deleted)
+        .select_related("author", "organisation")
+        .prefetch_related("mission_uavs", Prefetch("targets", targets), Prefetch("routes", routes))
+        .get(pk=mission_id)
+    )
+
+
+def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:
+    return AuditEntry.objects.filter(organisation=mission.organisation, subject_type="mission", subject_id=str(mission.pk)).select_related(
+        "actor"
+    )
+
+
+def is_stale(mission: Mission, revision: int) -> bool:
+    """Whether assets or zones have changed since the mission was planned; `revision` is the ground's now."""
+    return mission.state != MissionState.DRAFT and mission.ground_revision != revision
+
+
+def stale_reason(mission: Mission) -> str:
+    """What the change of the ground means for the mission, the worst first; empty if the ground is as it was."""
+    if not is_stale(mission, ground_revision()):
+        return ""
+    zones = zones_in_force()
+    for route in mission.routes.all():
+        if route.geometry is None:
+            continue
+        met = legs_that_meet(np.array(route.geometry.coords), list(zones.polygons))
+        if met:
+            return f"A zone changed since this was planned. {zones.names[met[0][1]]} touches the route of {route.mission_uav.name}."
+    vanished = [target.label for target in mission.targets.all() if target.asset is not None and target.asset.vanished_at is not None]
+    if vanished:
+        return f"An asset changed since this was planned. {vanished[0]} is no longer in the data."
+    if Asset.objects.filter(vanished_at__isnull=False, pk__in=_passed_assets(mission)).exists():
+        return "An asset changed since this was planned. A route passes something that is no longer in the data."
+    return "The ground has changed since this was planned. No zone in force touches the routes."
+
+
+def _passed_assets(mission: Mission) -> set[int]:
+    return {waypoint.asset_id for route in mission.routes.all() for waypoint in route.waypoints.all() if waypoint.asset_id is not None}
+
+
+def sketch(mission: Mission) -> list[list[list[float]]]:
+    """The routes, simplified for a drawing the size of a stamp."""
+    return [
+        [[round(lon, 5), round(lat, 5)] for lon, lat in route.geometry.simplify(SKETCH_TOLERANCE_DEG, preserve_topology=False).coords]
+        for route in mission.routes.all()
+        if route.geometry is not None
+    ]

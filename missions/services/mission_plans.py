@@ -1,0 +1,123 @@
+"""Storing a plan on its mission: all of it or nothing, and only on the mission that it was made for."""
+
+from typing import Any
+
+from django.contrib.gis.geos import LineString, Point
+from django.db import transaction
+from django.utils import timezone
+
+from inspection.models import Asset
+from missions.models import Mission, MissionState, Route, Waypoint
+from missions.routing.solver import OnProgress, Stop, never, no_report
+from missions.services.missions import drop_plan, lock_mission, request_of_mission
+from missions.services.planning import make_plan
+from workspace.models import User
+from workspace.services import record_change
+
+
+class NothingToPlan(Exception):
+    """A mission without UAVs or without targets."""
+
+
+def plan_mission(
+    *,
+    mission: Mission,
+    actor: User | None,
+    expected_revision: int | None = None,
+    stop: Stop = never,
+    on_progress: OnProgress = no_report,
+    search_s: float = 0.0,
+) -> Mission:
+    """Plan the mission and store the plan. Raises what make_plan raises, MissionChanged, MissionFrozen or NothingToPlan.
+
+    The plan is made without holding the mission; if the mission has been changed in the meantime, nothing is stored.
+    """
+    revision = mission.revision if expected_revision is None else expected_revision
+    request = request_of_mission(mission=mission)
+    if not request.uavs or not request.targets:
+        raise NothingToPlan
+    plan = make_plan(request=request, stop=stop, on_progress=on_progress, search_s=search_s)
+    return store_plan(mission=mission, actor=actor, revision=revision, plan=plan)
+
+
+def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dict[str, Any]) -> Mission:
+    """Replace the mission's routes by the plan's, in one transaction that holds the mission's row.
+
+    `revision` is the mission's that the plan was made for: a second plan, or one for older targets, raises MissionChanged.
+    """
+    with transaction.atomic():
+        locked = lock_mission(mission_id=mission.pk, expected_revision=revision)
+        before = {"revision": locked.revision, "total_length_m": locked.total_length_m, "graph_version": locked.graph_version}
+        drop_plan(mission=locked)
+        locked.state = MissionState.PLANNED
+        locked.planned_at = timezone.now()
+        locked.graph_version = plan["graph_version"]
+        locked.ground_revision = plan["ground_revision"]
+        locked.flat_ground_assumed = plan["flat_ground_assumed"]
+        locked.total_length_m = plan["total_length_m"]
+        locked.longest_route_m = plan["longest_route_m"]
+        locked.plan_warnings = plan["warnings"]
+        locked.revision += 1
+        locked.save()
+        _store_routes(locked, plan)
+        _store_left_out(locked, plan)
+        record_change(
+            organisation=locked.organisation,
+            actor=actor,
+            action="plan",
+            subject_type="mission",
+            subject_id=locked.pk,
+            before=before,
+            after={
+                "revision": locked.revision,
+                "total_length_m": locked.total_length_m,
+                "graph_version": locked.graph_version,
+                "unassigned": len(plan["unassigned"]),
+            },
+        )
+    return locked
+
+
+def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
+    targets = dict(mission.targets.values_list("sequence", "pk"))
+    assets = {waypoint["asset"] for route in plan["routes"] for waypoint in route["waypoints"]} - {None}
+    still_there = set(Asset.objects.filter(pk__in=assets).values_list("pk", flat=True))
+    routes = Route.objects.bulk_create(
+        Route(
+            mission=mission,
+            mission_uav=mission_uav,
+            graph_version=plan["graph_version"],
+            length_m=route["length_m"],
+            duration_s=route["duration_s"],
+            geometry=LineString(route["geometry"]["coordinates"], srid=4326) if route["geometry"] else None,
+        )
+        for mission_uav, route in zip(mission.mission_uavs.all(), plan["routes"], strict=True)
+    )
+    Waypoint.objects.bulk_create(
+        (
+            Waypoint(
+                route=row,
+                sequence=sequence,
+                kind=waypoint["kind"],
+                position=Point(*waypoint["position"], srid=4326),
+                asset_id=waypoint["asset"] if waypoint["asset"] in still_there else None,
+                target_id=None if waypoint["target"] is None else targets[waypoint["target"]],
+                task=waypoint["task"],
+                altitude_agl_m=waypoint["altitude_agl_m"],
+                altitude_amsl_m=waypoint["altitude_amsl_m"],
+                altitude_relative_m=waypoint["altitude_relative_m"],
+            )
+            for row, route in zip(routes, plan["routes"], strict=True)
+            for sequence, waypoint in enumerate(route["waypoints"])
+        ),
+        batch_size=1_000,
+    )
+
+
+def _store_left_out(mission: Mission, plan: dict[str, Any]) -> None:
+    left_out = {item["target"]: item for item in plan["unassigned"]}
+    rows = list(mission.targets.filter(sequence__in=left_out))
+    for row in rows:
+        row.unassigned_reason = left_out[row.sequence]["reason"]
+        row.unassigned_message = left_out[row.sequence]["message"][:500]
+    mission.targets.bulk_update(rows, ["unassigned_reason", "unassigned_message"])

@@ -1,0 +1,223 @@
+"""Missions from creation to deletion. Every write locks the mission's row, counts its revision and leaves an entry in its history."""
+
+from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
+
+from django.contrib.gis.geos import LineString, Point
+from django.db import transaction
+from django.utils import timezone
+
+from inspection.geodesy import LonLat
+from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
+from missions.routing.problem import Objective
+from missions.services.places import places_of
+from missions.services.requests import PlanRequest, TargetRequest, UavRequest, task_from_json, task_to_json
+from workspace.models import Organisation, User
+from workspace.services import record_change
+
+EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
+
+
+class MissionChanged(Exception):
+    """Somebody else was faster: the mission is not the one that the caller has seen."""
+
+
+class MissionFrozen(Exception):
+    """Only drafts and planned missions can be changed."""
+
+
+@dataclass(frozen=True)
+class MissionChange:
+    """What is to be changed; None leaves a part as it is."""
+
+    name: str | None = None
+    uavs: tuple[UavRequest, ...] | None = None
+    targets: tuple[TargetRequest, ...] | None = None
+    objective: Objective | None = None
+    return_to_start: bool | None = None
+
+    @property
+    def drops_plan(self) -> bool:
+        return any(part is not None for part in (self.uavs, self.targets, self.objective, self.return_to_start))
+
+
+def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
+    """Store a draft. Raises InvalidRequest if a target is not on the ground."""
+    targets = _target_rows(request.targets)
+    with transaction.atomic():
+        mission = Mission.objects.create(
+            organisation=organisation,
+            author=author,
+            name=name,
+            objective=request.objective,
+            return_to_start=request.return_to_start,
+        )
+        _store_uavs(mission, request.uavs)
+        _store_targets(mission, targets)
+        _note(mission, author, "create", before=None, after=_summary(mission) | {"uavs": len(request.uavs), "targets": len(targets)})
+    return mission
+
+
+def change_mission(*, mission: Mission, actor: User, change: MissionChange, expected_revision: int | None = None) -> Mission:
+    """Change a mission; new targets, UAVs or options drop its plan. Raises MissionChanged, MissionFrozen or InvalidRequest."""
+    targets = None if change.targets is None else _target_rows(change.targets)
+    with transaction.atomic():
+        locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
+        before = _summary(locked)
+        if change.name is not None:
+            locked.name = change.name
+        if change.objective is not None:
+            locked.objective = change.objective
+        if change.return_to_start is not None:
+            locked.return_to_start = change.return_to_start
+        if change.drops_plan:
+            drop_plan(mission=locked)
+        if change.uavs is not None:
+            locked.mission_uavs.all().delete()
+            _store_uavs(locked, change.uavs)
+        if targets is not None:
+            locked.targets.all().delete()
+            _store_targets(locked, targets)
+        _save(locked)
+        _note(locked, actor, "change" if change.drops_plan else "rename", before=before, after=_summary(locked))
+    return locked
+
+
+def delete_mission(*, mission: Mission, actor: User, expected_revision: int | None = None) -> Mission:
+    """Put the mission away; it can be brought back."""
+    with transaction.atomic():
+        locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
+        before = _summary(locked)
+        locked.deleted_at = timezone.now()
+        _save(locked)
+        _note(locked, actor, "delete", before=before, after=None)
+    return locked
+
+
+def restore_mission(*, mission: Mission, actor: User) -> Mission:
+    with transaction.atomic():
+        locked = Mission.objects.select_for_update().get(pk=mission.pk)
+        if locked.deleted_at is not None:
+            locked.deleted_at = None
+            _save(locked)
+            _note(locked, actor, "restore", before=None, after=_summary(locked))
+    return locked
+
+
+def lock_mission(*, mission_id: UUID, expected_revision: int | None) -> Mission:
+    """The mission's row, held until the caller's transaction ends. Raises MissionChanged or MissionFrozen."""
+    mission = Mission.objects.select_for_update().get(pk=mission_id)
+    if mission.deleted_at is not None or (expected_revision is not None and mission.revision != expected_revision):
+        raise MissionChanged
+    if mission.state not in EDITABLE:
+        raise MissionFrozen
+    return mission
+
+
+def drop_plan(*, mission: Mission) -> None:
+    """Back to a draft; the caller holds the row and saves it."""
+    mission.routes.all().delete()
+    mission.targets.update(unassigned_reason="", unassigned_message="")
+    mission.state = MissionState.DRAFT
+    mission.planned_at = mission.graph_version = mission.ground_revision = mission.flat_ground_assumed = None
+    mission.total_length_m = mission.longest_route_m = None
+    mission.plan_warnings = []
+
+
+def request_of_mission(*, mission: Mission) -> PlanRequest:
+    """What the planner is asked for this mission, UAVs and targets in their order."""
+    return PlanRequest(
+        uavs=tuple(
+            UavRequest(
+                name=row.name,
+                position=LonLat(*row.start.coords),
+                max_range_m=row.max_range_m,
+                cruise_speed_mps=row.cruise_speed_mps,
+                end_action=EndAction(row.end_action),
+                uav=row.uav_id,
+            )
+            for row in mission.mission_uavs.all()
+        ),
+        targets=tuple(
+            TargetRequest(
+                asset=row.asset_id,
+                position=LonLat(*row.position.coords) if row.position else None,
+                stretch=(LonLat(*row.stretch.coords[0]), LonLat(*row.stretch.coords[-1])) if row.stretch else None,
+                task=task_from_json(row.task),
+            )
+            for row in mission.targets.all()
+        ),
+        objective=Objective(mission.objective),
+        return_to_start=mission.return_to_start,
+    )
+
+
+def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:
+    """Unsaved rows with the label and the task that each target has today. Raises InvalidRequest."""
+    places, _ = places_of(targets)
+    rows = []
+    for place in places:
+        target = targets[place.target]
+        rows.append(
+            InspectionTarget(
+                sequence=place.target,
+                asset_id=target.asset,
+                label=place.label[:255],
+                position=Point(*target.position, srid=4326) if target.position else None,
+                stretch=LineString(*target.stretch, srid=4326) if target.stretch else None,
+                task=task_to_json(place.task),
+            )
+        )
+    return rows
+
+
+def _store_targets(mission: Mission, rows: list[InspectionTarget]) -> None:
+    for row in rows:
+        row.mission = mission
+    InspectionTarget.objects.bulk_create(rows)
+
+
+def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
+    MissionUav.objects.bulk_create(
+        MissionUav(
+            mission=mission,
+            uav_id=uav.uav,
+            sequence=sequence,
+            name=uav.name,
+            start=Point(*uav.position, srid=4326),
+            max_range_m=uav.max_range_m,
+            cruise_speed_mps=uav.cruise_speed_mps,
+            end_action=uav.end_action,
+        )
+        for sequence, uav in enumerate(uavs)
+    )
+
+
+def _save(mission: Mission) -> None:
+    mission.revision += 1
+    mission.save()
+
+
+def _summary(mission: Mission) -> dict[str, Any]:
+    return {
+        "name": mission.name,
+        "state": str(mission.state),
+        "revision": mission.revision,
+        "objective": str(mission.objective),
+        "return_to_start": mission.return_to_start,
+        "total_length_m": mission.total_length_m,
+        "graph_version": mission.graph_version,
+    }
+
+
+def _note(mission: Mission, actor: User | None, action: str, *, before: Any, after: Any) -> None:
+    record_change(
+        organisation=mission.organisation,
+        actor=actor,
+        action=action,
+        subject_type="mission",
+        subject_id=mission.pk,
+        before=before,
+        after=after,
+    )
