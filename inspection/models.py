@@ -180,6 +180,7 @@ class NoFlyZone(models.Model):
 
     class Meta:
         ordering = ["pk"]
+        verbose_name = "no-fly zone"
         constraints = [
             models.UniqueConstraint(fields=["zone_set", "identifier", "layer"], name="zone_source_key"),
             models.CheckConstraint(
@@ -221,6 +222,7 @@ class Ground(models.Model):
     changed_at = models.DateTimeField(null=True)
 
     class Meta:
+        verbose_name_plural = "ground"
         constraints = [models.CheckConstraint(condition=Q(id=1), name="ground_single")]
 
     def __str__(self) -> str:

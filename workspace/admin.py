@@ -4,10 +4,13 @@ from typing import Any
 
 from django.contrib import admin
 from django.contrib.auth.admin import UserAdmin as DjangoUserAdmin
+from django.contrib.auth.models import Group
 from django.http import HttpRequest
 from django.utils import timezone
 
 from workspace.models import ApiToken, AuditEntry, Job, Organisation, User
+
+admin.site.unregister(Group)  # what somebody may do follows from the role
 
 
 class ReadOnlyAdmin(admin.ModelAdmin):
