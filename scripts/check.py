@@ -19,7 +19,7 @@ from typing import NoReturn
 
 from config.private_servers import private_database_url, private_redis_url, state_directory
 from scripts import database_cluster
-from scripts.places import PROJECT_DIR, CannotStart, prepare_sockets, prepare_state
+from scripts.places import PROJECT_DIR, CannotStart, prepare_sockets, prepare_state, remove_sockets
 from scripts.programs import Program, database_server, queue_server
 from scripts.supervision import Supervisor
 
@@ -102,6 +102,7 @@ def private_servers(state: Path) -> Iterator[dict[str, str]]:
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 signal.signal(number, signal.SIG_IGN)
             supervisor.stop()
+            remove_sockets(state)
 
 
 def run(step: Step, environment: dict[str, str]) -> int:

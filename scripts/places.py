@@ -10,7 +10,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from config.private_servers import PROJECT_DIR
+from config.private_servers import PROJECT_DIR, socket_directory
 
 SOCKET_PATH_LIMIT = 107  # bytes, sun_path of Linux
 DATABASE_USER = "postgres"  # PostgreSQL refuses to run as root
@@ -131,7 +131,7 @@ def prepare_sockets(state: Path) -> Path:
     sockets = Path(note.read_text().strip()) if note.exists() else Path(tempfile.gettempdir()) / f"spanwise-{digest}"
     if not _is_ours(sockets, state):
         parent = Path(tempfile.gettempdir())
-        if len(str(parent)) > SOCKET_PATH_LIMIT - 50:
+        if len(os.fsencode(parent)) > SOCKET_PATH_LIMIT - len("/spanwise-0123456789/supervisor.sock.4194304"):
             parent = Path("/tmp")  # noqa: S108 - the folder in it is checked for its owner and closed
         sockets = parent / f"spanwise-{digest}"
         try:
@@ -149,4 +149,21 @@ def prepare_sockets(state: Path) -> Path:
     return sockets
 
 
-__all__ = ["DATABASE_USER", "DEMO_USER", "PROJECT_DIR", "CannotStart", "Places", "database_user_id", "prepare_sockets", "prepare_state"]
+def remove_sockets(state: Path) -> None:
+    """Remove the socket folder of a state on which nothing runs any more."""
+    sockets = socket_directory(state)
+    if _is_ours(sockets, state):
+        shutil.rmtree(sockets, ignore_errors=True)
+
+
+__all__ = [
+    "DATABASE_USER",
+    "DEMO_USER",
+    "PROJECT_DIR",
+    "CannotStart",
+    "Places",
+    "database_user_id",
+    "prepare_sockets",
+    "prepare_state",
+    "remove_sockets",
+]

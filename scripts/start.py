@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 from config.private_servers import socket_directory
 from scripts import database_cluster, proxy
 from scripts.options import parse, port_problem
-from scripts.places import DEMO_USER, PROJECT_DIR, CannotStart, Places, prepare_sockets, prepare_state
+from scripts.places import DEMO_USER, PROJECT_DIR, CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
 from scripts.programs import Program, database_server, queue_server, web_programs
 from scripts.supervision import ProgramState, Supervisor
 
@@ -125,6 +125,7 @@ class Installation:
         began = time.monotonic()
         self.supervisor.stop()
         self.places.instance.unlink(missing_ok=True)
+        remove_sockets(self.places.state)
         print(f"{time.monotonic() - began:.1f} s. The data stay.", flush=True)
 
     def _start_servers(self) -> None:
@@ -215,6 +216,7 @@ class Installation:
         print("The supervisor has been killed; everything stops. Start it again with ./run", file=sys.stderr)
         self.supervisor.end_leftovers()
         self.places.instance.unlink(missing_ok=True)
+        remove_sockets(self.places.state)
         return 1
 
     # --- showing and stopping ----------------------------------------------------------------------------------------------------
@@ -243,6 +245,7 @@ class Installation:
         was_running = bool(supervisor.states())
         self.places.instance.unlink(missing_ok=True)
         supervisor.stop()
+        remove_sockets(self.places.state)
         print("Stopped. The data stay." if was_running else f"Nothing runs on {self.places.state}")
         return 0
 

@@ -24,7 +24,7 @@ STOP_TIMEOUT_S = 90.0
 
 
 def configuration(places: Places, sockets: Path, programs: Iterable[Program]) -> str:
-    """The text of supervisord.conf. A percent sign is doubled, as its parser wants."""
+    """The text of supervisord.conf. A percent sign is doubled, as its parser wants; it reads the name of a log file twice."""
     lines = [
         "[unix_http_server]",
         f"file={sockets / 'supervisor.sock'}",
@@ -56,7 +56,7 @@ def configuration(places: Places, sockets: Path, programs: Iterable[Program]) ->
             f"stopwaitsecs={program.patience_s}",
             "killasgroup=true",
             "redirect_stderr=true",
-            f"stdout_logfile={places.logs / program.name}.log",
+            f"stdout_logfile={places.logs / program.name}.log".replace("%", "%%"),
             "stdout_logfile_maxbytes=10MB",
             "stdout_logfile_backups=3",
         ]

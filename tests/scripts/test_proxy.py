@@ -1,0 +1,47 @@
+"""The proxy's configuration: nginx accepts it, and it says what pages may load."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from scripts.places import CannotStart, Places
+from scripts.proxy import configuration, content_security_policy
+from scripts.system_packages import find_program
+
+
+def test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path: Path) -> None:
+    nginx = find_program("nginx")
+    if nginx is None:
+        pytest.skip("nginx is not installed; ./run installs it")
+    places = Places(tmp_path / "a state")
+    places.process("proxy").mkdir(parents=True)
+    path = tmp_path / "nginx.conf"
+    path.write_text(configuration(places, tmp_path, 8000))
+    answer = subprocess.run([nginx, "-e", "stderr", "-t", "-c", str(path)], capture_output=True, text=True, check=False)
+    assert "test is successful" in answer.stderr, answer.stderr
+
+
+def test_a_path_that_nginx_would_misread_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(CannotStart, match="dollar"):
+        configuration(Places(tmp_path / "$uri"), tmp_path, 8000)
+
+
+def test_pages_may_run_no_script_that_stands_in_the_page() -> None:
+    rules = dict(rule.split(" ", 1) for rule in content_security_policy().split("; "))
+    assert rules["script-src"] == "'self'"
+    assert rules["worker-src"] == "'self' blob:"
+    assert rules["object-src"] == rules["frame-ancestors"] == "'none'"
+
+
+def test_a_tile_server_without_tls_is_allowed_by_name_alone() -> None:
+    policy = content_security_policy(["http://tiles.example:8080/{z}/{x}/{y}.png", "https://tiles.example/{z}", ""])
+    assert "connect-src 'self' https: http://tiles.example:8080;" in policy
+    assert content_security_policy(["http://evil;script-src/*"]) == content_security_policy()
+
+
+def test_behind_a_tls_proxy_its_word_on_the_scheme_is_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SPANWISE_HTTPS", raising=False)
+    assert "X-Forwarded-Proto $scheme;" in configuration(Places(tmp_path), tmp_path, 8000)
+    monkeypatch.setenv("SPANWISE_HTTPS", "1")
+    assert "X-Forwarded-Proto $http_x_forwarded_proto;" in configuration(Places(tmp_path), tmp_path, 8000)
