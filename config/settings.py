@@ -192,6 +192,7 @@ SPECTACULAR_SETTINGS = {
     "ENUM_NAME_OVERRIDES": {
         "AssetKind": "inspection.models.AssetKind",
         "WaypointKind": "missions.models.WaypointKind",
+        "TaskKind": ["look", "photo", "hold"],
         "JobState": "workspace.models.JobState",
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",

@@ -13,6 +13,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),
+    path("api/v1/", include("missions.urls")),
     path("", include("missions.page_urls")),
     path("admin/", admin.site.urls),
 ]

@@ -14,8 +14,9 @@ from workspace.models import AuditEntry, Organisation
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
 
 
-def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:
-    return Uav.objects.filter(organisation=organisation)
+def uavs_of_organisation(organisation: Organisation, *, text: str = "") -> QuerySet[Uav]:
+    uavs = Uav.objects.filter(organisation=organisation)
+    return uavs.filter(Q(name__icontains=text) | Q(base_name__icontains=text)) if text else uavs
 
 
 def missions_of_organisation(organisation: Organisation, *, text: str = "", state: str = "", deleted: bool = False) -> QuerySet[Mission]:

@@ -1,6 +1,6 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
-from missions.services.mission_plans import NothingToPlan, plan_mission, store_plan
+from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan
 from missions.services.missions import (
     MissionChange,
     MissionChanged,
@@ -12,11 +12,14 @@ from missions.services.missions import (
     restore_mission,
 )
 from missions.services.places import places_of
+from missions.services.plan_json import FLAT_GROUND, TERRAIN_MODEL
 from missions.services.planning import GraphOutdated, make_plan
 from missions.services.requests import InvalidRequest, PlanRequest, TargetRequest, UavRequest, request_from_json, request_to_json
 from missions.services.uavs import NameTaken, UavInUse, change_uav, create_uav, delete_uav
 
 __all__ = [
+    "FLAT_GROUND",
+    "TERRAIN_MODEL",
     "GraphOutdated",
     "InvalidRequest",
     "MissionChange",
@@ -37,6 +40,8 @@ __all__ = [
     "make_plan",
     "places_of",
     "plan_mission",
+    "plan_mission_for_job",
+    "plannable_request",
     "request_from_json",
     "request_of_mission",
     "request_to_json",

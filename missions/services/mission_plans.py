@@ -8,36 +8,52 @@ from django.utils import timezone
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
-from missions.routing.solver import OnProgress, Stop, never, no_report
+from missions.routing.solver import OnProgress, Stop
 from missions.services.missions import drop_plan, lock_mission, request_of_mission
 from missions.services.planning import make_plan
-from workspace.models import User
-from workspace.services import record_change
+from missions.services.requests import PlanRequest
+from workspace.models import Job, User
+from workspace.services import JobCancelled, finish_job, record_change
 
 
 class NothingToPlan(Exception):
     """A mission without UAVs or without targets."""
 
 
-def plan_mission(
-    *,
-    mission: Mission,
-    actor: User | None,
-    expected_revision: int | None = None,
-    stop: Stop = never,
-    on_progress: OnProgress = no_report,
-    search_s: float = 0.0,
-) -> Mission:
+def plan_mission(*, mission: Mission, actor: User | None, expected_revision: int | None = None) -> Mission:
     """Plan the mission and store the plan. Raises what make_plan raises, MissionChanged, MissionFrozen or NothingToPlan.
 
-    The plan is made without holding the mission; if the mission has been changed in the meantime, nothing is stored.
+    The plan is made without holding the mission; if the mission is changed in the meantime, nothing is stored.
     """
-    revision = mission.revision if expected_revision is None else expected_revision
+    request = plannable_request(mission=mission)
+    plan = make_plan(request=request)
+    return store_plan(
+        mission=mission, actor=actor, revision=mission.revision if expected_revision is None else expected_revision, plan=plan
+    )
+
+
+def plannable_request(*, mission: Mission) -> PlanRequest:
+    """What the planner is asked for this mission. Raises NothingToPlan."""
     request = request_of_mission(mission=mission)
     if not request.uavs or not request.targets:
         raise NothingToPlan
+    return request
+
+
+def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnProgress, search_s: float) -> None:
+    """Plan the job's mission, and store the plan and the job's end together: neither is ever there without the other.
+
+    Raises JobCancelled if the user stopped it, and what plan_mission raises.
+    """
+    mission = Mission.objects.get(pk=job.parameters["mission"])
+    request = plannable_request(mission=mission)
     plan = make_plan(request=request, stop=stop, on_progress=on_progress, search_s=search_s)
-    return store_plan(mission=mission, actor=actor, revision=revision, plan=plan)
+    if stop():
+        raise JobCancelled
+    with transaction.atomic():
+        planned = store_plan(mission=mission, actor=job.created_by, revision=job.parameters["revision"], plan=plan)
+        if not finish_job(job=job, result={"mission": str(planned.pk), "revision": planned.revision}, message="Planned"):
+            raise JobCancelled
 
 
 def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dict[str, Any]) -> Mission:

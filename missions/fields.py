@@ -1,0 +1,54 @@
+"""Fields of the planning API: positions and finite numbers."""
+
+import math
+from typing import Any
+
+from drf_spectacular.utils import extend_schema_field
+from rest_framework import serializers
+
+from inspection.geodesy import LonLat
+
+
+@extend_schema_field(
+    {
+        "type": "array",
+        "items": {"type": "number"},
+        "minItems": 2,
+        "maxItems": 2,
+        "description": "lon, lat [deg], WGS84",
+        "example": [9.52, 47.14],
+    }
+)
+class PositionField(serializers.Field):
+    """[lon, lat] in degrees."""
+
+    default_error_messages = {
+        "shape": "A position is two numbers: [longitude, latitude].",
+        "range": "Longitude goes from -180 to 180 and latitude from -90 to 90; longitude comes first.",
+    }
+
+    def to_internal_value(self, data: Any) -> LonLat:
+        if not isinstance(data, list) or len(data) != 2 or not all(_is_number(part) for part in data):
+            self.fail("shape")
+        lon, lat = float(data[0]), float(data[1])
+        if not (-180 <= lon <= 180 and -90 <= lat <= 90):
+            self.fail("range")
+        return LonLat(lon, lat)
+
+    def to_representation(self, value: Any) -> list[float]:
+        return [float(value[0]), float(value[1])]
+
+
+class FiniteFloatField(serializers.FloatField):
+    """A JSON number; texts such as "inf" are not numbers."""
+
+    def to_internal_value(self, data: Any) -> float:
+        if not _is_number(data):
+            self.fail("invalid")
+        return float(data)
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) < 1e300 and math.isfinite(value)

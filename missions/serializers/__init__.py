@@ -1,0 +1,1 @@
+"""Shapes of missions, plans and UAVs in the API."""

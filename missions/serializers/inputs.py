@@ -1,0 +1,176 @@
+"""What comes in: UAVs, targets, options, plans and missions."""
+
+from typing import Any
+
+from django.conf import settings
+from rest_framework import serializers
+
+from missions.fields import FiniteFloatField, PositionField
+from missions.models import EndAction, Objective, Uav
+from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
+from missions.routing.problem import Objective as RoutingObjective
+from missions.selectors import uavs_of_organisation
+from missions.services import PlanRequest, TargetRequest, UavRequest
+
+FARTHEST_RANGE_M = 1e7
+FASTEST_MPS = 100.0
+
+
+class TaskSerializer(serializers.Serializer):
+    """What is done at a target. Without `hold_s` the kind's own: 5 s to look, 10 s for photos, 30 s to hold."""
+
+    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
+    hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
+
+    def to_task(self, value: dict[str, Any]) -> Task:
+        kind = TaskKind(value["kind"])
+        return Task(kind, value.get("hold_s", DEFAULT_HOLD_S[kind]))
+
+
+class UavInputSerializer(serializers.Serializer):
+    """A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position."""
+
+    id = serializers.IntegerField(required=False, allow_null=True)
+    name = serializers.CharField(max_length=100, required=False)
+    position = PositionField(required=False)
+    max_range_m = FiniteFloatField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")
+    cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
+    end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+
+    def validate_max_range_m(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_cruise_speed_mps(self, value: float) -> float | None:
+        return above_zero(value)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        missing = [field for field in ("name", "position") if field not in attrs]
+        if attrs.get("id") is None and missing:
+            raise serializers.ValidationError(dict.fromkeys(missing, "This field is required for a UAV without an id."))
+        return attrs
+
+
+def above_zero(value: float | None) -> float | None:
+    if value is not None and value <= 0:
+        raise serializers.ValidationError("This must be above 0.")
+    return value
+
+
+class TargetInputSerializer(serializers.Serializer):
+    """An asset, a point (`position`) or `stretch` on one, or a bare `position`."""
+
+    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=2**63 - 1)
+    position = PositionField(required=False, allow_null=True)
+    stretch = serializers.ListField(child=PositionField(), min_length=2, max_length=2, required=False, allow_null=True)
+    task = TaskSerializer(required=False, allow_null=True)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs.get("asset") is None and attrs.get("position") is None:
+            raise serializers.ValidationError({"asset": "A target needs an asset or a position."})
+        if attrs.get("stretch") and (attrs.get("asset") is None or attrs.get("position") is not None):
+            raise serializers.ValidationError({"stretch": "A stretch needs an asset and no position."})
+        return attrs
+
+
+class OptionsSerializer(serializers.Serializer):
+    """UAVs, targets and options, all optional: what a mission is made of."""
+
+    uavs = UavInputSerializer(many=True, required=False)
+    targets = TargetInputSerializer(many=True, required=False)
+    objective = serializers.ChoiceField(choices=Objective.choices, required=False, help_text="total: fly least; makespan: finish soonest")
+    return_to_start = serializers.BooleanField(required=False)
+
+    def validate_uavs(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        return _no_more_than(settings.ROUTING_RULES.max_uavs, value, "UAVs")
+
+    def validate_targets(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        return _no_more_than(settings.ROUTING_RULES.max_targets, value, "targets")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if "uavs" in attrs:
+            attrs["uavs"] = self._uav_requests(attrs["uavs"])
+        if "targets" in attrs:
+            attrs["targets"] = tuple(_target_request(target) for target in attrs["targets"])
+        if "objective" in attrs:
+            attrs["objective"] = RoutingObjective(attrs["objective"])
+        return attrs
+
+    def _uav_requests(self, uavs: list[dict[str, Any]]) -> tuple[UavRequest, ...]:
+        """Stored UAVs are those of the organisation in the serializer's context."""
+        ids = [uav["id"] for uav in uavs if uav.get("id") is not None]
+        stored = {row.pk: row for row in uavs_of_organisation(self.context["organisation"]).filter(pk__in=ids)} if ids else {}
+        faults = {
+            str(index): {"id": f"There is no UAV {uav['id']}."}
+            for index, uav in enumerate(uavs)
+            if uav.get("id") is not None and uav["id"] not in stored
+        }
+        if faults:
+            raise serializers.ValidationError({"uavs": faults})
+        return tuple(_uav_request(uav, stored.get(uav.get("id"))) for uav in uavs)
+
+
+def _no_more_than(limit: int, value: list[dict[str, Any]], what: str) -> list[dict[str, Any]]:
+    if len(value) > limit:
+        raise serializers.ValidationError(f"At most {limit} {what}; these are {len(value)}.")
+    return value
+
+
+def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
+    if stored is None:
+        known = {"max_range_m": None, "cruise_speed_mps": settings.FLIGHT_RULES.cruise_speed_mps, "end_action": EndAction.HOVER}
+    else:
+        known = {
+            "name": stored.name,
+            "position": stored.location.coords,
+            "max_range_m": stored.max_range_m,
+            "cruise_speed_mps": stored.cruise_speed_mps,
+            "end_action": stored.end_action,
+        }
+    values = known | {field: uav[field] for field in uav if field != "id"}
+    return UavRequest(
+        name=values["name"],
+        position=PositionField().to_internal_value(list(values["position"])),
+        max_range_m=values["max_range_m"],
+        cruise_speed_mps=values["cruise_speed_mps"],
+        end_action=EndAction(values["end_action"]),
+        uav=None if stored is None else stored.pk,
+    )
+
+
+def _target_request(target: dict[str, Any]) -> TargetRequest:
+    task, stretch = target.get("task"), target.get("stretch")
+    return TargetRequest(
+        asset=target.get("asset"),
+        position=target.get("position"),
+        stretch=(stretch[0], stretch[1]) if stretch else None,
+        task=TaskSerializer().to_task(task) if task else None,
+    )
+
+
+class PlanInputSerializer(OptionsSerializer):
+    """What is to be planned."""
+
+    uavs = UavInputSerializer(many=True, allow_empty=False)
+    targets = TargetInputSerializer(many=True, allow_empty=False)
+
+    def to_request(self) -> PlanRequest:
+        return plan_request(self.validated_data)
+
+
+class MissionInputSerializer(OptionsSerializer):
+    name = serializers.CharField(max_length=200)
+    plan = serializers.BooleanField(required=False, default=False, help_text="plan it in the same request")
+
+
+class MissionPatchSerializer(OptionsSerializer):
+    name = serializers.CharField(max_length=200, required=False)
+    plan = serializers.BooleanField(required=False, default=False, help_text="plan it in the same request")
+
+
+def plan_request(values: dict[str, Any]) -> PlanRequest:
+    return PlanRequest(
+        uavs=values.get("uavs", ()),
+        targets=values.get("targets", ()),
+        objective=values.get("objective", RoutingObjective.TOTAL),
+        return_to_start=values.get("return_to_start", False),
+    )

@@ -1,0 +1,130 @@
+"""Missions from rows to the shapes of the API."""
+
+from typing import Any
+
+from inspection.selectors import asset_label
+from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
+from missions.selectors import is_stale, sketch, stale_reason
+from missions.services import FLAT_GROUND, TERRAIN_MODEL
+
+
+def mission_json(mission: Mission) -> dict[str, Any]:
+    """A mission with all that belongs to it, as loaded by selectors.mission_of_organisation."""
+    reason = stale_reason(mission)
+    return {
+        "id": str(mission.pk),
+        "name": mission.name,
+        "state": mission.state,
+        "author": mission.author.username if mission.author else None,
+        "objective": mission.objective,
+        "return_to_start": mission.return_to_start,
+        "revision": mission.revision,
+        "created_at": mission.created_at,
+        "updated_at": mission.updated_at,
+        "planned_at": mission.planned_at,
+        "graph_version": mission.graph_version,
+        "is_stale": bool(reason),
+        "stale_reason": reason,
+        "flat_ground_assumed": mission.flat_ground_assumed,
+        "uavs": [_uav(row) for row in mission.mission_uavs.all()],
+        "targets": [_target(row) for row in mission.targets.all()],
+        "plan": _plan(mission),
+    }
+
+
+def mission_summary(mission: Mission, revision: int) -> dict[str, Any]:
+    """A line of the list, as loaded by selectors.missions_of_organisation; `revision` is the ground's now."""
+    return {
+        "id": str(mission.pk),
+        "name": mission.name,
+        "state": mission.state,
+        "author": mission.author.username if mission.author else None,
+        "updated_at": mission.updated_at,
+        "planned_at": mission.planned_at,
+        "target_count": mission.target_count,
+        "uav_count": mission.uav_count,
+        "total_length_m": mission.total_length_m,
+        "longest_route_m": mission.longest_route_m,
+        "duration_s": mission.duration_s,
+        "is_stale": is_stale(mission, revision),
+        "sketch": sketch(mission),
+    }
+
+
+def _uav(row: MissionUav) -> dict[str, Any]:
+    return {
+        "id": row.uav_id,
+        "name": row.name,
+        "position": list(row.start.coords),
+        "max_range_m": row.max_range_m,
+        "cruise_speed_mps": row.cruise_speed_mps,
+        "end_action": row.end_action,
+    }
+
+
+def _target(row: InspectionTarget) -> dict[str, Any]:
+    asset = row.asset
+    at = row.position or (asset.centre if asset is not None else None)
+    return {
+        "asset": row.asset_id,
+        "label": row.label if asset is None else asset_label(asset),
+        "kind": None if asset is None else asset.kind,
+        "position": None if at is None else list(at.coords),
+        "stretch": [list(end) for end in row.stretch.coords] if row.stretch else None,
+        "is_point": row.position is not None,
+        "task": row.task,
+        "state": row.state,
+        "unassigned_reason": row.unassigned_reason,
+        "unassigned_message": row.unassigned_message,
+    }
+
+
+def _plan(mission: Mission) -> dict[str, Any] | None:
+    """The stored plan in the shape in which the planner answers; null for a draft."""
+    if mission.planned_at is None:
+        return None
+    sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
+    return {
+        "objective": mission.objective,
+        "return_to_start": mission.return_to_start,
+        "total_length_m": mission.total_length_m,
+        "longest_route_m": mission.longest_route_m,
+        "graph_version": mission.graph_version,
+        "ground_revision": mission.ground_revision,
+        "flat_ground_assumed": mission.flat_ground_assumed,
+        "terrain": FLAT_GROUND if mission.flat_ground_assumed else TERRAIN_MODEL,
+        "warnings": mission.plan_warnings,
+        "routes": [_route(route, mission, sequence_of) for route in mission.routes.all()],
+        "unassigned": [
+            {"target": target.sequence, "reason": target.unassigned_reason, "message": target.unassigned_message}
+            for target in mission.targets.all()
+            if target.unassigned_reason
+        ],
+    }
+
+
+def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[str, Any]:
+    waypoints = list(route.waypoints.all())
+    uav = route.mission_uav
+    return {
+        "uav": uav.name,
+        "uav_id": uav.uav_id,
+        "end_action": EndAction.RETURN if mission.return_to_start else uav.end_action,
+        "length_m": route.length_m,
+        "duration_s": route.duration_s,
+        "targets": [sequence_of[waypoint.target_id] for waypoint in waypoints if waypoint.kind == WaypointKind.TARGET],
+        "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,
+        "waypoints": [
+            {
+                "position": list(waypoint.position.coords),
+                "kind": waypoint.kind,
+                "asset": waypoint.asset_id,
+                "target": sequence_of.get(waypoint.target_id),
+                "task": waypoint.task,
+                "altitude_agl_m": waypoint.altitude_agl_m,
+                "altitude_amsl_m": waypoint.altitude_amsl_m,
+                "altitude_relative_m": waypoint.altitude_relative_m,
+            }
+            for waypoint in waypoints
+        ],
+    }

@@ -1,0 +1,150 @@
+"""What goes out: plans, missions, history."""
+
+from rest_framework import serializers
+
+from missions.fields import PositionField
+from missions.models import EndAction, MissionState, Objective, TargetState, WaypointKind
+from missions.routing.problem import TaskKind
+
+
+class LineSerializer(serializers.Serializer):
+    type = serializers.ChoiceField(choices=["LineString"])
+    coordinates = serializers.ListField(child=PositionField())
+
+
+class TaskOutputSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
+    hold_s = serializers.FloatField()
+
+
+class WaypointSerializer(serializers.Serializer):
+    position = PositionField()
+    kind = serializers.ChoiceField(choices=WaypointKind.choices)
+    asset = serializers.IntegerField(allow_null=True)
+    target = serializers.IntegerField(allow_null=True, help_text="index of the target; a stretch's further vertices carry it too")
+    task = TaskOutputSerializer(allow_null=True)
+    altitude_agl_m = serializers.FloatField(help_text="above ground")
+    altitude_amsl_m = serializers.FloatField(allow_null=True, help_text="above sea level; null without terrain data")
+    altitude_relative_m = serializers.FloatField(help_text="above the take-off point")
+
+
+class RouteSerializer(serializers.Serializer):
+    """One UAV's part, in the order of the request's UAVs."""
+
+    uav = serializers.CharField(help_text="name")
+    uav_id = serializers.IntegerField(allow_null=True)
+    end_action = serializers.ChoiceField(choices=EndAction.choices)
+    length_m = serializers.FloatField(help_text="metres flown")
+    duration_s = serializers.FloatField()
+    targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
+    geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
+    waypoints = WaypointSerializer(many=True)
+
+
+class UnassignedSerializer(serializers.Serializer):
+    target = serializers.IntegerField()
+    reason = serializers.ChoiceField(
+        choices=["no_path", "inside_zone", "beyond_range", "too_far_from_network", "above_height_limit", "asset_gone"]
+    )
+    message = serializers.CharField()
+
+
+class WarningSerializer(serializers.Serializer):
+    code = serializers.ChoiceField(choices=["uav_inside_zone"])
+    uav = serializers.IntegerField(help_text="index of the UAV")
+    message = serializers.CharField()
+
+
+class PlanSerializer(serializers.Serializer):
+    objective = serializers.ChoiceField(choices=Objective.choices)
+    return_to_start = serializers.BooleanField()
+    total_length_m = serializers.FloatField()
+    longest_route_m = serializers.FloatField()
+    graph_version = serializers.IntegerField()
+    ground_revision = serializers.IntegerField()
+    flat_ground_assumed = serializers.BooleanField()
+    terrain = serializers.ChoiceField(choices=["flat ground assumed", "terrain model"])
+    warnings = WarningSerializer(many=True)
+    routes = RouteSerializer(many=True)
+    unassigned = UnassignedSerializer(many=True)
+
+
+class JobLinkSerializer(serializers.Serializer):
+    job = serializers.UUIDField(help_text="its state: GET the address in Location")
+    mission = serializers.UUIDField(required=False)
+
+
+class MissionUavSerializer(serializers.Serializer):
+    id = serializers.IntegerField(allow_null=True, help_text="of the stored UAV")
+    name = serializers.CharField()
+    position = PositionField()
+    max_range_m = serializers.FloatField(allow_null=True)
+    cruise_speed_mps = serializers.FloatField()
+    end_action = serializers.ChoiceField(choices=EndAction.choices)
+
+
+class MissionTargetSerializer(serializers.Serializer):
+    asset = serializers.IntegerField(allow_null=True)
+    label = serializers.CharField()
+    kind = serializers.CharField(allow_null=True)
+    position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
+    stretch = serializers.ListField(child=PositionField(), allow_null=True)
+    is_point = serializers.BooleanField(help_text="the operator picked `position`; else it is the whole asset or the stretch")
+    task = TaskOutputSerializer()
+    state = serializers.ChoiceField(choices=TargetState.choices)
+    unassigned_reason = serializers.CharField()
+    unassigned_message = serializers.CharField()
+
+
+class MissionSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    name = serializers.CharField()
+    state = serializers.ChoiceField(choices=MissionState.choices)
+    author = serializers.CharField(allow_null=True)
+    objective = serializers.ChoiceField(choices=Objective.choices)
+    return_to_start = serializers.BooleanField()
+    revision = serializers.IntegerField(help_text="the ETag")
+    created_at = serializers.DateTimeField()
+    updated_at = serializers.DateTimeField()
+    planned_at = serializers.DateTimeField(allow_null=True)
+    graph_version = serializers.IntegerField(allow_null=True)
+    is_stale = serializers.BooleanField(help_text="the ground has changed since the mission was planned")
+    stale_reason = serializers.CharField()
+    flat_ground_assumed = serializers.BooleanField(allow_null=True)
+    uavs = MissionUavSerializer(many=True)
+    targets = MissionTargetSerializer(many=True)
+    plan = PlanSerializer(allow_null=True)
+
+
+class MissionSummarySerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    name = serializers.CharField()
+    state = serializers.ChoiceField(choices=MissionState.choices)
+    author = serializers.CharField(allow_null=True)
+    updated_at = serializers.DateTimeField()
+    planned_at = serializers.DateTimeField(allow_null=True)
+    target_count = serializers.IntegerField()
+    uav_count = serializers.IntegerField()
+    total_length_m = serializers.FloatField(allow_null=True)
+    longest_route_m = serializers.FloatField(allow_null=True)
+    duration_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time")
+    is_stale = serializers.BooleanField()
+    sketch = serializers.ListField(child=serializers.ListField(child=PositionField()), help_text="the routes, simplified")
+
+
+class MissionPageSerializer(serializers.Serializer):
+    results = MissionSummarySerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class HistoryEntrySerializer(serializers.Serializer):
+    action = serializers.CharField()
+    actor = serializers.CharField(allow_null=True, source="actor.username", default=None)
+    recorded_at = serializers.DateTimeField()
+    before = serializers.JSONField(allow_null=True)
+    after = serializers.JSONField(allow_null=True)
+
+
+class HistoryPageSerializer(serializers.Serializer):
+    results = HistoryEntrySerializer(many=True)
+    next = serializers.CharField(allow_null=True)

@@ -1,0 +1,103 @@
+"""Large plans, solved by a worker: with progress, and with an ear for the user who wants to stop."""
+
+import time
+from collections.abc import Callable
+
+from celery import shared_task
+from celery.exceptions import SoftTimeLimitExceeded
+from django.conf import settings
+
+from inspection.selectors import NoGraph
+from missions import services
+from missions.models import Mission
+from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
+from workspace.models import Job
+from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, report_progress, start_job
+
+SOFT_LIMIT_S = 540
+HARD_LIMIT_S = 600
+REPORT_INTERVAL_S = 1.0  # how often the job's row hears of the progress, and the solver of a wish to stop
+
+NO_GRAPH = "There is no network yet: import infrastructure first, or wait until it has been linked."
+
+
+class _Watch:
+    """Carries progress to the job's row and, the other way, the wish to stop. Never raises: OR-tools calls it from C++."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self.is_cancelled = False
+        self.progress, self.message = 0.0, job.message
+        self._reported_at_s = -REPORT_INTERVAL_S
+
+    def on_progress(self, progress: float, message: str) -> None:
+        self.progress, self.message = progress, message
+        self.stop()
+
+    def stop(self) -> bool:
+        now_s = time.monotonic()
+        if not self.is_cancelled and now_s - self._reported_at_s >= REPORT_INTERVAL_S:
+            self._reported_at_s = now_s
+            try:
+                report_progress(job=self.job, progress=self.progress, message=self.message)
+            except JobCancelled:
+                self.is_cancelled = True
+        return self.is_cancelled
+
+
+def _work(job_id: str, do: Callable[[Job, _Watch], None]) -> None:
+    """Take the job, do it, and write down how it ended. Safe to run twice: a job is held by one worker, and finished once."""
+    job = start_job(job_id=job_id)
+    if job is None:
+        return
+    try:
+        do(job, _Watch(job))
+    except JobCancelled:
+        confirm_cancelled(job=job)
+    except InvalidRequest as error:
+        fail_job(job=job, code="invalid", message=str(error))
+    except NoGraph:
+        fail_job(job=job, code="no_graph", message=NO_GRAPH)
+    except GraphOutdated as error:
+        fail_job(job=job, code="graph_outdated", message=str(error))
+    except (MissionChanged, Mission.DoesNotExist):
+        fail_job(job=job, code="mission_changed", message="The mission was changed while its plan was being made. Plan it again.")
+    except MissionFrozen:
+        fail_job(job=job, code="mission_frozen", message="Only drafts and planned missions can be planned.")
+    except NothingToPlan:
+        fail_job(job=job, code="nothing_to_plan", message="A mission needs at least one UAV and one target.")
+    except SoftTimeLimitExceeded:
+        fail_job(job=job, code="took_too_long", message=f"No plan within {SOFT_LIMIT_S // 60} min. Split the mission.")
+    except Exception:
+        fail_job(job=job, code="internal", message="The planner failed; the error is in the log.")
+        raise
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def solve_plan(job_id: str) -> None:
+    """A plan that is not stored: it becomes the job's result."""
+
+    def do(job: Job, watch: _Watch) -> None:
+        plan = services.make_plan(
+            request=services.request_from_json(job.parameters["request"]),
+            stop=watch.stop,
+            on_progress=watch.on_progress,
+            search_s=settings.ROUTING_RULES.large_plan_search_s,
+        )
+        if watch.is_cancelled:
+            raise JobCancelled
+        finish_job(job=job, result=plan, message="Planned")
+
+    _work(job_id, do)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def plan_mission(job_id: str) -> None:
+    """A mission's plan, stored if the mission is still the one that was asked for."""
+
+    def do(job: Job, watch: _Watch) -> None:
+        services.plan_mission_for_job(
+            job=job, stop=watch.stop, on_progress=watch.on_progress, search_s=settings.ROUTING_RULES.large_plan_search_s
+        )
+
+    _work(job_id, do)

@@ -1,0 +1,214 @@
+"""Missions: create, list, open, change, plan, delete, bring back."""
+
+from typing import Any
+from uuid import UUID
+
+from django.http import Http404
+from django.urls import reverse
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.selectors import ground_revision
+from missions import selectors, services
+from missions.models import Mission, MissionState
+from missions.serializers import inputs, shapes
+from missions.serializers.representations import mission_json, mission_summary
+from missions.services import MissionChange
+from missions.views.plans import is_small, job_answer, planning_message
+from missions.views.problems import api_problems
+from workspace.errors import ApiProblem
+from workspace.idempotency import idempotent
+from workspace.models import User
+from workspace.paging import page_of
+from workspace.schema import PAGE_PARAMETERS
+from workspace.services import create_job
+from workspace.tasks import send_job_on_commit
+from workspace.throttling import ScopedRate
+
+IF_MATCH = OpenApiParameter(
+    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 412 if it has changed"
+)
+CHANGED = {
+    409: OpenApiResponse(description="The mission cannot be changed, or somebody else was faster."),
+    412: OpenApiResponse(description="The mission has changed since."),
+}
+PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Stored; a job plans it, see Location.")}
+
+
+def _mission(user: User, mission_id: UUID, *, deleted: bool = False) -> Mission:
+    try:
+        return selectors.mission_of_organisation(user.organisation, mission_id, deleted=deleted)
+    except Mission.DoesNotExist as error:
+        raise Http404 from error
+
+
+def _answer(user: User, mission_id: UUID, *, status: int = 200) -> Response:
+    mission = _mission(user, mission_id)
+    headers = {"ETag": f'"{mission.revision}"'}
+    if status == 201:
+        headers["Location"] = reverse("api-mission", args=[mission.pk])
+    return Response(mission_json(mission), status=status, headers=headers)
+
+
+def _expected_revision(request: Request) -> int | None:
+    """The revision that If-Match names; None without the header or for any (*)."""
+    text = request.headers.get("If-Match", "*").strip().removeprefix("W/").strip('"')
+    if text == "*":
+        return None
+    if not (text.isascii() and text.isdigit() and len(text) < 10):
+        raise ApiProblem(412, "mission_changed", "If-Match is not a mission's ETag.")
+    return int(text)
+
+
+def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int = 200) -> Response:
+    """Plan the stored mission now, or by a job if it is large."""
+    targets = mission.targets.count()
+    if is_small(targets):
+        services.plan_mission(mission=mission, actor=user, expected_revision=revision)
+        return _answer(user, mission.pk, status=status)
+    services.plannable_request(mission=mission)
+    job = create_job(
+        organisation=user.organisation,
+        created_by=user,
+        task="missions.tasks.plan_mission",
+        parameters={"mission": str(mission.pk), "revision": revision},
+        message=planning_message(targets),
+    )
+    send_job_on_commit(job)
+    return job_answer(job, mission=str(mission.pk))
+
+
+class _PlansWhenAsked(APIView):
+    """Only what plans counts against the rate of plans."""
+
+    throttle_scope = "plans"
+
+    def get_throttles(self) -> list[Any]:
+        return [ScopedRate()] if self.request.method in {"POST", "PATCH"} else []
+
+
+class MissionList(_PlansWhenAsked):
+    @extend_schema(
+        operation_id="list_missions",
+        summary="Missions, the last changed first",
+        parameters=[
+            OpenApiParameter("text", str, description="part of the name or of the author's name"),
+            OpenApiParameter("state", str, enum=MissionState.values),
+            OpenApiParameter("deleted", bool, description="true: the deleted ones"),
+            *PAGE_PARAMETERS,
+        ],
+        responses=shapes.MissionPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        missions = selectors.missions_of_organisation(
+            request.user.organisation,
+            text=request.query_params.get("text", "").strip()[:100].replace("\0", ""),
+            state=request.query_params.get("state", ""),
+            deleted=request.query_params.get("deleted") == "true",
+        )
+        page = page_of(request, missions, order=("-updated_at", "-pk"), default_limit=50, max_limit=200)
+        revision = ground_revision()
+        return Response({"results": [mission_summary(mission, revision) for mission in page.rows], "next": page.next})
+
+    @extend_schema(
+        operation_id="create_mission",
+        summary="Create a mission, and plan it if asked",
+        request=inputs.MissionInputSerializer,
+        responses={201: shapes.MissionSerializer, **PLANNED_LATER},
+    )
+    @idempotent
+    def post(self, request: Request) -> Response:
+        user = request.user
+        serializer = inputs.MissionInputSerializer(data=request.data, context={"organisation": user.organisation})
+        serializer.is_valid(raise_exception=True)
+        values = serializer.validated_data
+        with api_problems():
+            mission = services.create_mission(
+                organisation=user.organisation, author=user, name=values["name"], request=inputs.plan_request(values)
+            )
+            if values["plan"]:
+                return _plan_and_answer(user, mission, revision=mission.revision, status=201)
+        return _answer(user, mission.pk, status=201)
+
+
+class MissionDetail(_PlansWhenAsked):
+    @extend_schema(operation_id="get_mission", summary="A mission with its plan", responses=shapes.MissionSerializer)
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        return _answer(request.user, mission_id)
+
+    @extend_schema(
+        operation_id="change_mission",
+        summary="Change a mission",
+        description="New targets, UAVs or options drop the plan; `plan: true` makes a new one.",
+        parameters=[IF_MATCH],
+        request=inputs.MissionPatchSerializer,
+        responses={200: shapes.MissionSerializer, **PLANNED_LATER, **CHANGED},
+    )
+    def patch(self, request: Request, mission_id: UUID) -> Response:
+        user = request.user
+        expected = _expected_revision(request)
+        mission = _mission(user, mission_id)
+        serializer = inputs.MissionPatchSerializer(data=request.data, context={"organisation": user.organisation})
+        serializer.is_valid(raise_exception=True)
+        values = dict(serializer.validated_data)
+        wants_plan = values.pop("plan")
+        with api_problems(has_precondition=expected is not None):
+            if values:
+                mission = services.change_mission(mission=mission, actor=user, change=MissionChange(**values), expected_revision=expected)
+                expected = mission.revision
+            if wants_plan:
+                return _plan_and_answer(user, mission, revision=mission.revision if expected is None else expected)
+        return _answer(user, mission_id)
+
+    @extend_schema(
+        operation_id="delete_mission",
+        summary="Delete a mission; it can be brought back",
+        parameters=[IF_MATCH],
+        responses={204: None, **CHANGED},
+    )
+    def delete(self, request: Request, mission_id: UUID) -> Response:
+        expected = _expected_revision(request)
+        mission = _mission(request.user, mission_id)
+        with api_problems(has_precondition=expected is not None):
+            services.delete_mission(mission=mission, actor=request.user, expected_revision=expected)
+        return Response(status=204)
+
+
+class MissionPlan(_PlansWhenAsked):
+    @extend_schema(
+        operation_id="plan_mission",
+        summary="Plan a mission, or plan it again",
+        parameters=[IF_MATCH],
+        request=None,
+        responses={200: shapes.MissionSerializer, **PLANNED_LATER, **CHANGED},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        expected = _expected_revision(request)
+        mission = _mission(request.user, mission_id)
+        with api_problems(has_precondition=expected is not None):
+            return _plan_and_answer(request.user, mission, revision=mission.revision if expected is None else expected)
+
+
+class MissionRestore(APIView):
+    @extend_schema(
+        operation_id="restore_mission", summary="Bring a deleted mission back", request=None, responses={200: shapes.MissionSerializer}
+    )
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        mission = _mission(request.user, mission_id, deleted=True)
+        services.restore_mission(mission=mission, actor=request.user)
+        return _answer(request.user, mission_id)
+
+
+class MissionHistory(APIView):
+    @extend_schema(
+        operation_id="list_mission_history",
+        summary="Who changed what in a mission, the newest first",
+        parameters=PAGE_PARAMETERS,
+        responses=shapes.HistoryPageSerializer,
+    )
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        page = page_of(request, selectors.history_of_mission(_mission(request.user, mission_id)), order=("-recorded_at", "-pk"))
+        return Response({"results": shapes.HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})
