@@ -52,16 +52,16 @@ BASES = (
         "Elmsgard depot",
         lon_lat(-9_050.0, 2_450.0),
         (
-            BasedUav("Kestrel 1", "RGB and thermal camera", 45_000.0, 12.0),
-            BasedUav("Kestrel 2", "RGB and thermal camera", 45_000.0, 12.0),
+            BasedUav("Kestrel 1", "RGB and thermal camera", 60_000.0, 14.0),
+            BasedUav("Kestrel 2", "RGB and thermal camera", 60_000.0, 14.0),
         ),
     ),
     Base(
         "Varneck depot",
         lon_lat(10_900.0, 3_150.0),
         (
-            BasedUav("Osprey 1", "RGB camera and lidar", 70_000.0, 15.0),
-            BasedUav("Osprey 2", "RGB camera and lidar", 70_000.0, 15.0),
+            BasedUav("Osprey 1", "RGB camera and lidar", 90_000.0, 18.0),
+            BasedUav("Osprey 2", "RGB camera and lidar", 90_000.0, 18.0),
         ),
     ),
 )
