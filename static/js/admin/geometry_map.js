@@ -2,7 +2,9 @@
 
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
-import { parseGeometry, pointText, positionsOf } from "./geometry_text.js";
+import { outlineOf, parseGeometry, pointText, positionsOf } from "./geometry_text.js";
+
+const NOTHING = { type: "FeatureCollection", features: [] };
 
 for (const field of document.querySelectorAll("[data-geometry]")) {
   const text = field.querySelector("textarea");
@@ -35,7 +37,7 @@ for (const field of document.querySelectorAll("[data-geometry]")) {
     const { geometry, fault } = parseGeometry(text.value);
     tell(fault);
     if (geometry?.type === "Point") placePoint(geometry.coordinates);
-    else view.map.getSource("selection").setData(geometry ?? { type: "FeatureCollection", features: [] });
+    else view.map.getSource("drawn").setData(geometry ? outlineOf(geometry) : NOTHING);
     if (move && geometry) view.fit(boxAround(positionsOf(geometry)), { animate: false });
   }
 
@@ -45,6 +47,8 @@ for (const field of document.querySelectorAll("[data-geometry]")) {
   }
 
   view.ready.then(() => {
+    view.map.addSource("drawn", { type: "geojson", data: NOTHING });
+    view.map.addLayer({ id: "drawn", type: "line", source: "drawn", paint: { "line-color": view.palette().select, "line-width": 2.5 } });
     show({ move: true });
     if (!text.value.trim()) showSurroundings();
     text.addEventListener("input", () => show({ move: false }));

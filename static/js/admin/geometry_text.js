@@ -25,6 +25,14 @@ export function positionsOf(geometry) {
   return positions;
 }
 
+/** The paths that are drawn, as a feature: an area that crosses itself would not be drawn as an area at all. */
+export function outlineOf(geometry) {
+  const paths = [];
+  const walk = (value) => (Array.isArray(value[0]?.[0]) ? value.forEach(walk) : paths.push(value));
+  walk(geometry.coordinates);
+  return { type: "Feature", properties: {}, geometry: { type: "MultiLineString", coordinates: paths } };
+}
+
 export function pointText(longitude, latitude) {
   return JSON.stringify({ type: "Point", coordinates: [Number(longitude.toFixed(DIGITS)), Number(latitude.toFixed(DIGITS))] });
 }
