@@ -68,7 +68,9 @@ class Asset(models.Model):
     height_m = models.FloatField(null=True, blank=True, help_text="above ground, as tagged; empty when not stated")
     length_m = models.FloatField(null=True, blank=True, help_text="geodesic length of a line or railway")
     is_flyable = models.BooleanField(default=True, help_text="part of the inspection graph: not underground, disused, a busbar or a bay")
-    node_osm_ids = ArrayField(models.BigIntegerField(), default=list, blank=True, editable=False, help_text="OSM node of each vertex of a way")
+    node_osm_ids = ArrayField(
+        models.BigIntegerField(), default=list, blank=True, editable=False, help_text="OSM node of each vertex of a way"
+    )
     tags = models.JSONField(default=dict, blank=True)
     parts = models.JSONField(default=list, blank=True, editable=False, help_text='the OSM ways on a bridge\'s area: [{"osm_id", "tags"}]')
     data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="assets")
@@ -184,7 +186,9 @@ class NoFlyZone(models.Model):
         constraints = [
             models.UniqueConstraint(fields=["zone_set", "identifier", "layer"], name="zone_source_key"),
             models.CheckConstraint(
-                condition=Q(lower_limit_m=None) | Q(upper_limit_m=None) | ~Q(lower_reference=models.F("upper_reference"))
+                condition=Q(lower_limit_m=None)
+                | Q(upper_limit_m=None)
+                | ~Q(lower_reference=models.F("upper_reference"))
                 | Q(upper_limit_m__gte=models.F("lower_limit_m")),
                 name="zone_band_upright",
             ),
