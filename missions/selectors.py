@@ -89,6 +89,7 @@ def sketch(mission: Mission) -> list[list[list[float]]]:
     """The routes, simplified for a drawing the size of a stamp."""
     return [
         [[round(lon, 5), round(lat, 5)] for lon, lat in route.geometry.simplify(SKETCH_TOLERANCE_DEG, preserve_topology=False).coords]
-        for route in mission.routes.all()
         if route.geometry is not None
+        else []  # a UAV that stays on the ground keeps its place, and with it its letter and colour
+        for route in mission.routes.all()
     ]

@@ -15,6 +15,12 @@ test("a click takes the tower before the line that it carries, and the zone last
   assert.equal(firstInOrder([feature("routes", undefined)]), null);
 });
 
+test("the line tool sees lines and tracks alone", () => {
+  const under = [feature("towers-ring", "towers"), feature("lines", "lines", { id: 9 }), feature("zones-fill", "zones")];
+  assert.equal(firstInOrder(under, ["line", "railway"]).id, 9);
+  assert.equal(firstInOrder(under.slice(0, 1), ["line", "railway"]), null);
+});
+
 test("a point on a track is the nearest one of what is drawn", () => {
   const track = { type: "LineString", coordinates: [[10, 60], [12, 60]] };
   assert.deepEqual(nearestOnLine(track, [11, 60.4]), [11, 60]);

@@ -37,10 +37,10 @@ test("a stored mission opens as it was picked", () => {
     objective: "total", return_to_start: false,
     uavs: [{ id: 3, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" }],
     targets: [
-      { asset: 7, label: "18", kind: "tower", position: [10, 50], is_whole: true, stretch: null, task: null },
-      { asset: 9, label: "North", kind: "line", position: [10, 50], is_whole: true, stretch: null, task: null },
-      { asset: 9, label: "North", kind: "line", position: [10.5, 50.5], is_whole: false, stretch: null, task: null },
-      { asset: null, label: "Place", kind: null, position: [11, 51], is_whole: false, stretch: null, task: null },
+      { asset: 7, label: "18", kind: "tower", position: [10, 50], is_point: false, stretch: null, task: null },
+      { asset: 9, label: "North", kind: "line", position: [10, 50], is_point: false, stretch: null, task: null },
+      { asset: 9, label: "North", kind: "line", position: [10.5, 50.5], is_point: true, stretch: null, task: null },
+      { asset: null, label: "Place", kind: null, position: [11, 51], is_point: true, stretch: null, task: null },
     ],
   };
   const selection = selectionOf(mission);

@@ -6,9 +6,10 @@ const REACH_PX = { fine: 6, coarse: 16 };
 const KINDS = { towers: "tower", bridges: "bridge", bridge_points: "bridge", railways: "railway", lines: "line", zones: "zone" };
 
 /** Of what lies under the pointer, the first in the order of picking: { kind, id, properties, geometry } or null. */
-export function firstInOrder(features) {
+export function firstInOrder(features, kinds = null) {
   const rank = (feature) => PICKABLE.indexOf(feature.layer.id);
-  const best = features.filter((feature) => rank(feature) >= 0).sort((a, b) => rank(a) - rank(b))[0];
+  const isWanted = (feature) => rank(feature) >= 0 && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
+  const best = features.filter(isWanted).sort((a, b) => rank(a) - rank(b))[0];
   if (!best) return null;
   return { kind: KINDS[best.sourceLayer], id: best.properties.id, properties: best.properties, geometry: best.geometry };
 }
@@ -33,13 +34,13 @@ export function nearestOnLine(geometry, [longitude, latitude]) {
   return best?.position.map((degrees) => Number(degrees.toFixed(7))) ?? null;
 }
 
-/** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), tool() } */
+/** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), tool(), kinds(): those that count now, or null } */
 export function routeClicks(map, on) {
   const canvas = map.getCanvasContainer();
   const reach = matchMedia("(pointer: coarse)").matches ? REACH_PX.coarse : REACH_PX.fine;
   const thingAt = (point) => {
     const layers = PICKABLE.filter((id) => map.getLayer(id));
-    return firstInOrder(map.queryRenderedFeatures([[point.x - reach, point.y - reach], [point.x + reach, point.y + reach]], { layers }));
+    return firstInOrder(map.queryRenderedFeatures([[point.x - reach, point.y - reach], [point.x + reach, point.y + reach]], { layers }), on.kinds());
   };
 
   map.on("click", (event) => on.click(thingAt(event.point), [event.lngLat.lng, event.lngLat.lat], event.point));

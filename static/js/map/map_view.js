@@ -15,6 +15,7 @@ export function createMap(container, { baseMap, satellite, under, describe }) {
     container,
     style: mapStyle(palette, options),
     bounds: WORLD,
+    hash: "map", // the view is part of the address: #map=zoom/lat/lon
     attributionControl: false,
     dragRotate: false,
     pitchWithRotate: false,

@@ -20,7 +20,6 @@ function planOf(result, selection) {
 export function createActions(store, history, missionId) {
   let stopping = null;
   let retry = 0;
-  let fillDetails = () => {};
 
   const selection = () => store.state.selection;
   const change = (next) => history.changeTo(next);
@@ -140,7 +139,6 @@ export function createActions(store, history, missionId) {
       figures: plan ? { ...store.state.figures, [plan.basis]: plan.result } : store.state.figures,
       problem: null,
     });
-    fillDetails();
   }
 
   function addressNow(mission) {
@@ -258,8 +256,5 @@ export function createActions(store, history, missionId) {
     moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),
     setOption: (name, value) => change({ ...selection(), [name]: value }),
     rename: (name) => store.update({ name }),
-    onOpened(tell) {
-      fillDetails = tell;
-    },
   };
 }

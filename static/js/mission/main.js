@@ -123,7 +123,7 @@ async function load() {
     if (!(error instanceof ApiError)) throw error;
   }
   await map.ready;
-  if (!store.state.plan) map.fit({ animate: false });
+  if (!store.state.plan && !map.opensAtPlace) map.fit({ animate: false });
   document.documentElement.dataset.loaded = "true";
 }
 

@@ -34,6 +34,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   let under = rememberedUnder(page);
   const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: "Map" });
   const { map } = view;
+  const opensAtPlace = location.hash.includes("map=");
   const shapes = new Map(); // asset id → geometry of what is picked whole
   const hidden = new Set();
   const targets = createTargets(map, { onPick: (key) => store.update({ chosenTarget: key }), onHover: (key) => store.update({ litTarget: key }) });
@@ -127,7 +128,6 @@ export function mountMap(store, actions, page, { askForUav }) {
       return;
     }
     if (thing.kind === "tower" || thing.kind === "bridge") {
-      if (tool === "line") return;
       const centre = thing.geometry.type === "Point" ? thing.geometry.coordinates : place;
       actions.addTargets([targetOf({ ...thing, centre })]);
       return;
@@ -140,6 +140,7 @@ export function mountMap(store, actions, page, { askForUav }) {
 
   routeClicks(map, {
     tool: () => store.state.tool,
+    kinds: () => (store.state.tool === "line" ? ["line", "railway"] : null),
     click,
     hover(thing, point, place) {
       showCoordinates(place);
@@ -191,7 +192,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     store.listen(["selection", "plan"], drawTargets);
     store.listen(["plan"], ({ plan }) => {
       routesLayer.update(map, routesOf(plan));
-      if (plan) fit();
+      if (plan && !(opensAtPlace && store.state.planIsStored)) fit();
     });
     store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], (state) => {
@@ -239,6 +240,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   return {
     ready: view.ready.then(start),
     fit,
+    opensAtPlace,
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
     closeTop: () => {
       const had = choice !== null;

@@ -20,11 +20,13 @@ export function voltageWords(properties) {
   return "";
 }
 
+const wholeWords = (kind) => (kind === "line" ? "whole line" : "whole track");
+
 /** The second fact of a row, in secondary ink. */
 export function detailOf(kind, properties, position = null) {
   const facts = [];
-  if (kind === "line") facts.push(position ? "one point" : "whole line", voltageWords(properties) || "voltage not stated");
-  else if (kind === "railway") facts.push(position ? "one point" : "whole track");
+  if (kind === "line") facts.push(position ? "one point" : wholeWords(kind), voltageWords(properties) || "voltage not stated");
+  else if (kind === "railway") facts.push(position ? "one point" : wholeWords(kind));
   else if (kind === "tower") facts.push(voltageWords(properties));
   if (properties.operator && properties.operator !== properties.label) facts.push(properties.operator);
   return facts.filter((fact) => fact && !properties.label?.includes(fact)).join(" · ");
@@ -92,12 +94,12 @@ export function basisOf(selection) {
 export function selectionOf(mission, fleet = []) {
   return {
     targets: mission.targets.map((target) => {
-      const position = target.is_whole === false || target.asset === null ? target.position : null;
+      const position = target.is_point || target.asset === null ? target.position : null;
       const made = {
         asset: target.asset, kind: target.kind ?? "place", label: target.label, detail: "", position,
         stretch: target.stretch ?? null, centre: target.position, task: target.task ?? null,
       };
-      made.detail = detailOf(made.kind, { label: made.label }, position);
+      if (made.kind === "line" || made.kind === "railway") made.detail = position ? "one point" : wholeWords(made.kind);
       return { key: keyOf(made), ...made };
     }),
     uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),

@@ -79,7 +79,8 @@ function noticesOf(state, actions, canPlan) {
   }
   const planAgain = canPlan ? [{ label: "Plan again", act: actions.plan }] : [];
   if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) {
-    notices.push(notice("warning", "triangle-alert", "The ground has changed since this was planned.", state.mission.stale_reason ?? "", planAgain));
+    const [what, ...why] = (state.mission.stale_reason || "The ground has changed since this was planned.").split(/(?<=\.) /);
+    notices.push(notice("warning", "triangle-alert", what, why.join(" "), planAgain));
   }
   if (isPlanCurrent(state)) {
     for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", warning.message));

@@ -1,0 +1,133 @@
+"""A whole installation started by ./run with real data, and Chromium in front of it."""
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
+
+PROJECT_DIR = Path(__file__).resolve().parents[2]
+# findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
+CHROMIUM_FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync",
+]  # fmt: skip
+PASSWORD = "inspect-the-lines"
+USERS = {"opal": "operator", "vera": "viewer"}
+NEW_USERS = f"""
+from workspace.models import User
+for name, role in {USERS!r}.items():
+    User.objects.create_user(name, password={PASSWORD!r}, role=role)
+"""
+
+
+@dataclass(frozen=True)
+class Site:
+    address: str
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@pytest.fixture(scope="session")
+def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """Columbus, Ohio, with two zones, behind the real front door: proxy, policy headers, workers. No base map: nothing is fetched outside."""
+    osm_file = shared_data("osm/columbus-ohio.osm.pbf")
+    state_dir = tmp_path_factory.mktemp("site")
+    environment = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL", "DJANGO_SETTINGS_MODULE"}}
+    environment |= {"SPANWISE_VAR": str(state_dir), "SPANWISE_BASE_MAP_TILES": ""}
+    port = _free_port()
+    zones_file = Path(__file__).with_name("zones.geojson")
+
+    def run(*command: str) -> None:
+        done = subprocess.run(command, cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, timeout=300, check=False)  # noqa: S603
+        assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}\n{done.stderr}"
+
+    try:
+        run("./run", "--detach", "--port", str(port), "--osm", str(osm_file), "--zones", str(zones_file))
+        run(sys.executable, "manage.py", "shell", "-v", "0", "-c", NEW_USERS)
+        yield Site(address=f"http://127.0.0.1:{port}")
+    finally:
+        run("./run", "--stop")
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    assert program, "Chromium is missing; ./check installs it"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=CHROMIUM_FLAGS)
+        yield browser
+        browser.close()
+
+
+@dataclass
+class Visitor:
+    """Somebody at a browser. What their pages complained about, and what they asked of other hosts, is kept."""
+
+    site: Site
+    browser: Browser
+    complaints: list[str] = field(default_factory=list)
+    requests_outside: list[str] = field(default_factory=list)
+
+    def opens(self, path: str = "/sign-in", *, size: tuple[int, int] = (1440, 900), theme: str = "light", touch: bool = False) -> Page:
+        context = self.browser.new_context(
+            base_url=self.site.address,
+            viewport={"width": size[0], "height": size[1]},
+            color_scheme=theme,
+            has_touch=touch,
+            reduced_motion="reduce",
+        )
+        page = context.new_page()
+        page.set_default_timeout(20_000)
+        page.on("console", self._heard)
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.on("request", lambda request: self._asked(request.url))
+        page.goto(path)
+        return page
+
+    def signs_in(self, name: str, **how: object) -> Page:
+        page = self.opens(**how)  # type: ignore[arg-type]
+        page.get_by_label("User name").fill(name)
+        page.get_by_label("Password").fill(PASSWORD)
+        page.get_by_role("button", name="Sign in").click()
+        page.get_by_role("heading", name="Missions", exact=True).wait_for()
+        return page
+
+    def _heard(self, message: ConsoleMessage) -> None:
+        if message.type == "error" or (message.type == "warning" and "GL Driver Message" not in message.text):
+            self.complaints.append(message.text)
+
+    def _asked(self, url: str) -> None:
+        if not url.startswith((self.site.address, "data:", "blob:")):
+            self.requests_outside.append(url)
+
+
+@pytest.fixture
+def visitor(site: Site, chromium: Browser) -> Iterator[Visitor]:
+    somebody = Visitor(site, chromium)
+    yield somebody
+    for context in chromium.contexts:
+        context.close()
+    assert somebody.complaints == []
+    assert somebody.requests_outside == []
+
+
+@pytest.fixture
+def picture() -> Callable[[Page, str], None]:
+    """Writes a screenshot for the documentation when SPANWISE_SCREENSHOTS=1."""
+
+    def take(page: Page, name: str) -> None:
+        if os.environ.get("SPANWISE_SCREENSHOTS") == "1":
+            page.screenshot(path=PROJECT_DIR / "docs" / "screenshots" / f"{name}.png")
+
+    return take

@@ -1,0 +1,114 @@
+"""How a test works the operator's map: places on the screen, picking, planning."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from playwright.sync_api import Page, expect
+
+CLOSE_ZOOM = 16
+
+
+def wait_for_map(page: Page) -> None:
+    page.locator("html[data-loaded]").wait_for(state="attached")
+    page.locator("#map[data-idle]").wait_for(state="attached")
+
+
+def asks(page: Page, path: str) -> Any:
+    """A GET of the API with the page's session."""
+    answer = page.request.get(f"/api/v1{path}")
+    assert answer.ok, f"{path}: {answer.status} {answer.text()}"
+    return answer.json()
+
+
+def look_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> dict[str, float]:
+    """Moves the map there by its address; the place on the screen."""
+    page.evaluate(
+        """async ([longitude, latitude, zoom]) => {
+            const map = document.getElementById("map");
+            delete map.dataset.idle;
+            location.hash = `map=${zoom}/${latitude}/${longitude}`;
+        }""",
+        [*position, zoom],
+    )
+    page.wait_for_function("() => document.getElementById('map').dataset.idle === 'true'")
+    return place_of(page, position)
+
+
+def place_of(page: Page, position: list[float]) -> dict[str, float]:
+    return page.evaluate(
+        """(position) => {
+            const map = document.getElementById("map");
+            const box = map.getBoundingClientRect();
+            const { x, y } = map.project(position);
+            return { x: box.left + x, y: box.top + y };
+        }""",
+        position,
+    )
+
+
+def clicks_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> None:
+    place = look_at(page, position, zoom)
+    page.mouse.click(place["x"], place["y"])
+
+
+def targets(page: Page) -> list[str]:
+    return page.locator("#target-list .what span").all_text_contents()
+
+
+def adds_uav(page: Page, name: str, position: list[float], *, range_km: float | None = None) -> None:
+    page.get_by_role("button", name="Add a UAV").click()
+    place = look_at(page, position, 12)
+    page.mouse.click(place["x"], place["y"])
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Name").fill(name)
+    dialog.get_by_label("Base").fill("Test yard")
+    if range_km:
+        dialog.get_by_label("Range").fill(str(range_km))
+    dialog.get_by_role("button", name="Add").click()
+    expect(page.get_by_role("checkbox", name=name)).to_be_checked()
+
+
+@dataclass(frozen=True)
+class Pickable:
+    """Something of each kind that stands alone enough to be clicked."""
+
+    tower: dict[str, Any]
+    bridge: dict[str, Any]
+    railway_point: list[float]
+    line: dict[str, Any]
+    line_point: list[float]
+
+
+def find_pickable(page: Page) -> Pickable:
+    """Real assets of Columbus: away from others of a kind that a click would prefer, and outside the zones."""
+    tower = next(
+        feature
+        for feature in asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=100")["features"]
+        if _is_alone(page, feature["geometry"]["coordinates"], "tower")
+    )
+    bridge = next(
+        feature
+        for feature in asks(page, "/assets?kind=bridge&bbox=-82.97,39.96,-82.92,39.99&limit=100")["features"]
+        if _is_alone(page, feature["properties"]["centre"], "tower,bridge")
+    )
+    railway_point = next(
+        place
+        for feature in asks(page, "/assets?kind=railway&bbox=-83.08,39.95,-83.03,39.99&limit=100")["features"]
+        for place in _vertices(page, feature["id"])[1:-1]
+        if -83.08 < place[0] < -83.03 and 39.95 < place[1] < 39.99 and _is_alone(page, place, "tower,bridge,line,railway")
+    )
+    lines = asks(page, "/assets?kind=line&bbox=-83.1,39.85,-83.0,39.94&limit=100")["features"]
+    line = next(feature for feature in lines if feature["properties"]["is_flyable"] and len(_vertices(page, feature["id"])) > 10)
+    a, b = _vertices(page, line["id"])[4:6]
+    return Pickable(tower, bridge, railway_point, line, [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2])
+
+
+def _vertices(page: Page, asset: int) -> list[list[float]]:
+    geometry = asks(page, f"/assets/{asset}")["geometry"]
+    return geometry["coordinates"] if geometry["type"] == "LineString" else geometry["coordinates"][0]
+
+
+def _is_alone(page: Page, place: list[float], kinds: str) -> bool:
+    around = 0.0004  # some 40 m
+    box = f"{place[0] - around},{place[1] - around},{place[0] + around},{place[1] + around}"
+    return len(asks(page, f"/assets?kind={kinds}&bbox={box}&limit=3")["features"]) == 1

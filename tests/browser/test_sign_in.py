@@ -1,0 +1,46 @@
+"""The door."""
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import PASSWORD, Visitor
+
+pytestmark = pytest.mark.browser
+
+
+def test_wrong_password_is_refused_with_the_tries_left_and_the_right_one_opens_the_missions(
+    visitor: Visitor, picture: Callable[[Page, str], None]
+) -> None:
+    page = visitor.opens("/missions/new")
+    expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
+    picture(page, "sign-in-light")
+
+    page.get_by_label("User name").fill("opal")
+    page.get_by_label("Password").fill("wrong")
+    page.get_by_role("button", name="Sign in").click()
+    expect(page.get_by_role("alert")).to_contain_text("User name or password is wrong. 4 tries left for 15 min.")
+    expect(page.get_by_label("User name")).to_have_value("opal")
+
+    page.get_by_label("Password").fill(PASSWORD)
+    page.get_by_role("button", name="Sign in").click()
+    expect(page).to_have_url(f"{visitor.site.address}/missions/new")  # where the visitor was going
+
+
+def test_sign_in_follows_the_dark_theme_of_the_system(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
+    page = visitor.opens(theme="dark")
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(26, 32, 35)"
+    picture(page, "sign-in-dark")
+
+
+def test_a_viewer_sees_the_map_but_cannot_plan(visitor: Visitor) -> None:
+    page = visitor.signs_in("vera")
+    expect(page.get_by_role("link", name="New mission")).to_have_count(0)
+    page.goto("/missions/new")
+    expect(page.get_by_text("Viewers cannot plan.")).to_be_visible()
+    for name in ("Plan", "Save", "Add a UAV"):
+        expect(page.get_by_role("button", name=name, exact=True)).to_have_count(0)
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    refused = page.request.post("/api/v1/plans", data={"uavs": [], "targets": []}, headers={"X-CSRFToken": token})
+    assert refused.status == 403
