@@ -1,0 +1,1 @@
+"""Tests of waypoints, heights, times and the last look at the zones."""

@@ -1,0 +1,138 @@
+"""From ways and targets to the list of points."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points
+from missions.flight_plan.waypoints import RoutePoint
+from missions.routing.problem import Task, TaskKind
+
+TRANSIT_M = 60.0
+PHOTO = Task(TaskKind.PHOTO, 10.0)
+
+
+def at(east: float) -> LonLat:
+    """A place on the equator, `east` thousandths of a degree from Greenwich."""
+    return LonLat(east / 1_000, 0.0)
+
+
+def node(east: float, agl_m: float = TRANSIT_M) -> PassedNode:
+    return PassedNode(at(east), agl_m, asset=int(east))
+
+
+def target(index: int, *easts: float, agl_m: float = TRANSIT_M) -> TargetPoints:
+    return TargetPoints(index, tuple(at(east) for east in easts), agl_m, PHOTO, asset=100 + index)
+
+
+def draw(points: Sequence[RoutePoint]) -> list[str]:
+    """Kind, place and height of each point, and the index of the target it belongs to: "pass 3 @60", "target 4 @30 #0"."""
+    return [
+        f"{point.kind} {point.position.lon * 1_000:.0f} @{point.agl_m:.0f}" + (f" #{point.target}" if point.target is not None else "")
+        for point in points
+    ]
+
+
+def route(targets: list[TargetPoints], ways: list[list[PassedNode]], way_home: list[PassedNode] | None = None) -> list[str]:
+    return draw(route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=targets, ways=ways, way_home=way_home))
+
+
+def test_an_open_route_ends_hovering_at_its_last_target() -> None:
+    assert route([target(0, 3)], [[node(1), node(2), node(3)]]) == [
+        "start 0 @60",
+        "pass 1 @60",
+        "pass 2 @60",
+        "target 3 @60 #0",
+        "end 3 @60",
+    ]
+
+
+def test_a_route_that_returns_ends_above_its_start() -> None:
+    assert route([target(0, 2)], [[node(1), node(2)]], way_home=[node(2), node(1)]) == [
+        "start 0 @60",
+        "pass 1 @60",
+        "target 2 @60 #0",
+        "pass 1 @60",
+        "end 0 @60",
+    ]
+
+
+def test_the_node_of_a_target_is_not_passed_a_second_time() -> None:
+    drawn = route([target(0, 2), target(1, 3)], [[node(2)], [node(2), node(3)]])
+    assert drawn == ["start 0 @60", "target 2 @60 #0", "target 3 @60 #1", "end 3 @60"]
+
+
+def test_a_low_target_is_reached_and_left_vertically() -> None:
+    drawn = route([target(0, 2, agl_m=25), target(1, 4)], [[node(1), node(2)], [node(2), node(3), node(4)]])
+    assert drawn == [
+        "start 0 @60",
+        "pass 1 @60",
+        "pass 2 @60",
+        "target 2 @25 #0",
+        "pass 2 @60",
+        "pass 3 @60",
+        "target 4 @60 #1",
+        "end 4 @60",
+    ]
+
+
+def test_a_low_target_off_the_network_is_left_vertically_too() -> None:
+    drawn = route([target(0, 5, agl_m=25), target(1, 8, agl_m=25)], [[], []], way_home=[])
+    assert drawn == [
+        "start 0 @60",
+        "pass 5 @60",
+        "target 5 @25 #0",
+        "pass 5 @60",
+        "pass 8 @60",
+        "target 8 @25 #1",
+        "pass 8 @60",
+        "end 0 @60",
+    ]
+
+
+def test_a_tall_target_is_passed_high_and_inspected_from_there() -> None:
+    assert route([target(0, 2, agl_m=90)], [[node(1), node(2, 90)]]) == ["start 0 @60", "pass 1 @60", "target 2 @90 #0", "end 2 @90"]
+
+
+def test_a_stretch_has_one_target_point_and_its_other_vertices_carry_the_index() -> None:
+    drawn = route([target(0, 2, 3, 4), target(1, 6)], [[node(1), node(2)], [node(4), node(5), node(6)]])
+    assert drawn == [
+        "start 0 @60",
+        "pass 1 @60",
+        "target 2 @60 #0",
+        "pass 3 @60 #0",
+        "pass 4 @60 #0",
+        "pass 5 @60",
+        "target 6 @60 #1",
+        "end 6 @60",
+    ]
+
+
+def test_a_low_stretch_is_flown_low_from_end_to_end() -> None:
+    assert route([target(0, 2, 3, agl_m=25)], [[node(2)]], way_home=[node(3), node(1)]) == [
+        "start 0 @60",
+        "pass 2 @60",
+        "target 2 @25 #0",
+        "pass 3 @25 #0",
+        "pass 3 @60",
+        "pass 1 @60",
+        "end 0 @60",
+    ]
+
+
+def test_a_target_where_the_uav_stands_is_still_a_route() -> None:
+    points = route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=[target(0, 0)], ways=[[]], way_home=None)
+    assert draw(points) == ["start 0 @60", "target 0 @60 #0", "end 0 @60"]
+    assert line_of(points).tolist() == [[0.0, 0.0], [0.0, 0.0]]
+
+
+def test_two_targets_at_one_place_are_two_points() -> None:
+    assert route([target(0, 2), target(1, 2)], [[node(2)], [node(2)]]) == ["start 0 @60", "target 2 @60 #0", "target 2 @60 #1", "end 2 @60"]
+
+
+def test_the_line_on_the_map_has_each_place_once() -> None:
+    points = route_points(
+        start=at(0), transit_agl_m=TRANSIT_M, targets=[target(0, 2, agl_m=25)], ways=[[node(1), node(2)]], way_home=[node(1)]
+    )
+    assert np.array_equal(line_of(points)[:, 0] * 1_000, [0, 1, 2, 1, 0])
