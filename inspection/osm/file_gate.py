@@ -4,7 +4,7 @@ import bz2
 import gzip
 import re
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from enum import StrEnum
 from pathlib import Path
 from typing import BinaryIO
@@ -103,7 +103,7 @@ def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | Non
 
 
 def _examine_pbf(path: Path) -> None:
-    """Walk from blob to blob by their headers, unpacking none."""
+    """Walk from blob to blob, one in memory at a time."""
     size = path.stat().st_size
     with path.open("rb") as file:
         offset = 0
@@ -131,18 +131,12 @@ def _examine_pbf(path: Path) -> None:
 
 def _blob_header(data: bytes, offset: int) -> tuple[bytes, int]:
     """The type (field 1) and datasize (field 3) of a BlobHeader message."""
-    blob_type, blob_bytes, at = b"", -1, 0
+    blob_type, blob_bytes = b"", -1
     try:
-        while at < len(data):
-            key, at = _varint(data, at)
-            value, at = _varint(data, at)
-            if key & 7 == 2:
-                if key >> 3 == 1:
-                    blob_type = data[at : at + value]
-                at += value
-            elif key & 7 != 0:
-                raise IndexError
-            elif key >> 3 == 3:
+        for number, value in _fields(data):
+            if number == 1 and isinstance(value, memoryview):
+                blob_type = bytes(value)
+            elif number == 3 and isinstance(value, int):
                 blob_bytes = value
     except IndexError as error:
         raise OsmFileError(f"The PBF is damaged: no blob header can be read at byte {offset}.") from error
@@ -150,26 +144,64 @@ def _blob_header(data: bytes, offset: int) -> tuple[bytes, int]:
 
 
 def _examine_blob(file: BinaryIO, start: int, end: int) -> None:
-    """Find raw_size (field 2) of a Blob message, skipping over its data."""
-    at = start
-    while at < end:
-        file.seek(at)
-        data = file.read(min(24, end - at))
-        try:
-            key, used = _varint(data, 0)
-            value, used = _varint(data, used)
-        except IndexError as error:
-            raise OsmFileError(f"The PBF is damaged: no blob can be read at byte {start}.") from error
-        if key & 7 == 2:
-            used += value
-        elif key & 7 != 0:
-            raise OsmFileError(f"The PBF is damaged: no blob can be read at byte {start}.")
-        elif key >> 3 == 2 and value > MAX_BLOB_BYTES:
-            raise OsmFileError(f"The PBF has a blob that unpacks to {value} bytes at byte {start}; the format allows 32 MiB.")
-        at += used
+    """Check a Blob message: raw_size (field 2), and the strings of its data, be that plain (field 1) or zlib (field 3)."""
+    file.seek(start)
+    raw_size: int | None = None
+    packed = plain = None
+    try:
+        for number, value in _fields(file.read(end - start)):
+            if number == 2 and isinstance(value, int):
+                raw_size = value
+            elif number == 1 and isinstance(value, memoryview):
+                plain = value
+            elif number == 3 and isinstance(value, memoryview):
+                packed = value
+        if raw_size is not None and raw_size > MAX_BLOB_BYTES:
+            raise OsmFileError(f"The PBF has a blob that unpacks to {raw_size} bytes at byte {start}; the format allows 32 MiB.")
+        if packed is not None:
+            unpacked = zlib.decompressobj().decompress(packed, MAX_BLOB_BYTES + 1)
+            if raw_size is None or len(unpacked) != raw_size:
+                raise OsmFileError(f"The PBF is damaged: the blob at byte {start} does not unpack to the size that it states.")
+            plain = memoryview(unpacked)
+        if plain is None:
+            raise OsmFileError("The PBF is packed with another method than zlib, which is not read; write it anew with zlib.")
+        if _has_string_with_null(plain):
+            raise OsmFileError(f"The PBF has a text with a null character in the blob at byte {start}.")
+    except IndexError as error:
+        raise OsmFileError(f"The PBF is damaged: no blob can be read at byte {start}.") from error
 
 
-def _varint(data: bytes, at: int) -> tuple[int, int]:
+def _has_string_with_null(block: memoryview) -> bool:
+    """Whether the string table (field 1) of a PrimitiveBlock has one; libosmium reads past the end of its buffer at such a tag."""
+    for number, table in _fields(block):
+        if number == 1 and isinstance(table, memoryview):
+            text = bytes(table)
+            if text.count(0) == text.startswith(b"\x0a\x00"):  # the empty string that every table begins with
+                continue
+            if any(isinstance(string, memoryview) and 0 in string for _, string in _fields(table)):
+                return True
+    return False
+
+
+def _fields(data: bytes | memoryview) -> Iterator[tuple[int, int | memoryview]]:
+    """The fields of a protobuf message, numbers and byte strings; IndexError when it is none."""
+    view, at = memoryview(data), 0
+    while at < len(view):
+        key, at = _varint(view, at)
+        if key & 7 == 0:
+            value, at = _varint(view, at)
+            yield key >> 3, value
+        elif key & 7 == 2:
+            length, at = _varint(view, at)
+            if at + length > len(view):
+                raise IndexError
+            yield key >> 3, view[at : at + length]
+            at += length
+        else:
+            raise IndexError
+
+
+def _varint(data: memoryview, at: int) -> tuple[int, int]:
     """A protobuf varint and the offset after it; IndexError when there is none."""
     value = 0
     for shift in range(0, 70, 7):

@@ -129,7 +129,7 @@ def _write(writer: Any, element: dict[str, Any], place: str) -> None:
         if kind not in _MEMBER_TYPES:
             return  # areas, counts and remarks carry no infrastructure
         osm_id = _whole(element["id"])
-        tags = {str(key): str(value) for key, value in element.get("tags", {}).items()}
+        tags = {_text(key): _text(value) for key, value in element.get("tags", {}).items()}
         if kind == "node":
             writer.add_node(mutable.Node(id=osm_id, location=_location(element), tags=tags))
         elif kind == "way":
@@ -140,11 +140,17 @@ def _write(writer: Any, element: dict[str, Any], place: str) -> None:
             writer.add_way(mutable.Way(id=osm_id, nodes=refs, tags=tags))
         else:
             members = [
-                (_MEMBER_TYPES[member["type"]], _whole(member["ref"]), str(member.get("role", ""))) for member in element.get("members", [])
+                (_MEMBER_TYPES[member["type"]], _whole(member["ref"]), _text(member.get("role", "")))
+                for member in element.get("members", [])
             ]
             writer.add_relation(mutable.Relation(id=osm_id, members=members, tags=tags))
     except (KeyError, TypeError, ValueError, AttributeError, RuntimeError) as error:
         raise OsmFileError(f"{place} is no OSM element: {error}") from error
+
+
+def _text(value: Any) -> str:
+    """Without null characters: libosmium keeps texts as C strings."""
+    return str(value).replace("\0", "")
 
 
 def _whole(value: Any) -> int:

@@ -264,7 +264,7 @@ class _Reader:
         )
         counts |= {"bridge": sum(record.kind == "bridge" for record in records), "missing_nodes": 0}
         counts |= dict.fromkeys(("line_km", "minor_line_km", "railway_km"), 0.0)
-        counts |= {key: round(value, 3) if key.endswith("_km") else int(value) for key, value in sorted(self.counts.items())}
+        counts |= {key: round(float(value), 3) if key.endswith("_km") else int(value) for key, value in sorted(self.counts.items())}
         return counts | {"skipped": dict(sorted(self.skipped.items()))}
 
 

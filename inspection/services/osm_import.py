@@ -135,6 +135,7 @@ def _write(content: OsmContent, data_import: DataImport, sources: Sequence[DataI
         vanished = _vanish(cursor, content, data_import, sources)
         cursor.execute(_INSERT, values)
         new = cursor.rowcount
+        cursor.execute("DROP TABLE osm_staging")  # before the end of the transaction: several imports may share one
     return {"new": new, "changed": changed, "unchanged": unchanged, "vanished": vanished, "kept_edited": edited, "kept_newer": newer}
 
 
@@ -166,7 +167,10 @@ def _vanish(cursor: CursorWrapper, content: OsmContent, data_import: DataImport,
 def _is_same_source(earlier: Sequence[float] | None, extent: Extent | None) -> bool:
     if earlier is None or extent is None:
         return False
-    one, other = (shapely.box(*box).buffer(EXTENT_MARGIN_DEG, join_style="mitre") for box in (earlier, extent))
+    margin = EXTENT_MARGIN_DEG  # a single tower has an extent too
+    one, other = (
+        shapely.box(west - margin, south - margin, east + margin, north + margin) for west, south, east, north in (earlier, extent)
+    )
     return bool(one.intersection(other).area >= SAME_SOURCE_OVERLAP * one.union(other).area)
 
 

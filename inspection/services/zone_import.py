@@ -98,6 +98,7 @@ def _write(zone_set: ZoneSet, records: list[ZoneRecord], *, keep: bool) -> dict[
             for record in changed + new:
                 copy.write_row(_row(record))
         cursor.execute(_MERGE, {"zone_set": zone_set.pk})
+        cursor.execute("DROP TABLE zone_staging")  # before the end of the transaction: several imports may share one
     return {"new": len(new), "changed": len(changed), "unchanged": len(records) - len(new) - len(changed), "removed": len(held)}
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from inspection.zones.circles import checked_radius_m, enclosing_polygon
 from inspection.zones.faults import FaultList
-from inspection.zones.geometry_gate import GeometryFault, VertexBudget, checked_area, checked_position
+from inspection.zones.geometry_gate import MAX_POLYGONS, GeometryFault, VertexBudget, checked_area, checked_position
 from inspection.zones.height_bands import height_band
 from inspection.zones.records import ZoneRecord
 from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
@@ -21,6 +21,8 @@ def is_ed269(document: Any) -> bool:
 
 def zones_of_ed269(document: dict[str, Any], faults: FaultList) -> list[ZoneRecord]:
     budget = VertexBudget()
+    if len(document["features"]) > MAX_POLYGONS:
+        raise GeometryFault("features", f"there are {len(document['features'])} features; at most {MAX_POLYGONS} are taken")
     records: list[ZoneRecord] = []
     for index, feature in enumerate(document["features"]):
         with faults.gathering():

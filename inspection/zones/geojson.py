@@ -6,7 +6,7 @@ from shapely import MultiPolygon
 
 from inspection.zones.circles import checked_radius_m, enclosing_polygon
 from inspection.zones.faults import FaultList
-from inspection.zones.geometry_gate import GeometryFault, VertexBudget, checked_area, checked_position
+from inspection.zones.geometry_gate import MAX_POLYGONS, GeometryFault, VertexBudget, checked_area, checked_position
 from inspection.zones.height_bands import height_band
 from inspection.zones.records import ZoneRecord
 from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
@@ -25,6 +25,8 @@ def zones_of_geojson(document: dict[str, Any], faults: FaultList) -> list[ZoneRe
         features = document.get("features")
         if not isinstance(features, list):
             raise GeometryFault("features", "a FeatureCollection has a list of features")
+        if len(features) > MAX_POLYGONS:
+            raise GeometryFault("features", f"there are {len(features)} features; at most {MAX_POLYGONS} are taken")
         places = [(feature, f"features[{index}]") for index, feature in enumerate(features)]
     elif kind == "Feature":
         places = [(document, "")]

@@ -32,6 +32,12 @@ def blob(kind, data, raw_size=None, header_padding=b""):
     return struct.pack(">I", len(header)) + header + body
 
 
+def other_blob(packed):
+    body = varint(2 << 3) + varint(100) + packed
+    header = field(1, b"OSMData") + varint(3 << 3) + varint(len(body))
+    return struct.pack(">I", len(header)) + header + body
+
+
 HEADER = blob(b"OSMHeader", field(4, b"OsmSchema-V0.6") + field(4, b"DenseNodes"))
 
 HOSTILE = {
@@ -42,6 +48,8 @@ HOSTILE = {
     "blob longer than the file": HEADER + blob(b"OSMData", b"x" * 1_000)[:-5],
     "blob that unpacks to more than it says": HEADER + blob(b"OSMData", b"\0" * 30_000_000, raw_size=1_000),
     "blob of noise": HEADER + blob(b"OSMData", bytes(range(256)) * 40),
+    "tag with a null character": HEADER + blob(b"OSMData", field(1, field(1, b"") + field(1, b"po\0er") + field(1, b"tower"))),
+    "blob packed with another method": HEADER + other_blob(field(4, b"lzma")),
     "header alone cut off": HEADER[:10],
     "only nulls": b"\0" * 1_000_000,
     "gzip bomb": gzip.compress(b"<osm version='0.6'>" + b" " * 200_000_000),
@@ -68,7 +76,7 @@ def test_a_hostile_file_is_refused_within_two_seconds(name, tmp_path):
 
 def test_an_honest_blob_of_the_largest_size_passes_the_gate(tmp_path):
     path = tmp_path / "large.osm.pbf"
-    path.write_bytes(HEADER + blob(b"OSMData", b"\0" * MAX_BLOB_BYTES))
+    path.write_bytes(HEADER + blob(b"OSMData", field(2, b"x" * (MAX_BLOB_BYTES - 5))))
     assert examine(path) == "pbf"
 
 
