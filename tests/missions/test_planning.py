@@ -1,0 +1,321 @@
+"""From a request to a plan on a small world."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from django.contrib.gis.gdal import GDALRaster
+
+from inspection.geodesy import LonLat, path_length_m
+from inspection.selectors import NoGraph
+from inspection.services import import_terrain
+from missions.models import EndAction
+from missions.routing.problem import Objective, Task, TaskKind
+from missions.services import GraphOutdated, InvalidRequest, TargetRequest, make_plan
+from tests.inspection import ground
+from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, island, power_line, rebuild, request, uav, world, zone_around
+
+pytestmark = pytest.mark.django_db
+
+
+def reasons(plan: dict[str, Any]) -> dict[int, str]:
+    return {item["target"]: item["reason"] for item in plan["unassigned"]}
+
+
+def places(route: dict[str, Any], kind: str | None = None) -> list[tuple[float, float]]:
+    return [tuple(waypoint["position"]) for waypoint in route["waypoints"] if kind in {None, waypoint["kind"]}]
+
+
+def test_a_route_follows_the_line_to_its_target() -> None:
+    towers = world().towers
+    plan = make_plan(request=request(towers[5], uavs=(uav((10.0, 55.9999)),)))
+    (route,) = plan["routes"]
+    assert [waypoint["kind"] for waypoint in route["waypoints"]] == ["start", *["pass"] * 5, "target", "end"]
+    assert places(route)[1:7] == [(lon, LINE_LAT) for lon in TOWER_LONS]
+    assert [waypoint["asset"] for waypoint in route["waypoints"][1:7]] == [tower.pk for tower in towers]
+    assert plan["unassigned"] == plan["warnings"] == []
+
+
+def test_lengths_are_metres_flown_not_weighted_cost() -> None:
+    target = world().towers[5]
+    plan = make_plan(request=request(target))
+    (route,) = plan["routes"]
+    flown_m = path_length_m(np.array(route["geometry"]["coordinates"]))
+    assert route["length_m"] == plan["total_length_m"] == plan["longest_route_m"] == pytest.approx(flown_m, abs=0.01)
+
+
+def test_every_kind_of_asset_can_be_a_target() -> None:
+    here = world()
+    plan = make_plan(
+        request=request(
+            here.towers[1],
+            here.bridge,
+            TargetRequest(here.railway.pk, position=LonLat(10.013, 56.0101)),
+            here.line,
+            TargetRequest(None, UAV_AT),
+        )
+    )
+    assert plan["unassigned"] == []
+    assert sorted(plan["routes"][0]["targets"]) == [0, 1, 2, 3, 4]
+    assert [waypoint["target"] for waypoint in plan["routes"][0]["waypoints"] if waypoint["kind"] == "target"] == plan["routes"][0][
+        "targets"
+    ]
+
+
+def test_tasks_have_defaults_per_kind_of_target() -> None:
+    here = world()
+    plan = make_plan(
+        request=request(
+            here.towers[1], here.line, TargetRequest(here.line.pk, position=LonLat(10.006, 56.0)), TargetRequest(None, UAV_AT),
+            TargetRequest(here.bridge.pk, task=Task(TaskKind.HOLD, 42.0)),
+        )
+    )  # fmt: skip
+    tasks = {waypoint["target"]: waypoint["task"] for waypoint in plan["routes"][0]["waypoints"] if waypoint["kind"] == "target"}
+    assert tasks == {
+        0: {"kind": "photo", "hold_s": 10.0},
+        1: {"kind": "look", "hold_s": 0.0},
+        2: {"kind": "look", "hold_s": 5.0},
+        3: {"kind": "hold", "hold_s": 10.0},
+        4: {"kind": "hold", "hold_s": 42.0},
+    }
+
+
+@pytest.mark.parametrize("start_lon", [10.0, 10.02])
+def test_a_whole_line_is_flown_end_to_end_from_the_nearer_end(start_lon: float) -> None:
+    here = world()
+    (route,) = make_plan(request=request(here.line, uavs=(uav((start_lon, 55.995)),)))["routes"]
+    flown = [tuple(waypoint["position"]) for waypoint in route["waypoints"] if waypoint["target"] == 0]
+    line = [(lon, LINE_LAT) for lon in TOWER_LONS]
+    assert flown == (line if start_lon == 10.0 else line[::-1])
+    assert len(places(route, "target")) == 1
+
+
+def test_a_stretch_begins_and_ends_where_it_was_picked() -> None:
+    here = world()
+    stretch = TargetRequest(here.line.pk, stretch=(LonLat(10.014, 56.0), LonLat(10.006, 56.0)))
+    (route,) = make_plan(request=request(stretch))["routes"]
+    flown = [waypoint["position"] for waypoint in route["waypoints"] if waypoint["target"] == 0]
+    assert np.array(flown) == pytest.approx(np.array([[10.006, 56.0], [10.008, 56.0], [10.012, 56.0], [10.014, 56.0]]), abs=1e-9)
+
+
+def test_a_picked_point_is_put_on_the_line_and_reached_along_it() -> None:
+    here = world()
+    (route,) = make_plan(request=request(TargetRequest(here.line.pk, position=LonLat(10.014, 56.0005))))["routes"]
+    assert places(route, "target")[0] == pytest.approx((10.014, 56.0), abs=1e-9)
+    assert places(route)[-3] == (10.012, 56.0)
+
+
+def test_points_far_from_their_asset_and_unknown_assets_are_refused_with_their_places() -> None:
+    here = world()
+    far = TargetRequest(here.line.pk, position=LonLat(10.01, 56.01))
+    stretch = TargetRequest(here.towers[0].pk, stretch=(UAV_AT, UAV_AT))
+    with pytest.raises(InvalidRequest) as caught:
+        make_plan(request=request(far, TargetRequest(999_999), stretch, here.towers[0]))
+    assert set(caught.value.faults) == {"targets.0.position", "targets.1.asset", "targets.2.stretch"}
+    assert "1,113 m" in caught.value.faults["targets.0.position"]
+
+
+def test_a_detour_leads_around_a_zone_and_the_target_in_it_is_left_out() -> None:
+    here = world()
+    zone_around((10.008, 56.0))
+    plan = make_plan(request=request(here.towers[2], here.towers[4]))
+    assert reasons(plan) == {0: "inside_zone"}
+    assert plan["unassigned"][0]["message"] == "It stands inside Airport."
+    assert plan["routes"][0]["targets"] == [1]
+
+
+def test_a_line_that_runs_through_a_zone_cannot_be_flown_end_to_end() -> None:
+    here = world()
+    zone_around((10.008, 56.0))
+    plan = make_plan(request=request(here.line, TargetRequest(here.line.pk, stretch=(LonLat(10.013, 56.0), LonLat(10.019, 56.0)))))
+    assert reasons(plan) == {0: "inside_zone"}
+    assert plan["unassigned"][0]["message"] == "It runs through Airport."
+
+
+def test_an_access_leg_goes_round_a_zone_between_the_uav_and_the_nearest_tower() -> None:
+    here = world()
+    zone_around((10.0005, 55.9975), half_deg=0.0012)
+    (route,) = make_plan(request=request(here.towers[0]))["routes"]
+    assert route["targets"] == [0]
+    assert places(route)[1] != (TOWER_LONS[0], LINE_LAT)
+
+
+def test_an_island_out_of_reach_has_no_path() -> None:
+    here = world()
+    far = island()
+    plan = make_plan(request=request(here.towers[0], far[0]))
+    assert reasons(plan) == {1: "no_path"}
+
+
+def test_an_island_within_an_access_leg_of_a_uav_is_reached() -> None:
+    world()
+    far = island()
+    plan = make_plan(request=request(far[1], uavs=(uav((10.25, 55.99)),)))
+    assert plan["unassigned"] == []
+
+
+def test_a_line_that_stands_alone_is_reached_over_an_access_leg_of_its_own() -> None:
+    """8 km of open land between the UAV's network and a short line: longer than a direct leg, shorter than an access leg."""
+    world()
+    alone = [ground.tower((10.14, LINE_LAT)), ground.tower((10.144, LINE_LAT))]
+    power_line(alone)
+    rebuild()
+    plan = make_plan(request=request(alone[1], uavs=(uav((9.95, LINE_LAT)),)))
+    assert plan["unassigned"] == []
+
+
+def test_a_bare_position_far_from_everything_is_too_far_from_the_network() -> None:
+    here = world()
+    plan = make_plan(request=request(here.towers[0], TargetRequest(None, LonLat(10.0, 56.3))))
+    assert reasons(plan) == {1: "too_far_from_network"}
+
+
+def test_a_bare_position_is_reached_straight_when_that_is_short_and_clear() -> None:
+    world()
+    (route,) = make_plan(request=request(TargetRequest(None, LonLat(10.001, 55.980))))["routes"]
+    assert [waypoint["kind"] for waypoint in route["waypoints"]] == ["start", "target", "end"]
+
+
+def test_a_place_walled_in_by_zones_has_no_path_although_the_network_is_near() -> None:
+    world()
+    hole = (10.05, 56.05)
+    for east, north, half_deg in ((-0.02, 0, 0.0195), (0.02, 0, 0.0195), (0, -0.04, 0.035), (0, 0.04, 0.035)):
+        zone_around((hole[0] + east, hole[1] + north), half_deg=half_deg, with_graph=False)
+    rebuild()
+    plan = make_plan(request=request(TargetRequest(None, LonLat(*hole))))
+    assert reasons(plan) == {0: "no_path"}
+    assert "meets a no-fly zone" in plan["unassigned"][0]["message"]
+
+
+def test_a_target_beyond_the_range_is_left_out_with_the_missing_metres() -> None:
+    here = world()
+    plan = make_plan(request=request(here.towers[5], uavs=(uav(max_range_m=1_200.0),)))
+    assert reasons(plan) == {0: "beyond_range"}
+    assert "more than the range" in plan["unassigned"][0]["message"]
+    assert plan["routes"][0]["geometry"] is None
+
+
+def test_the_range_counts_the_way_back_when_uavs_return() -> None:
+    here = world()
+    one_way = make_plan(request=request(here.towers[5], uavs=(uav(max_range_m=2_500.0),)))
+    both_ways = make_plan(request=request(here.towers[5], uavs=(uav(max_range_m=2_500.0),), return_to_start=True))
+    assert reasons(one_way) == {}
+    assert reasons(both_ways) == {0: "beyond_range"}
+
+
+def test_a_tower_above_the_height_limit_is_neither_inspected_nor_flown_over() -> None:
+    here = world()
+    tall = here.towers[2]
+    tall.height_m = 150.0
+    tall.save()
+    rebuild()
+    plan = make_plan(request=request(tall, here.towers[5], here.line))
+    assert reasons(plan) == {0: "above_height_limit", 2: "above_height_limit"}
+    assert tuple(tall.centre.coords) not in places(plan["routes"][0])
+
+
+def test_a_deleted_asset_is_named_as_gone() -> None:
+    world()
+    assert reasons(make_plan(request=request(TargetRequest()))) == {0: "asset_gone"}
+
+
+def test_a_vanished_asset_can_still_be_visited() -> None:
+    here = world()
+    gone = here.towers[5]
+    gone.vanished_at = "2026-01-01T00:00Z"
+    gone.save()
+    rebuild()
+    assert make_plan(request=request(gone))["routes"][0]["targets"] == [0]
+
+
+def test_a_uav_inside_a_zone_stays_on_the_ground_and_the_plan_says_so() -> None:
+    here = world()
+    zone_around((10.001, 55.990))
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.990), name="Kite"), uav())))
+    assert [route["targets"] for route in plan["routes"]] == [[], [0]]
+    assert plan["warnings"] == [{"code": "uav_inside_zone", "uav": 0, "message": "Kite stands inside Airport and cannot take off."}]
+
+
+def test_when_no_uav_can_take_off_every_target_says_so() -> None:
+    here = world()
+    zone_around(UAV_AT)
+    plan = make_plan(request=request(here.towers[0]))
+    assert plan["unassigned"] == [{"target": 0, "reason": "no_path", "message": "There is no UAV that can take off."}]
+
+
+@pytest.mark.parametrize("action", list(EndAction))
+def test_the_end_of_a_route_is_what_the_uav_does_at_the_end(action: EndAction) -> None:
+    here = world()
+    (route,) = make_plan(request=request(here.towers[3], uavs=(uav(end_action=action),)))["routes"]
+    assert route["end_action"] == action
+    assert places(route)[-1] == (UAV_AT if action is EndAction.RETURN else (TOWER_LONS[3], LINE_LAT))
+    assert route["waypoints"][-1]["kind"] == "end"
+
+
+def test_two_uavs_share_the_targets_when_the_longest_route_counts() -> None:
+    here = world()
+    uavs = (uav((10.0, 55.995)), uav((10.02, 55.995), name="Kite"))
+    plan = make_plan(request=request(here.towers[0], here.towers[5], uavs=uavs, objective=Objective.MAKESPAN))
+    assert [route["targets"] for route in plan["routes"]] == [[0], [1]]
+    assert [route["uav"] for route in plan["routes"]] == ["Tern", "Kite"]
+
+
+def test_without_terrain_data_flat_ground_is_assumed() -> None:
+    plan = make_plan(request=request(world().towers[0]))
+    assert plan["flat_ground_assumed"]
+    assert plan["terrain"] == "flat ground assumed"
+    for waypoint in plan["routes"][0]["waypoints"]:
+        assert waypoint["altitude_amsl_m"] is None
+        assert waypoint["altitude_relative_m"] == waypoint["altitude_agl_m"] == 60.0
+
+
+def test_with_terrain_data_all_three_heights_agree(tmp_path: Path) -> None:
+    """Ground that rises 2.5 m per 0.001 degree to the east, from 100 m at 9.9 E."""
+    here = world()
+    columns, rows = 300, 300
+    heights = np.tile(100 + 2.5 * np.arange(columns, dtype=np.float32), (rows, 1))
+    raster = GDALRaster(
+        {
+            "driver": "GTiff", "name": str(tmp_path / "slope.tif"), "srid": 4326, "width": columns, "height": rows, "origin": (9.9, 56.15),
+            "scale": (0.001, -0.001), "datatype": 6, "bands": [{"data": heights.tobytes(), "nodata_value": -9999.0}],
+        }
+    )  # fmt: skip
+    raster._flush()
+    import_terrain(path=tmp_path / "slope.tif")
+
+    plan = make_plan(request=request(here.towers[5]))
+    assert not plan["flat_ground_assumed"]
+    assert plan["terrain"] == "terrain model"
+
+    def ground_m(lon: float) -> float:
+        return 100 + 2.5 * (lon - 9.9005) / 0.001
+
+    take_off_m = ground_m(UAV_AT.lon)
+    for waypoint in plan["routes"][0]["waypoints"]:
+        amsl_m = ground_m(waypoint["position"][0]) + waypoint["altitude_agl_m"]
+        assert waypoint["altitude_amsl_m"] == pytest.approx(amsl_m, abs=0.05)
+        assert waypoint["altitude_relative_m"] == pytest.approx(amsl_m - take_off_m, abs=0.05)
+
+
+def test_a_zone_that_the_graph_does_not_know_yet_stops_the_plan() -> None:
+    here = world()
+    zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
+    with pytest.raises(GraphOutdated, match="Fire brigade"):
+        make_plan(request=request(here.towers[5]))
+    rebuild()
+    assert make_plan(request=request(here.towers[5]))["routes"][0]["targets"] == [0]
+
+
+def test_without_a_graph_there_is_no_plan() -> None:
+    with pytest.raises(NoGraph):
+        make_plan(request=request(TargetRequest(None, UAV_AT)))
+
+
+def test_the_plan_names_the_graph_and_the_ground_that_it_was_made_on() -> None:
+    here = world()
+    first = make_plan(request=request(here.towers[0]))
+    rebuild()
+    second = make_plan(request=request(here.towers[0]))
+    assert second["graph_version"] > first["graph_version"]
+    assert second["ground_revision"] == first["ground_revision"] + 1
