@@ -76,7 +76,7 @@ def _headers(tile_addresses: Iterable[str]) -> str:
     return f"""\
             add_header Content-Security-Policy "{content_security_policy(tile_addresses)}" always;
             add_header X-Content-Type-Options nosniff always;
-            add_header Referrer-Policy same-origin always;
+            add_header Referrer-Policy strict-origin-when-cross-origin always;
             add_header Permissions-Policy "camera=(), microphone=(), geolocation=(self)" always;"""
 
 
@@ -98,9 +98,10 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
         }}"""
 
 
-def _proxied(location: str, name: str, headers: str, scheme: str) -> str:
+def _proxied(location: str, name: str, headers: str, scheme: str, *, compression: str = "on") -> str:
     return f"""
         location {location} {{
+            gzip {compression};
             proxy_pass http://web;
             proxy_http_version 1.1;
             proxy_set_header Connection "";
@@ -143,6 +144,9 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
         unavailable="Spanwise is starting or has been stopped. Please try again in a moment.",
         too_large="This is more than Spanwise takes in one request.",
     )
+    # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
+    places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, compression="off")
+    api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;
 pid {_quoted(folder / "nginx.pid")};
@@ -187,7 +191,7 @@ http {{
             alias {_quoted(f"{places.static}/")};
             add_header Cache-Control no-cache;
 {headers}
-        }}{_proxied("/", "page", headers, scheme)}{_proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme)}
+        }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}
 {failures_for_people}
 {failures_for_programs}
     }}
