@@ -29,7 +29,7 @@ class Command(BaseCommand):
         is_watched = sys.stderr.isatty()
 
         def show(stage: str, share: float) -> None:
-            self.stderr.write(f"\r\033[K{share:4.0%} {stage}", ending="")
+            self.stderr.write(f"\r\033[K{share:4.0%} {stage}", style_func=str, ending="")
 
         try:
             data_import = import_terrain(
@@ -39,7 +39,7 @@ class Command(BaseCommand):
             raise CommandError(f"{path.name}: {error}") from error
         finally:
             if is_watched:
-                self.stderr.write("\r\033[K", ending="")
+                self.stderr.write("\r\033[K", style_func=str, ending="")
         counts = data_import.counts
         if options["json"]:
             self.stdout.write(json.dumps(counts))
