@@ -127,7 +127,7 @@ def _write(content: OsmContent, data_import: DataImport, sources: Sequence[DataI
         with cursor.copy(_COPY) as copy:
             for row in _rows(content.records):
                 copy.write_row(row)
-        cursor.execute("ANALYZE osm_staging")
+        cursor.execute("ANALYZE osm_staging, inspection_asset")  # right after a first import the planner still takes the table for empty
         cursor.execute(_MATCHES, values)
         edited, newer, unchanged = cursor.fetchone()
         cursor.execute(_UPDATE, values)
