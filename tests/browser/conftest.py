@@ -40,7 +40,7 @@ def _free_port() -> int:
 
 @pytest.fixture(scope="session")
 def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    """Columbus, Ohio, with two zones, behind the real front door: proxy, policy headers, workers. No base map: nothing is fetched outside."""
+    """Columbus, Ohio, with two zones, behind the real front door: proxy, policy headers, workers. Without a base map from outside."""
     osm_file = shared_data("osm/columbus-ohio.osm.pbf")
     state_dir = tmp_path_factory.mktemp("site")
     environment = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL", "DJANGO_SETTINGS_MODULE"}}

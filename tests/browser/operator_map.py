@@ -112,3 +112,19 @@ def _is_alone(page: Page, place: list[float], kinds: str) -> bool:
     around = 0.0004  # some 40 m
     box = f"{place[0] - around},{place[1] - around},{place[0] + around},{place[1] + around}"
     return len(asks(page, f"/assets?kind={kinds}&bbox={box}&limit=3")["features"]) == 1
+
+
+def stores_mission(page: Page, name: str) -> None:
+    """A planned mission with two UAVs and two towers, made through the API with the page's session."""
+    towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=2")["features"]
+    uavs = [{"name": "Heron", "position": [-83.045, 39.935]}, {"name": "Kite", "position": [-82.945, 39.945]}]
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    answer = page.request.post(
+        "/api/v1/missions",
+        data={
+            "name": name, "uavs": uavs, "targets": [{"asset": tower["id"]} for tower in towers],
+            "objective": "makespan", "return_to_start": True, "plan": True,
+        },
+        headers={"X-CSRFToken": token},
+    )  # fmt: skip
+    assert answer.status == 201, answer.text()

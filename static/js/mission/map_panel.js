@@ -32,9 +32,9 @@ export function mountMap(store, actions, page, { askForUav }) {
   const frame = byId("map").parentElement;
   const container = byId("map");
   let under = rememberedUnder(page);
+  const opensAtPlace = location.hash.includes("map="); // asked before the map writes its own view there
   const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: "Map" });
   const { map } = view;
-  const opensAtPlace = location.hash.includes("map=");
   const shapes = new Map(); // asset id → geometry of what is picked whole
   const hidden = new Set();
   const targets = createTargets(map, { onPick: (key) => store.update({ chosenTarget: key }), onHover: (key) => store.update({ litTarget: key }) });
