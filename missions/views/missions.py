@@ -3,6 +3,7 @@
 from typing import Any
 from uuid import UUID
 
+from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
@@ -124,7 +125,7 @@ class MissionList(_PlansWhenAsked):
         serializer = inputs.MissionInputSerializer(data=request.data, context={"organisation": user.organisation})
         serializer.is_valid(raise_exception=True)
         values = serializer.validated_data
-        with api_problems():
+        with api_problems(), transaction.atomic():  # a mission that cannot be planned as asked is not left behind
             mission = services.create_mission(
                 organisation=user.organisation, author=user, name=values["name"], request=inputs.plan_request(values)
             )
@@ -154,7 +155,7 @@ class MissionDetail(_PlansWhenAsked):
         serializer.is_valid(raise_exception=True)
         values = dict(serializer.validated_data)
         wants_plan = values.pop("plan")
-        with api_problems(has_precondition=expected is not None):
+        with api_problems(has_precondition=expected is not None), transaction.atomic():
             if values:
                 mission = services.change_mission(mission=mission, actor=user, change=MissionChange(**values), expected_revision=expected)
                 expected = mission.revision

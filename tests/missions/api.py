@@ -1,0 +1,29 @@
+"""Requests to the planning API, as JSON."""
+
+import json
+from typing import Any
+
+from django.http import HttpResponse
+from django.test import Client
+
+from inspection.models import Asset
+from tests.missions.worlds import UAV_AT
+
+TERN = {"name": "Tern", "position": list(UAV_AT)}
+
+
+def post(client: Client, path: str, body: Any = None, **headers: str) -> HttpResponse:
+    return client.post(f"/api/v1/{path}", json.dumps(body or {}), content_type="application/json", headers=headers)
+
+
+def patch(client: Client, path: str, body: Any, **headers: str) -> HttpResponse:
+    return client.patch(f"/api/v1/{path}", json.dumps(body), content_type="application/json", headers=headers)
+
+
+def plan_body(*targets: Asset | dict[str, Any], **more: Any) -> dict[str, Any]:
+    listed = [target if isinstance(target, dict) else {"asset": target.pk} for target in targets]
+    return {"uavs": [TERN], "targets": listed, "objective": "total", "return_to_start": False} | more
+
+
+def mission_body(*targets: Asset | dict[str, Any], **more: Any) -> dict[str, Any]:
+    return plan_body(*targets, name="Bexley spring") | more
