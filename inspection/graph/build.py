@@ -20,7 +20,7 @@ from inspection.graph.edges import (
 from inspection.graph.ground_data import GroundData, Places, Ways
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.joining import join_vertices
-from inspection.graph.links import bridge_links, bridge_to_tower_links, crossing_links, railway_to_tower_links
+from inspection.graph.links import bridge_links, bridge_to_tower_links, crossing_links, railway_crossing_links, railway_to_tower_links
 from inspection.graph.railway_points import railway_points
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
@@ -103,7 +103,6 @@ def _network(ground: GroundData, rules: LinkingRules) -> tuple[_Nodes, Edges]:
     on_lines = join_vertices(ground.supports, ground.lines)
     railways = railway_points(ground.railways, join_vertices(NO_PLACES, ground.railways), rules.railway_spacing_m)
     first_railway = len(on_lines.position)
-    first_bridge = first_railway + len(railways.position)
     vertices = on_lines.way[len(ground.supports) :]
     nodes = _Nodes(
         position=np.concatenate([on_lines.position, railways.position, ground.bridges.position]),
@@ -127,8 +126,11 @@ def _network(ground: GroundData, rules: LinkingRules) -> tuple[_Nodes, Edges]:
         ground.railways.asset[railways.way_of_leg],
     )
     crossings = crossing_links(nodes.position[:first_railway], ground.lines, on_lines.node_of_vertex, rules)
-    bridges = bridge_links(first_bridge + np.arange(len(ground.bridges)), nodes.position, rules)
-    return nodes, without_seam(joined(along_lines, along_railways, crossings, bridges), nodes.position)
+    bridges = nodes.of_kind(NodeKind.BRIDGE)
+    beside_railways = np.concatenate([np.arange(first_railway), bridges])
+    changeovers = railway_crossing_links(beside_railways, nodes.of_kind(NodeKind.RAILWAY), nodes.position, rules)
+    between_bridges = bridge_links(bridges, nodes.position, rules)
+    return nodes, without_seam(joined(along_lines, along_railways, crossings, changeovers, between_bridges), nodes.position)
 
 
 def _edges_along(kind: EdgeKind, ways: Ways, node_of_vertex: IntArray) -> Edges:

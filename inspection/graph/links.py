@@ -36,6 +36,12 @@ def crossing_links(position: FloatArray, lines: Ways, node_of_vertex: IntArray, 
     return edges_of(EdgeKind.CROSSING, pairs[:, 0], pairs[:, 1])
 
 
+def railway_crossing_links(places: IntArray, railway_points: IntArray, position: FloatArray, rules: LinkingRules) -> Edges:
+    """Bridges and supports to the nearest railway point within the radius: where a UAV changes over without a detour."""
+    row, other, _ = nearest_within(position[places], position[railway_points], rules.crossing_m, count=1)
+    return edges_of(EdgeKind.CROSSING, places[row], railway_points[other])
+
+
 def _share_a_way(pairs: IntArray, ways: Ways, node_of_vertex: IntArray) -> BoolArray:
     """Whether some way passes through both nodes of each pair."""
     membership = np.unique(node_of_vertex * len(ways) + ways.way_of_vertex) if len(ways) else np.zeros(0, dtype=np.int64)

@@ -10,7 +10,7 @@ class LinkingRules:
     bridge_to_tower_m: float = 3_000.0
     bridge_to_bridge_m: float = 5_000.0
     railway_to_tower_m: float = 3_000.0  # only where a railway would else be cut off
-    crossing_m: float = 150.0  # supports of different lines: crossings, substations
+    crossing_m: float = 150.0  # supports of different lines, and bridges and supports beside railways: crossings, substations
     railway_spacing_m: float = 250.0  # a railway's way vertices are thinned to at most this
     off_network_factor: float = 2.0  # cost per metre away from infrastructure, so that routes stay near the lines
     zone_clearance_m: float = 5.0  # more than the gap between a chart's straight line and the geodesic on a leg of 5 km

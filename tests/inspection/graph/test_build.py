@@ -160,6 +160,16 @@ def test_a_railway_is_linked_once_at_its_closest_pair_when_it_is_cut_off():
     assert graph.length_m[chosen] == pytest.approx([1_000.0], abs=0.5)
 
 
+def test_a_support_and_a_bridge_beside_a_railway_link_to_its_nearest_point():
+    """300 runs east; tower 100 stands 140 m north of it, tower 101 160 m, bridge 400 stands on it: change-overs for 100 and 400."""
+    graph = built(
+        supports=places([(0, 140), (1_000, 160)], first_asset=100, osm=[1, 2]),
+        railways=ways([(-1_000, 0), (0, 0), (1_000, 0)], first_asset=300, osm=[[11, 12, 13]]),
+        bridges=places([(500, 5)], first_asset=400),
+    )
+    assert edges(graph, EdgeKind.CROSSING) == [(100, 300), (300, 400)]
+
+
 def test_a_railway_beyond_3_km_stays_alone():
     drawn = ground(supports=places([(0, 0)], first_asset=100), railways=ways([(0, 3_100), (1_000, 3_100)], first_asset=300, osm=[[1, 2]]))
     result = build(drawn, RULES)

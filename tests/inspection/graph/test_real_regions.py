@@ -76,7 +76,7 @@ def assert_rules_hold(result: BuiltGraph) -> None:
         (EdgeKind.BRIDGE_TO_TOWER, {(0, 3)}, RULES.bridge_to_tower_m),
         (EdgeKind.BRIDGE_TO_BRIDGE, {(3, 3)}, RULES.bridge_to_bridge_m),
         (EdgeKind.RAILWAY_TO_TOWER, {(0, 2)}, RULES.railway_to_tower_m),
-        (EdgeKind.CROSSING, {(0, 0), (0, 1), (1, 1)}, RULES.crossing_m),
+        (EdgeKind.CROSSING, {(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 3)}, RULES.crossing_m),
         (EdgeKind.LINE, {(0, 0), (0, 1), (1, 1)}, np.inf),
     ):
         of_kind = graph.edge_kind == kind
