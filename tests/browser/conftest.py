@@ -128,6 +128,8 @@ def picture() -> Callable[[Page, str], None]:
 
     def take(page: Page, name: str) -> None:
         if os.environ.get("SPANWISE_SCREENSHOTS") == "1":
+            page.evaluate("document.activeElement?.blur()")
+            page.mouse.move(0, 0)
             page.screenshot(path=PROJECT_DIR / "docs" / "screenshots" / f"{name}.png")
 
     return take

@@ -4,6 +4,7 @@ import test from "node:test";
 import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
 import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
 import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
+import { mergedLabel, mergePills } from "../../static/js/map/pills.js";
 import { placeSketch } from "../../static/js/missions/sketch.js";
 
 const feature = (id, sourceLayer, properties = { id: 1 }) => ({ layer: { id }, sourceLayer, properties, geometry: { type: "Point", coordinates: [0, 0] } });
@@ -58,4 +59,13 @@ test("a sketch fits its frame and keeps the shape", () => {
 test("a sketch of nothing and of one point does not fail", () => {
   assert.deepEqual(placeSketch([]), []);
   assert.deepEqual(placeSketch([[[10, 50]]]), [[[56, 28]]]);
+});
+
+test("pills of one route that would overlap are merged, and a long label becomes a count", () => {
+  const pill = (sequence, number, x, y) => ({ key: `${sequence} ${number}`, sequence, letter: "AB"[sequence] ?? "", number, x, y });
+  const groups = mergePills([pill(0, 1, 0, 0), pill(0, 2, 10, 0), pill(1, 1, 5, 0), pill(0, 3, 100, 0)]);
+  assert.deepEqual(groups.map(({ members }) => members.length), [2, 1, 1]);
+  assert.equal(mergedLabel("C", [4, 3]), "C3–4");
+  assert.equal(mergedLabel("C", [1, 3]), "C1, 3");
+  assert.equal(mergedLabel("C", [10, 11, 12, 13, 16, 17]), "C × 6");
 });

@@ -43,6 +43,13 @@ test("targets that would touch are pushed 19 px apart and stay inside", () => {
   assert.ok(targets[2].x <= 290);
 });
 
+test("more targets than fit side by side are drawn at their true places", () => {
+  const many = [waypoint(0, "start"), ...Array.from({ length: 60 }, (_, target) => waypoint(1 + target / 100, "target", { target })), waypoint(4, "end")];
+  const plan = layOut(profileOf(many, 400_000), 400_000, 420);
+  assert.equal(plan.isCrowded, true);
+  assert.ok(Math.abs(plan.targets[0].x - 110) < 0.5 && plan.targets[59].x < 170);
+});
+
 test("a distance in the strip is a position on the map", () => {
   const { places } = profileOf(ROUTE, 400_000);
   assert.deepEqual(positionAt(ROUTE, places, 0), [0, 0]);

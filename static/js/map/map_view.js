@@ -58,7 +58,13 @@ export function createMap(container, { baseMap, satellite, under, describe }) {
       if (!box) return;
       const room = Math.min(container.clientWidth, container.clientHeight);
       const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-      map.fitBounds([[box[0], box[1]], [box[2], box[3]]], { padding: Math.min(64, room / 6), maxZoom: 15, duration: animate && !calm ? 350 : 0 });
+      const padding = Math.min(64, room / 6);
+      const controls_px = 68; // they stand at the right edge
+      map.fitBounds([[box[0], box[1]], [box[2], box[3]]], {
+        padding: { top: padding, bottom: padding, left: padding, right: Math.max(padding, controls_px) },
+        maxZoom: 15,
+        duration: animate && !calm ? 350 : 0,
+      });
     },
   };
 }

@@ -106,7 +106,7 @@ export function createActions(store, history, missionId) {
       const unreached = unreachedOf(made).length;
       say(`${sentence}. ${facts}.${unreached ? ` ${countText(unreached, "target is", "targets are")} not reached.` : ""}`);
     } catch (error) {
-      if (error.name === "AbortError") say("Planning stopped.");
+      if (error.name === "AbortError") toast("Planning stopped. Nothing was changed.");
       else problem("Not planned.", wordsOf(error), [{ label: "Plan again", act: plan }]);
     } finally {
       stopping = null;
@@ -156,20 +156,25 @@ export function createActions(store, history, missionId) {
     if (asCopy) body.name = `${body.name} (copy)`;
     if (withPlan && (isNew || !store.state.planIsStored || basis !== store.state.savedBasis)) body.plan = true;
     store.update({ saving: true, problem: null });
+    let draftId = null; // stored already, its plan not yet
     try {
       const headers = isNew ? { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } : { "If-Match": `"${mission.revision}"` };
       const answer = isNew ? await post("/missions", body, { headers }) : await patch(`/missions/${mission.id}`, body, { headers });
       let stored = answer.data;
       if (answer.status === 202) {
+        draftId = answer.data.mission;
+        dropDraft(isNew ? missionId() : mission.id);
+        if (isNew) addressNow({ id: draftId });
         stopping = new AbortController();
         await waitForJob(answer.data.job, "Planning what is saved");
-        stored = (await get(`/missions/${answer.data.mission}`)).data;
+        stored = (await get(`/missions/${draftId}`)).data;
       }
       dropDraft(isNew ? missionId() : mission.id);
       openStored(stored);
       if (isNew) addressNow(stored);
       toast(`“${stored.name}” is saved.`);
     } catch (error) {
+      if (draftId) await get(`/missions/${draftId}`).then(({ data }) => openStored(data), () => {});
       saveFailed(error);
     } finally {
       stopping = null;

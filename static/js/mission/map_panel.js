@@ -178,7 +178,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     const pills = state.selection.targets
       .map((target, index) => {
         const place = places.get(target.key);
-        return { key: target.key, name: target.label, position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1, label: `${index + 1}` };
+        return { key: target.key, name: target.label, position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1 };
       })
       .filter((pill) => pill.position);
     targets.update(pills);

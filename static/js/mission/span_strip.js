@@ -39,7 +39,7 @@ export function profileOf(waypoints, length_m) {
   return { places, legs, targets, ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end") };
 }
 
-/** Places in px: ticks thinned, targets pushed right when they would touch. */
+/** Places in px: ticks thinned, targets pushed right when they would touch; more than fit side by side are dots at their true places. */
 export function layOut(profile, longest_m, width_px) {
   const room = width_px - 2 * EDGE_PX;
   const x = (distance) => EDGE_PX + (longest_m > 0 ? (distance / longest_m) * room : 0);
@@ -47,19 +47,22 @@ export function layOut(profile, longest_m, width_px) {
   for (const distance of profile.ticks) {
     if (!ticks.length || x(distance) - ticks.at(-1) >= TICK_SPACING_PX) ticks.push(x(distance));
   }
-  const targets = [];
-  profile.targets.forEach(({ target, at }, index) => {
-    const before = targets.at(-1)?.x ?? -Infinity;
-    targets.push({ target, number: index + 1, at, x: Math.max(x(at), before + TARGET_SPACING_PX) });
-  });
-  // Pushed beyond the right edge: the row is moved back as far as its room goes.
-  const limit = width_px - EDGE_PX;
-  for (let index = targets.length - 1; index >= 0; index -= 1) {
-    const after = targets[index + 1]?.x ?? limit + TARGET_SPACING_PX;
-    targets[index].x = Math.max(EDGE_PX, Math.min(targets[index].x, after - TARGET_SPACING_PX));
-  }
+  const targets = profile.targets.map(({ target, at }, index) => ({ target, number: index + 1, at, x: x(at) }));
+  const isCrowded = (targets.length - 1) * TARGET_SPACING_PX > room;
+  if (!isCrowded) keepApart(targets, width_px - EDGE_PX);
   const end = profile.places.at(-1) ?? 0;
-  return { ticks, targets, legs: profile.legs.map((leg) => ({ ...leg, x1: x(leg.from), x2: x(leg.to) })), start: x(0), end: x(end) };
+  return { ticks, targets, isCrowded, legs: profile.legs.map((leg) => ({ ...leg, x1: x(leg.from), x2: x(leg.to) })), start: x(0), end: x(end) };
+}
+
+/** Pushes to the right, and what would leave the right edge back to the left. */
+function keepApart(targets, limit_px) {
+  for (let index = 1; index < targets.length; index += 1) {
+    targets[index].x = Math.max(targets[index].x, targets[index - 1].x + TARGET_SPACING_PX);
+  }
+  for (let index = targets.length - 1; index >= 0; index -= 1) {
+    const after = targets[index + 1]?.x ?? limit_px + TARGET_SPACING_PX;
+    targets[index].x = Math.min(targets[index].x, after - TARGET_SPACING_PX);
+  }
 }
 
 /** Position on the route's waypoints at a distance from its start, lon lat. */
@@ -96,7 +99,7 @@ export function spanStrip({ waypoints, length_m, longest_m, width_px, label, onA
     mark(plan.start),
     mark(plan.end),
     plan.targets.map(({ x, number }) =>
-      svg("g", { class: "strip-target" }, svg("circle", { cx: x, cy: MIDDLE_PX, r: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, `${number}`)),
+      plan.isCrowded ? svg("circle", { cx: x, cy: MIDDLE_PX, r: 3.5, class: "strip-dot" }) : svg("g", { class: "strip-target" }, svg("circle", { cx: x, cy: MIDDLE_PX, r: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, `${number}`)),
     ),
     cursor,
   );

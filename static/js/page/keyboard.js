@@ -43,7 +43,7 @@ export function listenToKeys(bindings) {
 }
 
 function caps(keys) {
-  return keys.split(/[+ ]/).map((key) => h("kbd", {}, NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key)));
+  return (keys.match(/[^+ ]+|\+$/g) ?? []).map((key) => h("kbd", {}, NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key)));
 }
 
 export function showKeys(bindings) {

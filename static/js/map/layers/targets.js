@@ -3,33 +3,10 @@
 import { h } from "../../dom.js";
 import { maplibre } from "../maplibre.js";
 import { routeNumber } from "../palette.js";
+import { mergedLabel, mergePills } from "../pills.js";
 
 const MOST_MARKERS = 200;
-const MERGE_PX = 25;
-
-/** Groups of pills to draw, given their places on the screen: [{ members, x, y }]. */
-export function mergePills(pills) {
-  const groups = [];
-  for (const pill of pills) {
-    const group = groups.find(
-      (candidate) => candidate.members[0].sequence === pill.sequence && Math.hypot(candidate.x - pill.x, candidate.y - pill.y) < MERGE_PX,
-    );
-    if (group && pill.sequence !== null) group.members.push(pill);
-    else groups.push({ x: pill.x, y: pill.y, members: [pill] });
-  }
-  return groups;
-}
-
-/** "C3", "C3–4", "C1, 3, 4": letter once, runs with a dash. */
-export function mergedLabel(letter, numbers) {
-  const runs = [];
-  for (const number of [...numbers].sort((a, b) => a - b)) {
-    const run = runs.at(-1);
-    if (run && number === run.at(-1) + 1) run.push(number);
-    else runs.push([number]);
-  }
-  return letter + runs.map((run) => (run.length > 1 ? `${run[0]}–${run.at(-1)}` : `${run[0]}`)).join(", ");
-}
+const MOST_NAMES = 6;
 
 export function createTargets(map, { onPick, onHover }) {
   let pills = [];
@@ -39,8 +16,8 @@ export function createTargets(map, { onPick, onHover }) {
 
   function elementOf(group) {
     const [first] = group.members;
-    const label = first.sequence === null ? first.label : mergedLabel(first.letter, group.members.map((pill) => pill.number));
-    const names = group.members.map((pill) => pill.name).join(", ");
+    const label = mergedLabel(first.letter, group.members.map((pill) => pill.number));
+    const names = group.members.slice(0, MOST_NAMES).map((pill) => pill.name).join(", ");
     const element = h(
       "button",
       {
@@ -73,7 +50,7 @@ export function createTargets(map, { onPick, onHover }) {
 
   map.on("zoomend", draw);
   return {
-    /** pills: [{ key, position, sequence or null, letter, number, label, name }] */
+    /** pills: [{ key, position, sequence or null, letter, number, name }] */
     update(next) {
       pills = next;
       const isMany = pills.length > MOST_MARKERS;
@@ -82,7 +59,7 @@ export function createTargets(map, { onPick, onHover }) {
         features: isMany
           ? pills.map((pill) => ({
               type: "Feature",
-              properties: { route: pill.sequence === null ? 0 : routeNumber(pill.sequence), label: pill.sequence === null ? pill.label : `${pill.letter}${pill.number}` },
+              properties: { route: pill.sequence === null ? 0 : routeNumber(pill.sequence), label: `${pill.letter}${pill.number}` },
               geometry: { type: "Point", coordinates: pill.position },
             }))
           : [],
