@@ -63,12 +63,12 @@ def _reason(problem: Problem, needed_m: FloatArray, within: NDArray[np.bool_]) -
         return Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone."
     if not within.any():
         limit_m = np.array([uav.limit_m for uav in problem.uavs])
-        uav, visit = np.unravel_index(np.argmin(needed_m - limit_m[:, None]), needed_m.shape)
+        missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
+        uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
         there = "there and back" if problem.uavs[uav].returns else "there"
-        missing_m = needed_m[uav, visit] - limit_m[uav]
         return (
             Reason.BEYOND_RANGE,
-            f"It is {_km(needed_m[uav, visit])} {there}, {_km(missing_m)} more than the range of the UAV that comes nearest to it.",
+            f"It is {_km(needed_m[uav, visit])} {there}, {_km(missing_m[uav, visit])} more than the range of the UAV that comes nearest to it.",
         )
     limited = [problem.uavs[uav].max_range_m is not None for uav in np.flatnonzero(within.any(axis=1))]
     if any(limited):

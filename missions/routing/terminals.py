@@ -145,8 +145,9 @@ class Ways:
     travel: Travel
     uavs: int
     visits: int
-    uav_attached: tuple[bool, ...]  # whether each start meets the network
-    visit_attached: tuple[bool, ...]  # whether each visit's entry does
+    uav_legs: tuple[tuple[Attachment, ...], ...]  # how each start meets the network; none: not at all
+    entry_legs: tuple[tuple[Attachment, ...], ...]  # how each visit's entry does, and its exit
+    exit_legs: tuple[tuple[Attachment, ...], ...]
 
     @property
     def from_start_m(self) -> FloatArray:
@@ -203,6 +204,7 @@ def ways_between(
         found,
         len(starts),
         len(entries),
-        uav_attached=tuple(bool(legs_of[place]) for place in starts),
-        visit_attached=tuple(bool(legs_of[place]) for place in entries),
+        uav_legs=tuple(tuple(legs_of[place]) for place in starts),
+        entry_legs=tuple(tuple(legs_of[place]) for place in entries),
+        exit_legs=tuple(tuple(legs_of[place]) for place in exits),
     )

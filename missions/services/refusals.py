@@ -96,12 +96,12 @@ def unreached_place(place: Place, item: Unassigned, visits: list[int], ways: Way
     if item.reason is not Reason.NO_PATH or not ways.uavs:
         return LeftOut(place.target, item.reason.value, item.message)
     reach = f"{scene.access.access_leg_m / 1_000:g} km"
-    if not any(ways.visit_attached[visit] for visit in visits):
+    if not any(ways.entry_legs[visit] for visit in visits):
         if any(is_near_network(scene.graph, end, scene.access.access_leg_m) for end in (place.course[0], place.course[-1])):
             return LeftOut(
                 place.target, Reason.NO_PATH.value, f"Every straight way to it from the network within {reach} meets a no-fly zone."
             )
         return LeftOut(place.target, "too_far_from_network", f"It is more than {reach} from the network.")
-    if not any(ways.uav_attached):
+    if not any(ways.uav_legs):
         return LeftOut(place.target, Reason.NO_PATH.value, f"No UAV has a clear way of up to {reach} to the network from where it stands.")
     return LeftOut(place.target, item.reason.value, item.message)

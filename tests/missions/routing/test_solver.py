@@ -124,6 +124,14 @@ def test_a_target_beyond_every_range_says_how_much_is_missing() -> None:
     assert left_out.message == "It is 10.0 km there, 1.0 km more than the range of the UAV that comes nearest to it."
 
 
+def test_the_missing_range_is_that_of_a_uav_that_has_a_way() -> None:
+    """The UAV without a limit stands on another network."""
+    problem = on_a_line([10], (UavStart(), UavStart(9_000.0)))
+    problem.from_start_m[0] = np.inf
+    (left_out,) = solve(problem).unassigned
+    assert left_out.message.startswith("It is 10.0 km there, 1.0 km more")
+
+
 def test_the_way_back_counts_for_a_uav_that_returns() -> None:
     (left_out,) = solve(on_a_line([10], (UavStart(15_000.0, returns=True),))).unassigned
     assert left_out.reason is Reason.BEYOND_RANGE
