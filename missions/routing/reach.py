@@ -66,10 +66,8 @@ def _reason(problem: Problem, needed_m: FloatArray, within: NDArray[np.bool_]) -
         missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
         uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
         there = "there and back" if problem.uavs[uav].returns else "there"
-        return (
-            Reason.BEYOND_RANGE,
-            f"It is {_km(needed_m[uav, visit])} {there}, {_km(missing_m[uav, visit])} more than the range of the UAV that comes nearest to it.",
-        )
+        needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
+        return Reason.BEYOND_RANGE, f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
     limited = [problem.uavs[uav].max_range_m is not None for uav in np.flatnonzero(within.any(axis=1))]
     if any(limited):
         return Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets."
