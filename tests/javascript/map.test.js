@@ -16,6 +16,12 @@ test("a click takes the tower before the line that it carries, and the zone last
   assert.equal(firstInOrder([feature("routes", undefined)]), null);
 });
 
+test("what can be flown to comes before what cannot", () => {
+  const under = [feature("railways", "railways", { id: 1, flyable: false }), feature("lines", "lines", { id: 2, flyable: true })];
+  assert.equal(firstInOrder(under).id, 2);
+  assert.equal(firstInOrder(under.slice(0, 1)).id, 1);
+});
+
 test("the line tool sees lines and tracks alone", () => {
   const under = [feature("towers-ring", "towers"), feature("lines", "lines", { id: 9 }), feature("zones-fill", "zones")];
   assert.equal(firstInOrder(under, ["line", "railway"]).id, 9);

@@ -7,8 +7,9 @@ const KINDS = { towers: "tower", bridges: "bridge", bridge_points: "bridge", rai
 
 /** Of what lies under the pointer, the first in the order of picking: { kind, id, properties, geometry } or null. */
 export function firstInOrder(features, kinds = null) {
-  const rank = (feature) => PICKABLE.indexOf(feature.layer.id);
-  const isWanted = (feature) => rank(feature) >= 0 && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
+  const isIdle = (feature) => feature.properties.flyable === false; // underground, out of use: behind all that can be flown to
+  const rank = (feature) => PICKABLE.indexOf(feature.layer.id) + (isIdle(feature) ? PICKABLE.length : 0);
+  const isWanted = (feature) => PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
   const best = features.filter(isWanted).sort((a, b) => rank(a) - rank(b))[0];
   if (!best) return null;
   return { kind: KINDS[best.sourceLayer], id: best.properties.id, properties: best.properties, geometry: best.geometry };

@@ -11,6 +11,7 @@ import { createUavs } from "../map/layers/uavs.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { toggleMenu } from "../page/chrome.js";
 import { onTheme } from "../page/theme.js";
+import { toast } from "../page/toast.js";
 import { isPlanCurrent, placesOf, routesOf } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
 import { isWhole, targetOf } from "./selection.js";
@@ -124,7 +125,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     }
     if (!page.canPlan || !thing || thing.kind === "zone") return;
     if (thing.properties.flyable === false) {
-      actions.problem(`${thing.properties.label} cannot be flown to.`, "It is underground, out of use or inside a substation.");
+      toast(`${thing.properties.label} cannot be flown to: it is underground, out of use or a siding or busbar.`);
       return;
     }
     if (thing.kind === "tower" || thing.kind === "bridge") {
