@@ -1,7 +1,7 @@
 """Plans made by putting one target after another where it costs least: quick, and strong for the shortest longest route."""
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from missions.routing.problem import Objective, Problem, Routes, merit
 
 SPAN_POWER = 8  # the sum of lengths to this power grows with the longest route and still sees the others (findings/routing.md, C)
 SHUFFLES = 4
+MOST_TAKEN = 25
 
 BoolArray = NDArray[np.bool_]
 
@@ -46,6 +47,46 @@ def insertion_plans(problem: Problem, usable: BoolArray, *, seed: int) -> list[R
     empty: Routes = ((),) * len(problem.uavs)
     plans = {_insert(problem, table, empty, [visits_of[target] for target in order], usable) for order in orders}
     return sorted(plans, key=lambda routes: (merit(problem, routes), routes))
+
+
+def ruin_and_recreate(
+    problem: Problem,
+    routes: Routes,
+    usable: BoolArray,
+    *,
+    seed: int,
+    rounds: int,
+    stop: Callable[[], bool],
+    on_round: Callable[[float, Routes], None],
+) -> Routes:
+    """Take neighbouring targets out of the routes and put them back where they cost least, over and over; worse plans are dropped.
+
+    The neighbourhood lies around a target of the longest route, so that others can take over from it.
+    """
+    table = ArcTable(problem)
+    draw = random.Random(seed)
+    gap_m = np.minimum(problem.between_m, problem.between_m.T)
+    visits_of = problem.visits_of_target()
+    best, best_merit = routes, merit(problem, routes)
+    for number in range(rounds):
+        if stop():
+            break
+        on_round(number / rounds, best)
+        longest = max(range(len(best)), key=lambda uav: problem.route_length_m(uav, best[uav]))
+        if not best[longest]:
+            break
+        flown = [visit for route in best for visit in route]
+        from_here_m = gap_m[draw.choice(best[longest])]
+        taken = set(sorted(flown, key=from_here_m.__getitem__)[: draw.randint(2, min(MOST_TAKEN, max(2, len(flown) // 3)))])
+        kept = tuple(tuple(visit for visit in route if visit not in taken) for route in best)
+        if not all(np.isfinite(problem.route_length_m(uav, route)) for uav, route in enumerate(kept)):
+            continue  # what was taken out had joined two networks
+        back = [visits_of[problem.visits[visit].target] for visit in draw.sample(sorted(taken), len(taken))]
+        plan = _insert(problem, table, kept, back, usable)
+        plan_merit = merit(problem, plan)
+        if plan_merit < best_merit:
+            best, best_merit = plan, plan_merit
+    return best
 
 
 def with_missing_inserted(problem: Problem, routes: Routes, usable: BoolArray) -> Routes:

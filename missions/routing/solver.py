@@ -2,13 +2,14 @@
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
 from missions.routing import exact
-from missions.routing.insertion import ArcTable, insertion_plans, with_missing_inserted
+from missions.routing.insertion import ArcTable, insertion_plans, ruin_and_recreate, with_missing_inserted
 from missions.routing.problem import Objective, Problem, Routes, Solution, merit
 from missions.routing.reach import needed_range_m, reachable, reasons
 
@@ -17,8 +18,11 @@ UNLIMITED_CM = 10**12  # ten million kilometres: longer than any route, short en
 FORBIDDEN_CM = UNLIMITED_CM + 1  # no UAV has the range for it
 SPAN_WEIGHT = 1_000  # a metre off the longest route is worth so many off the total
 LOOK_INTERVAL_MS = 100  # how often `stop` is asked
+LOOKS_PER_CLOCK = 64  # OR-tools looks at its limits hundreds of thousands of times a second; the clock is read now and then
 DESCENT_S = 5.0  # no descent of a problem without a search takes longer
 INSERTION_STARTS = 2
+ROUND_VISITS_PER_S = 150_000  # how much taking out and putting back fills about a second: rounds times visits
+MOST_ROUNDS_PER_S = 1_500
 
 FIRST_SOLUTIONS = (
     routing_enums_pb2.FirstSolutionStrategy.PARALLEL_CHEAPEST_INSERTION,
@@ -76,7 +80,15 @@ def searched_plan(
         best = better(best, _Model(problem, usable, stop).descend(start, descent_s))
         on_progress(0.3 * number / len(starts), _progress_message(problem, best))
     if search_s and not stop():
-        best = better(best, _Model(problem, usable, stop).search(best, search_s, on_progress))
+        if problem.objective is Objective.TOTAL:
+            best = better(best, _Model(problem, usable, stop).search(best, search_s, on_progress))
+        else:  # OR-tools' guided search bends arcs; the longest route hardly feels it
+
+            def on_round(share: float, routes: Routes) -> None:
+                on_progress(0.3 + 0.7 * share, _progress_message(problem, routes))
+
+            rounds = int(search_s * min(MOST_ROUNDS_PER_S, ROUND_VISITS_PER_S / len(problem.visits)))
+            best = ruin_and_recreate(problem, best, usable, seed=seed, rounds=rounds, stop=stop, on_round=on_round)
     best = with_missing_inserted(problem, best, usable)
     on_progress(1.0, _progress_message(problem, best))
     return best
@@ -89,9 +101,9 @@ def _solution(problem: Problem, routes: Routes, needed_m: NDArray[np.float64]) -
 
 def _progress_message(problem: Problem, routes: Routes) -> str:
     missed, length_m, _ = merit(problem, routes)
-    what = "in total" if problem.objective is Objective.TOTAL else "the longest route"
     left_out = f", {missed:.0f} not reached" if missed else ""
-    return f"{length_m / 1_000:,.1f} km {what}{left_out}"
+    length = f"{length_m / 1_000:,.1f} km"
+    return f"{length} in total{left_out}" if problem.objective is Objective.TOTAL else f"longest route {length}{left_out}"
 
 
 class _Model:
@@ -126,13 +138,17 @@ class _Model:
         self._watch(stop)
 
     def _watch(self, stop: Stop) -> None:
-        """Ask `stop` from within every search, not oftener than needed: OR-tools looks at its limits thousands of times a second."""
+        """Ask `stop` from within every search, not oftener than needed."""
         solver = self.routing.solver()
         self.stopped = False
         self.looked_at_ms = solver.WallTime()
         self.report: Callable[[int], None] | None = None
 
+        looks = count(1)
+
         def is_over() -> bool:
+            if next(looks) % LOOKS_PER_CLOCK:
+                return self.stopped
             now_ms = solver.WallTime()
             if not self.stopped and now_ms - self.looked_at_ms >= LOOK_INTERVAL_MS:
                 self.looked_at_ms = now_ms

@@ -191,12 +191,12 @@ def test_a_search_improves_the_plan_and_reports_progress() -> None:
     problem = random_problem(5, uavs=4, targets=40, objective=Objective.MAKESPAN)
     told: list[tuple[float, str]] = []
     searched = solve(problem, on_progress=lambda share, message: told.append((share, message)), search_s=1.5)
-    assert searched.longest_m <= 1.02 * solve(problem).longest_m
+    assert searched.longest_m < solve(problem).longest_m
     shares = [share for share, _ in told]
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert any(0.3 < share < 1.0 for share in shares)
-    assert "km the longest route" in told[-1][1]
+    assert told[-1][1].startswith("longest route ")
 
 
 def test_stop_ends_a_long_search_within_half_a_second_and_keeps_the_best_plan() -> None:
