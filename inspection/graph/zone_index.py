@@ -1,6 +1,7 @@
 """No-fly zones, indexed to be asked whether legs meet them."""
 
 from collections.abc import Sequence
+from threading import Lock
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -24,19 +25,30 @@ FloatArray = NDArray[np.float64]
 
 
 class ZoneIndex:
-    """The zones as polygons in the lon/lat plane. A leg is the straight line there; touching a zone is meeting it."""
+    """The zones as polygons in the lon/lat plane. A leg is the straight line there; touching a zone is meeting it.
+
+    Threads may share an index. GEOS's prepared polygons are for one thread at a time (two at once crash the process, or get each
+    other's answers), so the index asks its own one thread after the other, and hands out none of them.
+    """
 
     def __init__(self, polygons: Sequence[BaseGeometry] | NDArray[np.object_], ids: ArrayLike, names: Sequence[str]) -> None:
-        self.polygons: NDArray[np.object_] = np.array(polygons, dtype=object)
+        self._polygons: NDArray[np.object_] = np.array(polygons, dtype=object)
         self.ids: NDArray[np.int64] = np.asarray(ids, dtype=np.int64).reshape(-1)
         self.names = tuple(names)
-        if not len(self.polygons) == len(self.ids) == len(self.names):
+        if not len(self._polygons) == len(self.ids) == len(self.names):
             raise ValueError("polygons, ids and names must be of the same length")
-        self._parts, self._zone_of_part = shapely.get_parts(self.polygons, return_index=True)
+        self._parts, self._zone_of_part = shapely.get_parts(self._polygons, return_index=True)
         self._widened: dict[float, tuple[NDArray[np.object_], STRtree]] = {}
+        self._one_thread = Lock()
 
     def __len__(self) -> int:
         return len(self.ids)
+
+    @property
+    def polygons(self) -> NDArray[np.object_]:
+        """Copies of the zones: whoever prepares them shares them with no other thread."""
+        copies: NDArray[np.object_] = np.asarray(shapely.force_2d(self._polygons), dtype=object)
+        return copies
 
     def meets(self, start: ArrayLike, end: ArrayLike, clearance_m: float = 0.0) -> BoolArray:
         """Whether each leg touches a zone or comes nearer to one than the clearance.
@@ -85,9 +97,10 @@ class ZoneIndex:
 
     def _meetings(self, shapes: NDArray[np.object_], clearance_m: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """Pairs (shape, zone part) that touch. The box search comes first; prepared polygons then answer exactly."""
-        parts, tree = self._widened_by(clearance_m)
-        shape_index, part_index = tree.query(shapes)
-        touching = shapely.intersects(parts[part_index], shapes[shape_index])
+        with self._one_thread:
+            parts, tree = self._widened_by(clearance_m)
+            shape_index, part_index = tree.query(shapes)
+            touching = shapely.intersects(parts[part_index], shapes[shape_index])
         return shape_index[touching], part_index[touching]
 
     def _widened_by(self, clearance_m: float) -> tuple[NDArray[np.object_], STRtree]:

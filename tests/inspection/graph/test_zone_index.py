@@ -1,5 +1,9 @@
 """Zones against legs: touching counts, and the answers equal exact arithmetic."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +16,7 @@ from inspection.geodesy.wgs84 import WGS84
 from inspection.graph.zone_index import ZoneIndex
 from tests.exact_geometry import segment_meets_polygon
 
+ROOT = Path(__file__).resolve().parents[3]
 SQUARE = box(10.0, 50.0, 10.1, 50.1)
 RING = Polygon(SQUARE.exterior.coords, [box(10.02, 50.02, 10.08, 50.08).exterior.coords])
 
@@ -124,3 +129,37 @@ def test_what_meets_a_zone_is_never_clear_of_it(case):
     polygons, legs = case
     zones = index(*polygons)
     assert (zones.meets(legs[:, 0], legs[:, 1], 5.0) >= zones.meets(legs[:, 0], legs[:, 1])).all()
+
+
+def jagged(lon, corners=5_000):
+    """A zone of so many corners that a look at it takes long enough for threads to get in each other's way."""
+    angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
+    radius = 1.0 + 0.3 * np.sin(37 * angle)
+    return Polygon(np.column_stack([lon + radius * np.cos(angle), radius * np.sin(angle)]))
+
+
+def test_threads_that_share_an_index_get_the_answers_that_one_thread_gets():
+    """In a process of its own: what this guards against is a crash of the interpreter."""
+    script = """
+from concurrent.futures import ThreadPoolExecutor
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from missions.flight_plan.clearance import legs_that_meet
+from tests.inspection.graph.test_zone_index import index, jagged
+
+zones = [jagged(lon) for lon in (0.0, 3.0)]
+start = np.random.default_rng(1).uniform([-2.0, -2.0], [5.0, 2.0], (2_000, 2))
+end = start + np.random.default_rng(2).normal(0.0, 0.3, start.shape)
+truth = index(*zones).meets(start, end)
+shared = index(*zones)
+with ThreadPoolExecutor(4) as pool:
+    answers = list(pool.map(lambda turn: shared.meets(start, end), range(24)))
+    checks = list(pool.map(lambda turn: legs_that_meet(start, list(shared.polygons)), range(12)))
+assert all((answer == truth).all() for answer in answers)
+assert all(check == checks[0] for check in checks)
+"""
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)  # noqa: S603
+    assert done.returncode == 0, done.stderr
