@@ -4,6 +4,7 @@ import hashlib
 import os
 import tempfile
 from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
 
 PROJECT_DIR = Path(__file__).resolve().parent.parent
 DATABASE_NAME = "spanwise"
@@ -34,3 +35,12 @@ def private_database_url(state: Path) -> str:
 
 def private_redis_url(state: Path) -> str:
     return f"unix://{socket_directory(state)}/redis.sock"
+
+
+def broker_url(redis_url: str) -> str:
+    """The same Redis, and the same database in it, as Celery writes it."""
+    if not redis_url.startswith("unix://"):
+        return redis_url
+    parts = urlsplit(redis_url)
+    database = parse_qs(parts.query).get("db", ["0"])[0]
+    return f"redis+socket://{parts.netloc}{parts.path}?virtual_host={database}"

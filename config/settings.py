@@ -8,7 +8,7 @@ from typing import Any
 
 import dj_database_url
 
-from config.private_servers import private_database_url, private_redis_url, state_directory
+from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from inspection.graph.rules import LinkingRules
 from missions.flight_plan.rules import FlightRules
 from missions.routing.rules import RoutingRules
@@ -203,7 +203,7 @@ SPECTACULAR_SETTINGS = {
 }
 
 # Celery: rows in PostgreSQL are the truth, Redis is a hint (findings: late acknowledgement and a fast sweep, or work is lost).
-CELERY_BROKER_URL = f"redis+socket://{REDIS_URL.removeprefix('unix://')}" if REDIS_URL.startswith("unix://") else REDIS_URL
+CELERY_BROKER_URL = broker_url(REDIS_URL)
 CELERY_TASK_IGNORE_RESULT = True
 CELERY_TASK_ACKS_LATE = True
 CELERY_TASK_REJECT_ON_WORKER_LOST = True

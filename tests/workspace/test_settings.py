@@ -1,0 +1,30 @@
+"""What the settings make of the environment."""
+
+import pytest
+import redis
+from celery import Celery
+from django.conf import settings
+
+from config.private_servers import broker_url
+
+
+@pytest.mark.parametrize(
+    ("redis_url", "celerys"),
+    [
+        ("unix:///run/redis.sock", "redis+socket:///run/redis.sock?virtual_host=0"),
+        ("unix:///run/redis.sock?db=11", "redis+socket:///run/redis.sock?virtual_host=11"),
+        ("unix://:secret@/run/redis.sock?db=3", "redis+socket://:secret@/run/redis.sock?virtual_host=3"),
+        ("redis://host:6379/2", "redis://host:6379/2"),
+    ],
+)
+def test_a_redis_is_named_to_celery_in_its_own_words(redis_url: str, celerys: str) -> None:
+    assert broker_url(redis_url) == celerys
+
+
+def test_celery_and_the_cache_use_the_same_database_of_the_same_redis() -> None:
+    with Celery("test", broker=settings.CELERY_BROKER_URL).connection_for_write() as connection:
+        celerys = connection.default_channel.client.connection_pool.connection_kwargs
+        caches = redis.from_url(settings.REDIS_URL).connection_pool.connection_kwargs
+        for name in ("path", "host", "port", "password"):
+            assert celerys.get(name) == caches.get(name)
+        assert int(celerys.get("db") or 0) == int(caches.get("db") or 0)
