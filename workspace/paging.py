@@ -59,7 +59,7 @@ def _rows_after(model: type[Model], order: tuple[str, ...], cursor: str) -> Q:
     try:
         texts = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
         values = [_field(model, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]
-    except (binascii.Error, ValueError, TypeError, DjangoValidationError) as error:
+    except (binascii.Error, ValueError, TypeError, OverflowError, RecursionError, DjangoValidationError) as error:
         raise ApiProblem(400, "invalid_cursor", "The cursor is not one that this address gave.") from error
     after = Q()
     equal = Q()

@@ -113,8 +113,8 @@ def fail_job(*, job: Job, code: str, message: str) -> None:
 
 
 def confirm_cancelled(*, job: Job) -> None:
-    """A worker has seen the request to stop and has stopped."""
-    Job.objects.filter(pk=job.pk, state=JobState.RUNNING).update(
+    """A worker has seen the request to stop and has stopped. Nothing happens if another worker has taken the job over since."""
+    Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts).update(
         state=JobState.CANCELLED, message="Cancelled", finished_at=timezone.now(), lease_expires_at=None
     )
 

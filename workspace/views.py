@@ -9,6 +9,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from workspace import selectors, services
+from workspace.errors import ApiProblem
 from workspace.models import Job, JobState, User
 from workspace.paging import page_of
 from workspace.permissions import CURATORS, PLANNERS
@@ -33,6 +34,9 @@ class JobList(APIView):
     def get(self, request: Request) -> Response:
         jobs = selectors.jobs_of_organisation(request.user.organisation)
         if state := request.query_params.get("state"):
+            if state not in JobState.values:
+                message = f"Known states are {', '.join(JobState.values)}."
+                raise ApiProblem(400, "invalid", f"state: {message}", details={"state": [message]})
             jobs = jobs.filter(state=state)
         page = page_of(request, jobs, order=("-created_at", "-pk"))
         return Response({"results": JobSerializer(page.rows, many=True).data, "next": page.next})

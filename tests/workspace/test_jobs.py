@@ -81,6 +81,7 @@ def test_a_lost_job_is_taken_over_and_the_first_worker_can_no_longer_write() -> 
         report_progress(job=first, progress=0.9)
     assert not finish_job(job=first, result="stale")
     fail_job(job=first, code="stale", message="stale")
+    confirm_cancelled(job=first)
     assert state(second) == JobState.RUNNING
     assert finish_job(job=second, result="fresh")
 
@@ -226,7 +227,19 @@ def test_pages_of_jobs_follow_one_another_newest_first() -> None:
 
 
 @pytest.mark.parametrize(
-    "query", ["limit=0", "limit=-1", "limit=x", "limit=²", "cursor=x", "cursor=WyJhIl0", "cursor=WzEsMl0", "cursor=%00"]
+    "query",
+    [
+        "limit=0",
+        "limit=-1",
+        "limit=x",
+        "limit=²",
+        "cursor=x",
+        "cursor=WyJhIl0",
+        "cursor=WzEsMl0",
+        "cursor=%00",
+        f"cursor={'W1tb' * 1_000}",
+        "state=x",
+    ],
 )
 def test_a_page_that_cannot_be_is_refused(query: str) -> None:
     assert client_of(somebody()).get(f"/api/v1/jobs?{query}").status_code == 400
