@@ -140,7 +140,8 @@ class Tile(APIView):
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
-        etag = f'"{selectors.ground_revision()}-{selectors.TILE_RECIPE}"'
+        revision, changed_at = selectors.ground_edition()
+        etag = f'"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:
             response = cast(HttpResponse, not_changed)

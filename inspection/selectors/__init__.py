@@ -2,7 +2,7 @@
 
 from inspection.selectors.assets import Box, asset_label, asset_with_geometry, assets_on_the_ground, voltage_text, zones
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
-from inspection.selectors.ground import GroundSummary, ground_revision, ground_summary
+from inspection.selectors.ground import GroundSummary, ground_edition, ground_revision, ground_summary
 from inspection.selectors.terrain import ground_heights_m, has_terrain
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
 from inspection.selectors.tiles import NoSuchTile, vector_tile
@@ -18,6 +18,7 @@ __all__ = [
     "assets_on_the_ground",
     "current_graph",
     "graph_of_version",
+    "ground_edition",
     "ground_heights_m",
     "ground_revision",
     "ground_summary",

@@ -11,7 +11,8 @@ from django.conf import settings
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.snapshot_file import from_bytes, read_cache, write_cache
 from inspection.graph.zone_index import ZoneIndex
-from inspection.models import GraphSnapshot, Ground
+from inspection.models import GraphSnapshot
+from inspection.selectors.ground import ground_edition
 from inspection.selectors.ground_data import zones_of_the_ground
 
 logger = logging.getLogger(__name__)
@@ -41,7 +42,7 @@ def zones_in_force() -> ZoneIndex:
     """The zones of the ground as it is now, whatever graph is in use. Costs one small query until they change."""
     global _zones
     # The revision is read before the zones: they are at least as new as what they are remembered under.
-    key = Ground.objects.values_list("revision", "changed_at").first() or (0, None)
+    key = ground_edition()
     remembered = _zones
     if remembered is None or remembered[0] != key:
         zones = zones_of_the_ground()

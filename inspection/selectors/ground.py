@@ -1,6 +1,7 @@
 """The ground as a whole: how much there is, where, from whom, and whether the graph shows it."""
 
 from dataclasses import dataclass
+from datetime import datetime
 
 from django.contrib.gis.db.models import Extent
 from django.db.models import Count, Exists, OuterRef, Q
@@ -25,6 +26,11 @@ class GroundSummary:
 
 def ground_revision() -> int:
     return Ground.objects.values_list("revision", flat=True).first() or 0
+
+
+def ground_edition() -> tuple[int, datetime | None]:
+    """The revision and when it came about. Two databases may have the same revision, and one that was rolled back has it twice."""
+    return Ground.objects.values_list("revision", "changed_at").first() or (0, None)
 
 
 def ground_summary() -> GroundSummary:

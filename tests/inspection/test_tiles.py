@@ -8,7 +8,7 @@ from django.contrib.gis.geos import MultiPolygon, Polygon
 from django.test import Client
 from django.utils import timezone
 
-from inspection.models import NoFlyZone
+from inspection.models import Ground, NoFlyZone
 from inspection.selectors import asset_label, vector_tile
 from inspection.services import mark_ground_changed
 from tests.inspection.ground import bridge, line, railway, tower, zone
@@ -185,3 +185,12 @@ def test_a_tile_is_kept_until_the_ground_changes() -> None:
     assert (again.status_code, again.content, again["ETag"]) == (304, b"", first["ETag"])
     mark_ground_changed()
     assert get(client, address, **{"If-None-Match": first["ETag"]}).status_code == 200
+
+
+def test_a_tile_of_another_database_with_as_many_changes_is_not_taken_for_this_ones() -> None:
+    client = client_of(somebody())
+    revision = mark_ground_changed()
+    first = get(client, "0/0/0")
+    Ground.objects.all().delete()
+    assert mark_ground_changed() == revision
+    assert get(client, "0/0/0", **{"If-None-Match": first["ETag"]}).status_code == 200
