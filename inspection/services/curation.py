@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from django.contrib.gis.geos import GEOSGeometry, LineString, Point
 from django.db import transaction
+from django.utils import timezone
 
 from inspection.geodesy.wgs84 import path_length_m
 from inspection.graph.ground_data import NO_OSM_NODE
@@ -57,10 +58,21 @@ def save_asset(*, asset: Asset, actor: User) -> Asset:
 
 
 def delete_asset(*, asset: Asset, actor: User) -> None:
-    """Remove an asset. One from a file comes back with the file's next import; clear `is_flyable` to keep it out of the graph."""
+    """Remove an asset. One from a file comes back with the file's next import; clear `is_flyable` to keep it out of the graph.
+
+    One that a mission's target points at is marked as vanished instead: the target keeps its place.
+    """
     with transaction.atomic():
-        _record(actor, asset, None, asset_facts)
-        asset.delete()
+        kept = Asset.objects.select_for_update().get(pk=asset.pk)
+        if _is_pointed_at(kept):
+            before = Asset.objects.get(pk=asset.pk)
+            kept.is_edited = True
+            kept.vanished_at = kept.vanished_at or timezone.now()
+            kept.save(update_fields=["is_edited", "vanished_at", "updated_at"])
+            _record(actor, before, kept, asset_facts)
+        else:
+            _record(actor, asset, None, asset_facts)
+            asset.delete()
         mark_ground_changed()
 
 
@@ -69,6 +81,8 @@ def save_zone(*, zone: NoFlyZone, actor: User) -> NoFlyZone:
     with transaction.atomic():
         before = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
         zone.identifier = zone.identifier or f"drawn-{uuid.uuid4()}"
+        if before is not None and before.geometry != zone.geometry:
+            zone.circle = None  # what was drawn anew is no longer the circle that the source stated
         zone.save()
         _record(actor, before, zone, zone_facts)
         mark_ground_changed()
@@ -80,6 +94,12 @@ def delete_zone(*, zone: NoFlyZone, actor: User) -> None:
         _record(actor, zone, None, zone_facts)
         zone.delete()
         mark_ground_changed()
+
+
+def _is_pointed_at(asset: Asset) -> bool:
+    """Whether a row of a later app, which this one does not know, points at the asset and shows it (related_name "+" does not)."""
+    pointing = [(relation.related_model, relation.field.name) for relation in Asset._meta.related_objects]
+    return any(model._base_manager.filter(**{field: asset.pk}).exists() for model, field in pointing)
 
 
 def asset_facts(asset: Asset) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from inspection.graph.ground_data import NO_OSM_NODE
 from inspection.models import Asset, AssetKind, NoFlyZone, ZoneSet
 from inspection.selectors import ground_revision
 from inspection.services import WrongGeometry, save_asset
-from missions.models import Uav
+from missions.models import InspectionTarget, Mission, Uav
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from tests.workspace.people import client_of, somebody
 from workspace.models import ApiToken, AuditEntry, Role, User
@@ -151,6 +151,21 @@ def test_an_asset_that_is_removed_is_recorded(client: Client) -> None:
     assert ground_revision() == revision + 1
 
 
+def test_an_asset_that_a_mission_points_at_vanishes_and_keeps_its_place(client: Client, curator: User) -> None:
+    asset = tower(ref="18")
+    mission = Mission.objects.create(name="Ring", organisation=curator.organisation)
+    target = InspectionTarget.objects.create(mission=mission, sequence=0, asset=asset, label="18")
+    revision = ground_revision()
+    client.post(reverse("admin:inspection_powertower_delete", args=[asset.pk]), {"post": "yes"})
+    target.refresh_from_db()
+    assert target.asset == asset
+    assert target.asset.vanished_at is not None
+    assert target.asset.is_edited, "else the next import would bring it back"
+    entry = AuditEntry.objects.get()
+    assert (entry.before["vanished"], entry.after["vanished"]) == (False, True)
+    assert ground_revision() == revision + 1
+
+
 def test_removing_several_zones_at_once_records_each(client: Client) -> None:
     zones = [zone(), zone()]
     form = {"action": "delete_selected", "_selected_action": [row.pk for row in zones], "post": "yes"}
@@ -191,6 +206,18 @@ def test_a_band_upside_down_is_refused(client: Client) -> None:
     answer = client.post(change_address(stored), form_of(client.get(change_address(stored))) | band)
     assert answer.status_code == 200
     assert answer.context["adminform"].form.errors
+
+
+def test_a_zone_that_was_drawn_anew_is_no_longer_its_sources_circle(client: Client) -> None:
+    circle = {"centre": [10.0, 56.0], "radius_m": 500.0}
+    stored = zone(circle=circle)
+    form = form_of(client.get(change_address(stored)))
+    client.post(change_address(stored), form | {"name": "Fair"})
+    stored.refresh_from_db()
+    assert stored.circle == circle
+    client.post(change_address(stored), form | {"name": "Fair", "geometry": area(SQUARE)})
+    stored.refresh_from_db()
+    assert stored.circle is None
 
 
 def test_who_changes_an_imported_zone_is_warned(client: Client) -> None:
