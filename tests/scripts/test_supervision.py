@@ -13,6 +13,7 @@ import psycopg
 import pytest
 
 from config.private_servers import DATABASE_NAME, DATABASE_ROLE
+from scripts import supervision
 from scripts.check import steps
 from scripts.database_cluster import create_database, database_exists, prepare_cluster, wait_for_database, wait_for_queue
 from scripts.places import Places, prepare_sockets, prepare_state, remove_sockets
@@ -89,6 +90,19 @@ def test_a_supervisor_that_was_killed_can_be_started_again(places: Places, super
     assert not before & set(processes_in([program.folder]))
 
 
+def test_a_supervisor_that_hangs_is_ended_with_all_it_runs(places: Places, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(supervision, "CALL_TIMEOUT_S", 0.5)
+    monkeypatch.setattr(supervision, "PATIENCE_WITH_SUPERVISOR_S", 0.5)
+    program = _server_with_worker(places)
+    supervisor.start([program])
+    _wait_until(lambda: len(processes_in([program.folder])) == 2)
+    [supervisor_process] = processes_in([places.process("supervisor")])
+    os.kill(supervisor_process, signal.SIGSTOP)
+    supervisor.stop()
+    assert not supervisor.is_alive()
+    assert processes_in([program.folder]) == []
+
+
 def test_what_the_database_acknowledged_survives_kill_9_and_a_used_again_process_id(
     places: Places, sockets: Path, supervisor: Supervisor
 ) -> None:
@@ -103,11 +117,13 @@ def test_what_the_database_acknowledged_survives_kill_9_and_a_used_again_process
     lock = places.data / "postmaster.pid"
     [supervisor_process] = processes_in([places.process("supervisor")])
     os.kill(supervisor_process, signal.SIGSTOP)  # so that the lock can be changed before the next start
-    os.kill(int(lock.read_text().splitlines()[0]), signal.SIGKILL)
-    _wait_until(lambda: not any("postgres" in Path(f"/proc/{pid}/exe").readlink().name for pid in processes_in([places.data])))
-    text = lock.read_text().splitlines(keepends=True)
-    lock.write_text("".join([f"{os.getpid()}\n", *text[1:]]))
-    os.kill(supervisor_process, signal.SIGCONT)
+    try:
+        os.kill(int(lock.read_text().splitlines()[0]), signal.SIGKILL)
+        _wait_until(lambda: not processes_in([places.data]))
+        lines = lock.read_text().splitlines(keepends=True)
+        lock.write_text("".join([f"{os.getpid()}\n", *lines[1:]]))
+    finally:
+        os.kill(supervisor_process, signal.SIGCONT)
     wait_for_database(sockets)
     assert database_exists(sockets)
     with psycopg.connect(host=str(sockets), user=DATABASE_ROLE, dbname=DATABASE_NAME) as connection:
