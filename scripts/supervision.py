@@ -1,8 +1,10 @@
 """The supervisor (supervisord): its configuration, starting it, talking to it, stopping it with everything it runs."""
 
+import http.client
 import os
 import shlex
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -13,14 +15,38 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from supervisor.xmlrpc import SupervisorTransport
-
 from scripts.places import PROJECT_DIR, CannotStart, Places
 from scripts.processes import end_processes, processes_in
 from scripts.programs import SERVERS, SERVERS_STAGE, Program
 
 START_TIMEOUT_S = 15.0
 STOP_TIMEOUT_S = 90.0
+CALL_TIMEOUT_S = 10.0
+PATIENCE_WITH_SUPERVISOR_S = 10.0
+
+
+class _UnixConnection(http.client.HTTPConnection):
+    """HTTP over a unix socket."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__("localhost", timeout=CALL_TIMEOUT_S)
+        self.path = path
+
+    def connect(self) -> None:
+        self.sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.sock.settimeout(self.timeout)
+        self.sock.connect(str(self.path))
+
+
+class _UnixTransport(xmlrpc.client.Transport):
+    """XML-RPC over a unix socket, with an end to waiting: the supervisor's own transport waits for ever for one that hangs."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.path = path
+
+    def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        return _UnixConnection(self.path)
 
 
 def configuration(places: Places, sockets: Path, programs: Iterable[Program]) -> str:
@@ -81,13 +107,12 @@ class Supervisor:
         self.sockets = sockets
 
     def _call(self) -> Any:
-        transport = SupervisorTransport(None, None, f"unix://{self.sockets / 'supervisor.sock'}")
-        return xmlrpc.client.ServerProxy("http://127.0.0.1", transport=transport).supervisor
+        return xmlrpc.client.ServerProxy("http://localhost", transport=_UnixTransport(self.sockets / "supervisor.sock")).supervisor
 
     def is_running(self) -> bool:
         try:
             return bool(self._call().getState()["statename"] == "RUNNING")
-        except (OSError, xmlrpc.client.Error):
+        except (OSError, http.client.HTTPException, xmlrpc.client.Error):
             return False
 
     def is_alive(self) -> bool:
@@ -130,13 +155,13 @@ class Supervisor:
         """The programs' states; empty when the supervisor is not there."""
         try:
             rows: list[dict[str, Any]] = self._call().getAllProcessInfo()
-        except (OSError, xmlrpc.client.Error):
+        except (OSError, http.client.HTTPException, xmlrpc.client.Error):
             return []
         return [ProgramState(row["name"], row["statename"], row["description"], row["start"]) for row in rows]
 
     def end_leftovers(self) -> None:
         """End what a killed supervisor left behind. The kernel has asked its programs to stop; here they get their time to do so."""
-        end_processes([self.places.process("supervisor")])
+        end_processes([self.places.process("supervisor")], patience_s=PATIENCE_WITH_SUPERVISOR_S)
         end_processes([self.places.data], first_signal=signal.SIGINT, patience_s=15.0)  # PostgreSQL's fast shutdown
         others = [entry for entry in (self.places.state / "processes").glob("*") if entry.is_dir()]
         end_processes([*others, self.places.redis], patience_s=15.0)
@@ -153,7 +178,7 @@ class Supervisor:
                 while any(state.name in group and state.state == "STOPPING" for state in self.states()) and time.monotonic() < deadline:
                     time.sleep(0.05)
             self._call().shutdown()
-        except (OSError, xmlrpc.client.Error):
+        except (OSError, http.client.HTTPException, xmlrpc.client.Error):
             pass  # not there, or on its way out already
         else:
             while self.is_alive() and time.monotonic() < deadline:
