@@ -87,9 +87,5 @@ def _passed_assets(mission: Mission) -> set[int]:
 
 def sketch(mission: Mission) -> list[list[list[float]]]:
     """The routes, simplified for a drawing the size of a stamp."""
-    return [
-        [[round(lon, 5), round(lat, 5)] for lon, lat in route.geometry.simplify(SKETCH_TOLERANCE_DEG, preserve_topology=False).coords]
-        if route.geometry is not None
-        else []  # a UAV that stays on the ground keeps its place, and with it its letter and colour
-        for route in mission.routes.all()
-    ]
+    lines = [route.geometry.simplify(SKETCH_TOLERANCE_DEG).coords for route in mission.routes.all() if route.geometry is not None]
+    return [[[round(lon, 5), round(lat, 5)] for lon, lat in line] for line in lines if len(line) > 1]

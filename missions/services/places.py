@@ -34,11 +34,6 @@ class Place:
     def is_stretch(self) -> bool:
         return len(self.course) > 1
 
-    @property
-    def centre(self) -> LonLat:
-        """Where a point is; for a stretch its middle vertex."""
-        return self.course[len(self.course) // 2]
-
 
 def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]:
     """The place of each target, and the targets whose asset has been deleted since they were picked.
