@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_playwright
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 # findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
@@ -100,7 +100,8 @@ class Visitor:
         page.get_by_label("User name").fill(name)
         page.get_by_label("Password").fill(PASSWORD)
         page.get_by_role("button", name="Sign in").click()
-        page.get_by_role("heading", name="Missions", exact=True).wait_for()
+        expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible(timeout=20_000)
+        page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to keys
         return page
 
     def _heard(self, message: ConsoleMessage) -> None:

@@ -15,6 +15,7 @@ pytestmark = pytest.mark.browser
 def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     page.keyboard.press("n")
+    page.wait_for_url(re.compile("/missions/new"))
     wait_for_map(page)
 
     adds_uav(page, "Heron", [-83.045, 39.935], range_km=80)
