@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_playwright
 
+from scripts.places import Places
+
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 # findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
 CHROMIUM_FLAGS = [
@@ -58,6 +60,7 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
         yield Site(address=f"http://127.0.0.1:{port}")
     finally:
         run("./run", "--stop")
+        shutil.rmtree(Places(state_dir).data)  # as root the database may stand outside the state folder
 
 
 @pytest.fixture(scope="session")
