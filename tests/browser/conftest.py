@@ -60,7 +60,7 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
         yield Site(address=f"http://127.0.0.1:{port}")
     finally:
         run("./run", "--stop")
-        shutil.rmtree(Places(state_dir).data)  # as root the database may stand outside the state folder
+        shutil.rmtree(Places(state_dir).data, ignore_errors=True)  # as root the database may stand outside the state folder
 
 
 @pytest.fixture(scope="session")
