@@ -4,6 +4,7 @@ import sys
 from http import HTTPStatus
 
 from django.core.exceptions import RequestDataTooBig
+from django.db import DataError
 from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.template import TemplateDoesNotExist
 from django.template.loader import render_to_string
@@ -33,8 +34,11 @@ def not_found(request: HttpRequest, exception: Exception | None = None) -> HttpR
 
 
 def server_error(request: HttpRequest) -> HttpResponse:
-    """Django calls this while it handles the exception, so a database that is away can be told from our own fault."""
-    return _answer(request, 503 if isinstance(sys.exc_info()[1], DATABASE_AWAY) else 500)
+    """Django calls this while it handles the exception: a database that is away, and a value that none can hold, are not our fault."""
+    error = sys.exc_info()[1]
+    if isinstance(error, DataError):
+        return _answer(request, 400)  # such as a NUL character in the address of a filtered list
+    return _answer(request, 503 if isinstance(error, DATABASE_AWAY) else 500)
 
 
 def _answer(request: HttpRequest, status: int) -> HttpResponse:

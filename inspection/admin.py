@@ -12,6 +12,7 @@ from django.utils.html import format_html
 from django.utils.safestring import SafeString
 
 from inspection import services
+from inspection.admin_json import JSONObjectField, StrictJSONField
 from inspection.admin_map import GeoJSONField
 from inspection.models import (
     Asset,
@@ -27,14 +28,22 @@ from inspection.models import (
     TerrainTile,
     ZoneSet,
 )
+from inspection.osm.tags import MAX_HEIGHT_M
 from inspection.selectors import asset_label
 from workspace.admin import ReadOnlyAdmin
 
-GEOMETRY_FIELDS = {models.GeometryField: {"form_class": GeoJSONField}}
+FORM_FIELDS = {models.GeometryField: {"form_class": GeoJSONField}, models.JSONField: {"form_class": StrictJSONField}}
 
 
 class AssetForm(forms.ModelForm):
     kind: AssetKind | None = None
+    tags = JSONObjectField(required=False, widget=forms.Textarea)
+
+    def clean_height_m(self) -> float | None:
+        height_m = self.cleaned_data["height_m"]
+        if height_m is not None and not 0.0 < height_m <= MAX_HEIGHT_M:
+            raise ValidationError(f"A height is above 0, up to {MAX_HEIGHT_M:g} m; empty when not known.", code="invalid")
+        return height_m
 
     def clean(self) -> dict[str, Any]:
         cleaned = super().clean()
@@ -50,7 +59,7 @@ class AssetAdmin(admin.ModelAdmin):
     """A saved asset counts as edited: imports leave it alone from then on."""
 
     form = AssetForm
-    formfield_overrides = GEOMETRY_FIELDS
+    formfield_overrides = FORM_FIELDS
     kind: AssetKind | None = None  # of the pages that show one kind
     list_display = ["label", "kind", "subtype", "voltages", "operator", "osm", "is_flyable", "is_edited", "vanished_at"]
     list_filter = ["kind", "is_flyable", "is_edited", ("vanished_at", admin.EmptyFieldListFilter), "data_import"]
@@ -139,7 +148,7 @@ class BridgeAdmin(_KindAdmin):
 
 @admin.register(NoFlyZone)
 class NoFlyZoneAdmin(admin.ModelAdmin):
-    formfield_overrides = GEOMETRY_FIELDS
+    formfield_overrides = FORM_FIELDS
     list_display = ["name", "zone_set", "restriction", "lower_limit", "upper_limit", "is_permanent", "updated_at"]
     list_filter = ["zone_set", "restriction"]
     list_select_related = ["zone_set"]

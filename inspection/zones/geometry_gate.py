@@ -144,10 +144,11 @@ def polygons_of_rings(paths: Sequence[FloatArray], place: str) -> list[Polygon]:
     return list(_cut(polygon, place))
 
 
-def _kind_of(value: Any, place: str) -> Any:
+def _kind_of(value: Any, place: str) -> str:
     if not isinstance(value, dict):
         raise GeometryFault(place, "a geometry is an object with type and coordinates" if value is not None else "there is no geometry")
-    return value.get("type")
+    kind = value.get("type")
+    return kind if isinstance(kind, str) else _shown(kind)
 
 
 def _checked_path(coordinates: Any, place: str, *, minimum: int, maximum: int) -> FloatArray:

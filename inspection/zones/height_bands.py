@@ -13,7 +13,7 @@ def height_band(holder: dict[str, Any], place: str) -> HeightBand:
     """The band that an object states; a limit that is missing or null is not stated, which is not 0."""
     stated = {key: holder[key] for key in BAND_KEYS if holder.get(key) is not None}
     unit = stated.get("uomDimensions", "M")
-    if unit not in UNITS_M:
+    if not isinstance(unit, str) or unit not in UNITS_M:
         raise GeometryFault(f"{place}.uomDimensions", f"the unit is M or FT, not {str(unit)[:40]!r}")
     lower, upper = (_limit_m(stated, key, UNITS_M[unit], place) for key in ("lowerLimit", "upperLimit"))
     lower_reference, upper_reference = (_reference(stated, key, place) for key in ("lowerVerticalReference", "upperVerticalReference"))

@@ -32,6 +32,12 @@ def parse_strict_json(data: bytes | str, *, max_bytes: int, max_depth: int = MAX
     return value
 
 
+def can_be_stored(value: Any) -> bool:
+    """Whether PostgreSQL's jsonb can hold it: not the character of number 0, nor halves of surrogate pairs."""
+    text = json.dumps(value, ensure_ascii=False)
+    return "\\u0000" not in text and not any("\ud800" <= character <= "\udfff" for character in text)
+
+
 def _refuse_constant(text: str) -> NoReturn:
     raise JsonFault(f"{text} is no number in JSON.")
 

@@ -1,6 +1,5 @@
 """A zone file as a whole: which format it is, its zones, or all that is wrong with it."""
 
-import json
 from collections import Counter
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,7 +9,7 @@ from inspection.zones.faults import MAX_FAULTS, FaultList, TooManyFaults
 from inspection.zones.geojson import zones_of_geojson
 from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.records import ZoneRecord
-from inspection.zones.strict_json import JsonFault, parse_strict_json
+from inspection.zones.strict_json import JsonFault, can_be_stored, parse_strict_json
 
 MAX_FILE_BYTES = 32 * 1024 * 1024
 _GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", "GeometryCollection"}
@@ -62,9 +61,8 @@ def _zones(document: Any, faults: FaultList) -> tuple[str, list[ZoneRecord]]:
 
 
 def _unstorable(record: ZoneRecord) -> GeometryFault | None:
-    """What JSON can write and PostgreSQL's jsonb cannot hold: the character of number 0, and halves of surrogate pairs."""
-    text = json.dumps([record.properties, record.schedule, record.band.as_stated], ensure_ascii=False)
-    if "\\u0000" in text or any("\ud800" <= character <= "\udfff" for character in text):
+    """What JSON can write and the database cannot hold."""
+    if not can_be_stored([record.properties, record.schedule, record.band.as_stated]):
         return GeometryFault(f"zone {record.identifier}", "its texts have characters that are none")
     return None
 

@@ -134,6 +134,33 @@ def test_a_wrong_geometry_is_shown_back_with_its_fault(client: Client, geometry:
     assert not AuditEntry.objects.exists()
 
 
+@pytest.mark.parametrize(
+    ("field", "text", "fault"),
+    [
+        ("tags", '{"a": NaN}', "NaN is no number"),
+        ("tags", '{"a": 1e999}', "too large"),
+        ("tags", '{"a": "\\u0000"}', "characters that are none"),
+        ("tags", '{"a": "\\ud800"}', "characters that are none"),
+        ("tags", "[" * 5_000, "nested"),
+        ("tags", "9" * 5_000, "no JSON"),
+        ("tags", "null", "An object is needed"),
+        ("tags", "[]", "An object is needed"),
+        ("height_m", "-5", "A height is above 0"),
+        ("geometry", '{"type": ["Point"], "coordinates": [10, 56]}', "is not one of"),
+    ],
+)
+def test_what_cannot_be_stored_is_shown_back_with_its_fault(client: Client, field: str, text: str, fault: str) -> None:
+    asset = tower()
+    answer = client.post(change_address(asset), form_of(client.get(change_address(asset))) | {field: text})
+    assert answer.status_code == 200
+    assert fault in str(answer.context["adminform"].form.errors[field])
+
+
+@pytest.mark.django_db(transaction=True)
+def test_a_list_filtered_by_what_no_column_holds_is_a_bad_request(client: Client) -> None:
+    assert client.get("/admin/inspection/asset/?kind__exact=%00").status_code == 400
+
+
 def test_the_service_too_refuses_a_geometry_of_another_kind(curator: User) -> None:
     asset = tower()
     asset.kind = AssetKind.LINE

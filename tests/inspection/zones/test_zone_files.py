@@ -111,6 +111,7 @@ def test_reading_stops_after_fifty_faults():
     ("layer", "place"),
     [
         ({"uomDimensions": "KM"}, "uomDimensions"),
+        ({"uomDimensions": ["M"]}, "uomDimensions"),
         ({"upperLimit": "high"}, "upperLimit"),
         ({"upperLimit": -5}, "upperLimit"),
         ({"upperVerticalReference": "WGS84"}, "upperVerticalReference"),
@@ -118,6 +119,7 @@ def test_reading_stops_after_fifty_faults():
         ({"horizontalProjection": {"type": "Circle", "center": [9, 47], "radius": -3}}, "horizontalProjection.radius"),
         ({"horizontalProjection": {"type": "Circle", "center": [9, 97], "radius": 3}}, "horizontalProjection.center"),
         ({"horizontalProjection": {"type": "Blob"}}, "horizontalProjection"),
+        ({"horizontalProjection": {"type": ["Polygon"]}}, "horizontalProjection"),
     ],
 )
 def test_faults_of_an_ed269_layer_are_named_with_their_place(layer, place):
