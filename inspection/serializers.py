@@ -129,6 +129,12 @@ class GroundSerializer(serializers.Serializer):
     has_terrain = serializers.BooleanField()
 
 
+FIELDS_OF_AN_ASSET = (
+    "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m",
+    "length_m", "is_flyable",
+)  # fmt: skip
+
+
 def asset_feature(asset: Asset) -> dict[str, Any]:
     """`asset` comes with `geometry_json` from inspection.selectors."""
     properties = {

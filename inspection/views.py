@@ -71,7 +71,7 @@ class AssetList(APIView):
     )
     def get(self, request: Request) -> Response:
         assets = selectors.assets_on_the_ground(box=_box(request), kinds=_kinds(request), text=_text(request))
-        page = page_of(request, assets.defer("geometry", "node_osm_ids", "parts", "tags"))
+        page = page_of(request, assets.only(*serializers.FIELDS_OF_AN_ASSET))
         features = [serializers.asset_feature(asset) for asset in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 
