@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy import distance_m
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import RoutePoint, Waypoint, WaypointKind
+from missions.flight_plan.waypoints import RoutePoint, Waypoint, point_between
 
 FloatArray = NDArray[np.float64]
 GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
@@ -65,12 +65,12 @@ def with_heights(
     take_off_m = float(ground_m[0])
     waypoints = []
     first = 0
-    for (left, right), share, places in zip(pairwise(points), shares, samples, strict=True):
+    for (left, right), share in zip(pairwise(points), shares, strict=True):
         under_m = ground_m[first : first + len(share) + 1]  # the next leg's first sample is this leg's end
         first += len(share)
         waypoints.append(_waypoint(left, float(under_m[0]), take_off_m))
         for bend in _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m):
-            waypoints.append(_waypoint(_pass_point(left, right, places[bend], float(share[bend])), float(under_m[bend]), take_off_m))
+            waypoints.append(_waypoint(point_between(left, right, float(share[bend])), float(under_m[bend]), take_off_m))
     waypoints.append(_waypoint(points[-1], float(ground_m[-1]), take_off_m))
     return tuple(waypoints), False
 
@@ -82,13 +82,6 @@ def _sample_counts(position: FloatArray) -> list[int]:
 def _waypoint(point: RoutePoint, ground_m: float, take_off_m: float) -> Waypoint:
     amsl_m = ground_m + point.agl_m
     return Waypoint(point, amsl_m, amsl_m - take_off_m)
-
-
-def _pass_point(left: RoutePoint, right: RoutePoint, position: FloatArray, share: float) -> RoutePoint:
-    target = left.target if left.target == right.target else None
-    return RoutePoint(
-        LonLat(float(position[0]), float(position[1])), WaypointKind.PASS, left.agl_m + share * (right.agl_m - left.agl_m), target=target
-    )
 
 
 def _bends(share: FloatArray, ground_m: FloatArray, tolerance_m: float) -> list[int]:

@@ -1,13 +1,15 @@
 """From the ways between targets to one list of points: start, what is passed, targets, end."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.geodesy import LonLat
-from missions.flight_plan.waypoints import RoutePoint, WaypointKind
+from inspection.geodesy import LonLat, distance_m
+from missions.flight_plan.waypoints import RoutePoint, WaypointKind, point_between
 from missions.routing.problem import Task
 
 SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
@@ -93,6 +95,17 @@ class _Route:
             elif here and point.kind is WaypointKind.PASS and point.agl_m == before.agl_m:
                 return
         self.points.append(point)
+
+
+def with_short_legs(points: Sequence[RoutePoint], longest_leg_m: float) -> list[RoutePoint]:
+    """The points, and in between as many more, evenly on the straight lon/lat line, as keep every leg within the longest."""
+    divided: list[RoutePoint] = list(points[:1])
+    position = np.array([point.position for point in points])
+    for (left, right), length_m in zip(pairwise(points), distance_m(position[:-1], position[1:]).tolist(), strict=True):
+        parts = math.ceil(length_m / longest_leg_m)
+        divided += [point_between(left, right, part / parts) for part in range(1, parts)]
+        divided.append(right)
+    return divided
 
 
 def _same_place(left: LonLat, right: LonLat) -> bool:

@@ -36,3 +36,11 @@ class Waypoint:
     point: RoutePoint
     amsl_m: float | None
     relative_m: float
+
+
+def point_between(left: RoutePoint, right: RoutePoint, share: float) -> RoutePoint:
+    """A point that is passed on the straight lon/lat line; between two points of one target it belongs to the target."""
+    lon = left.position.lon + share * (right.position.lon - left.position.lon)
+    lat = left.position.lat + share * (right.position.lat - left.position.lat)
+    agl_m = left.agl_m + share * (right.agl_m - left.agl_m)
+    return RoutePoint(LonLat(lon, lat), WaypointKind.PASS, agl_m, target=left.target if left.target == right.target else None)

@@ -13,7 +13,7 @@ from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
 from missions.flight_plan.duration import duration_s
 from missions.flight_plan.flyable_graph import flyable_graph, node_heights_m
 from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
-from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points
+from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
 from missions.models import EndAction
 from missions.routing.problem import Problem, UavStart, Visit
 from missions.routing.solver import OnProgress, Stop, never, no_report, solve
@@ -148,6 +148,7 @@ class _Drawing:
             ways=[self._passed(nodes) for nodes in legs],
             way_home=self._passed(self.ways.home(order[-1], start)) if action is EndAction.RETURN else None,
         )
+        points = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, self.ground, flight)
         length_m = path_length_m(np.array([point.position for point in points]))
         return PlannedRoute(

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from inspection.geodesy import LonLat
-from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points
-from missions.flight_plan.waypoints import RoutePoint
+from inspection.geodesy import LonLat, distance_m
+from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
+from missions.flight_plan.waypoints import RoutePoint, WaypointKind
 from missions.routing.problem import Task, TaskKind
 
 TRANSIT_M = 60.0
@@ -136,3 +136,30 @@ def test_the_line_on_the_map_has_each_place_once() -> None:
         start=at(0), transit_agl_m=TRANSIT_M, targets=[target(0, 2, agl_m=25)], ways=[[node(1), node(2)]], way_home=[node(1)]
     )
     assert np.array_equal(line_of(points)[:, 0] * 1_000, [0, 1, 2, 1, 0])
+
+
+def test_long_legs_are_divided_evenly_on_the_drawn_line() -> None:
+    """0 --- 20, some 2.2 km: three legs of 742 m, heights in between."""
+    points = [RoutePoint(at(0), WaypointKind.START, 60.0), RoutePoint(at(20), WaypointKind.TARGET, 90.0, target=0)]
+    assert draw(with_short_legs(points, 900.0)) == ["start 0 @60", "pass 7 @70", "pass 13 @80", "target 20 @90 #0"]
+
+
+def test_points_put_into_a_stretch_belong_to_its_target() -> None:
+    points = [RoutePoint(at(0), WaypointKind.TARGET, 60.0, target=3), RoutePoint(at(10), WaypointKind.PASS, 60.0, target=3)]
+    assert draw(with_short_legs(points, 900.0))[1] == "pass 5 @60 #3"
+
+
+def test_no_leg_is_longer_than_the_longest_at_any_latitude() -> None:
+    points = [RoutePoint(LonLat(24.0, 70.0), WaypointKind.START, 60.0), RoutePoint(LonLat(24.2, 70.05), WaypointKind.END, 60.0)]
+    position = np.array([point.position for point in with_short_legs(points, 900.0)])
+    assert len(position) == 12
+    assert distance_m(position[:-1], position[1:]).max() <= 900.0
+
+
+def test_points_that_are_near_enough_stay_as_they_are() -> None:
+    points = [
+        RoutePoint(at(0), WaypointKind.START, 60.0),
+        RoutePoint(at(0), WaypointKind.PASS, 30.0),
+        RoutePoint(at(5), WaypointKind.END, 60.0),
+    ]
+    assert with_short_legs(points, 900.0) == points
