@@ -221,6 +221,11 @@ CELERY_BROKER_TRANSPORT_OPTIONS = {
     "socket_timeout": 10,
     "socket_connect_timeout": 2,
     "health_check_interval": 5,
+    # A request that sends a job waits for no queue that is away (kombu's own would be 6 s): the sweep sends the job later.
+    "max_retries": 1,
+    "interval_start": 0.0,
+    "interval_step": 0.1,
+    "interval_max": 0.1,
 }
 CELERY_TASK_DEFAULT_QUEUE = "data"
 CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}

@@ -1,9 +1,12 @@
 """A job from its request to its end, whoever drops it on the way."""
 
+import time
 from datetime import timedelta
 from uuid import uuid4
 
 import pytest
+from celery import Celery
+from django.conf import settings
 from django.utils import timezone
 from kombu.exceptions import OperationalError
 
@@ -177,6 +180,15 @@ def test_a_queue_that_is_away_loses_nothing(monkeypatch: pytest.MonkeyPatch) -> 
     job = new_job()
     tasks.send_job(job)
     assert state(job) == JobState.QUEUED
+
+
+def test_a_request_does_not_wait_for_a_queue_that_is_away(monkeypatch: pytest.MonkeyPatch) -> None:
+    away = Celery("away", broker="redis+socket:///nowhere/redis.sock", set_as_current=False)
+    away.conf.broker_transport_options = settings.CELERY_BROKER_TRANSPORT_OPTIONS
+    monkeypatch.setattr(tasks, "current_app", away)
+    started_s = time.monotonic()
+    tasks.send_job(new_job())
+    assert time.monotonic() - started_s < 2.0
 
 
 def test_the_task_sends_lost_jobs_by_their_name(monkeypatch: pytest.MonkeyPatch) -> None:
