@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import shapely
+from django.contrib.gis.geos import Polygon
 from django.db import connection, transaction
 
 from inspection.models import DataImport, ImportKind, NoFlyZone, ZoneSet
@@ -40,7 +41,8 @@ DO UPDATE SET updated_at = now(), {", ".join(f"{column} = EXCLUDED.{column}" for
 def import_zones(*, path: Path, set_name: str | None = None, imported_by: User | None = None, is_synthetic: bool = False) -> DataImport:
     """Make the set (by default named after the file) what the file says, and return the import with its counts.
 
-    Zones that are the same keep their rows; others are changed, added or taken out. Raises ZoneFileError and changes nothing.
+    Zones that are the same keep their rows; others are changed, added or taken out. Raises ZoneFileError and changes nothing, also
+    when only the name of the file is that of a set whose zones are all elsewhere: they would be gone unnoticed.
     """
     if path.stat().st_size > MAX_FILE_BYTES:
         raise ZoneFileError([GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")])
@@ -52,6 +54,15 @@ def import_zones(*, path: Path, set_name: str | None = None, imported_by: User |
         with connection.cursor() as cursor:
             cursor.execute("SELECT pg_advisory_xact_lock(%s)", [IMPORT_LOCK])
         zone_set, _ = ZoneSet.objects.select_related("data_import").get_or_create(name=name)
+        extent = shapely.total_bounds([zone.geometry for zone in content.zones]).tolist()
+        if set_name is None and _is_elsewhere(zone_set, extent):
+            raise ZoneFileError(
+                [
+                    GeometryFault(
+                        "", f"the set {name!r} has zones, all of them elsewhere: --set {name} replaces them, another name keeps both"
+                    )
+                ]
+            )
         written = _write(zone_set, content.zones, keep=_is_already_in(zone_set, sha256, len(content.zones)))
         counts: dict[str, Any] = {
             "zones": content.zone_count, "layers": len(content.zones), "format": content.source_format,
@@ -59,7 +70,7 @@ def import_zones(*, path: Path, set_name: str | None = None, imported_by: User |
             "polygons": sum(zone.circle is None for zone in content.zones),
             "with_schedule": sum(zone.schedule is not None for zone in content.zones),
             "restrictions": dict(sorted(Counter(zone.restriction or "not stated" for zone in content.zones).items())),
-            "extent": shapely.total_bounds([zone.geometry for zone in content.zones]).tolist(), **written,
+            "extent": extent, **written,
         }  # fmt: skip
         has_changed = any(written[key] for key in ("new", "changed", "removed"))
         if zone_set.data_import is not None and zone_set.data_import.sha256 == sha256 and not has_changed:
@@ -73,6 +84,13 @@ def import_zones(*, path: Path, set_name: str | None = None, imported_by: User |
         if has_changed:
             mark_ground_changed()
     return data_import
+
+
+def _is_elsewhere(zone_set: ZoneSet, extent: list[float]) -> bool:
+    """The set has zones, and none of them comes near to the extent."""
+    near = Polygon.from_bbox(extent)
+    near.srid = 4326
+    return zone_set.zones.exists() and not zone_set.zones.filter(geometry__bboverlaps=near).exists()
 
 
 def _is_already_in(zone_set: ZoneSet, sha256: str, number: int) -> bool:

@@ -92,6 +92,17 @@ def test_sets_of_other_names_and_drawn_zones_are_left_alone(tmp_path):
     drawn.refresh_from_db()
 
 
+def test_a_file_of_the_same_name_from_elsewhere_takes_no_zone_away_unasked(tmp_path):
+    (tmp_path / "south").mkdir()
+    import_zones(path=write(tmp_path / "zones.geojson", feature(square(), name="north")))
+    other = write(tmp_path / "south" / "zones.geojson", feature(square(20.0, -30.0), name="south"))
+    with pytest.raises(ZoneFileError, match="--set zones replaces them"):
+        import_zones(path=other)
+    assert (NoFlyZone.objects.get().name, revision()) == ("north", 1)
+    import_zones(path=other, set_name="zones")
+    assert NoFlyZone.objects.get().name == "south"
+
+
 def test_one_fault_refuses_the_whole_file_and_its_predecessor_stays(tmp_path):
     path = tmp_path / "zones.geojson"
     import_zones(path=write(path, feature(square(), name="a")))
