@@ -28,6 +28,14 @@ class JobSerializer(serializers.ModelSerializer):
         read_only_fields = fields
 
 
+class ListedJobSerializer(JobSerializer):
+    """A job in a list: without its result, which may be large."""
+
+    class Meta(JobSerializer.Meta):
+        fields = [name for name in JobSerializer.Meta.fields if name != "result"]
+        read_only_fields = fields
+
+
 class JobPageSerializer(serializers.Serializer):
-    results = JobSerializer(many=True)
+    results = ListedJobSerializer(many=True)
     next = serializers.CharField(allow_null=True, help_text="address of the next page")

@@ -70,6 +70,9 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         if job.cancel_requested_at is not None:
             confirm_cancelled(job=job)
             return None
+        if job.state == JobState.RUNNING and job.attempts >= MAX_ATTEMPTS:
+            _give_up(job)
+            return None
         job.state = JobState.RUNNING
         job.attempts += 1
         job.started_at = now
@@ -112,6 +115,10 @@ def fail_job(*, job: Job, code: str, message: str) -> None:
     )
 
 
+def _give_up(job: Job) -> None:
+    fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
+
+
 def confirm_cancelled(*, job: Job) -> None:
     """A worker has seen the request to stop and has stopped. Nothing happens if another worker has taken the job over since."""
     Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts).update(
@@ -147,7 +154,7 @@ def requeue_lost_jobs() -> list[Job]:
             if job.cancel_requested_at is not None:
                 confirm_cancelled(job=job)
             elif job.attempts >= MAX_ATTEMPTS:
-                fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
+                _give_up(job)
             else:
                 Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=None)
         waiting = Job.objects.select_for_update(skip_locked=True).filter(

@@ -14,7 +14,7 @@ from workspace.models import Job, JobState, User
 from workspace.paging import page_of
 from workspace.permissions import CURATORS, PLANNERS
 from workspace.schema import PAGE_PARAMETERS
-from workspace.serializers import JobPageSerializer, JobSerializer
+from workspace.serializers import JobPageSerializer, JobSerializer, ListedJobSerializer
 
 
 def _job(user: User, job_id: UUID) -> Job:
@@ -38,8 +38,8 @@ class JobList(APIView):
                 message = f"Known states are {', '.join(JobState.values)}."
                 raise ApiProblem(400, "invalid", f"state: {message}", details={"state": [message]})
             jobs = jobs.filter(state=state)
-        page = page_of(request, jobs, order=("-created_at", "-pk"))
-        return Response({"results": JobSerializer(page.rows, many=True).data, "next": page.next})
+        page = page_of(request, jobs.defer("result", "parameters"), order=("-created_at", "-pk"))
+        return Response({"results": ListedJobSerializer(page.rows, many=True).data, "next": page.next})
 
 
 class JobDetail(APIView):

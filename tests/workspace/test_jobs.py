@@ -2,6 +2,7 @@
 
 import time
 from datetime import timedelta
+from typing import Any
 from uuid import uuid4
 
 import pytest
@@ -164,6 +165,17 @@ def test_the_sweep_gives_up_after_some_attempts() -> None:
     assert job.error["code"] == "worker_lost"
 
 
+def test_a_message_that_comes_before_the_sweep_does_not_start_a_job_beyond_its_attempts() -> None:
+    job = running_job()
+    for _ in range(MAX_ATTEMPTS - 1):
+        lose(job)
+        assert start_job(job_id=job.pk) is not None
+    lose(job)
+    assert start_job(job_id=job.pk) is None
+    assert state(job) == JobState.FAILED
+    assert job.error["code"] == "worker_lost"
+
+
 def test_the_sweep_ends_what_was_cancelled_and_lost() -> None:
     job = running_job()
     cancel_job(job=job)
@@ -218,6 +230,19 @@ def test_the_api_cancels_a_job() -> None:
     job = new_job(user)
     answer = client_of(user).post(f"/api/v1/jobs/{job.pk}/cancel")
     assert (answer.status_code, answer.json()["state"]) == (200, "cancelled")
+
+
+def test_a_list_of_jobs_leaves_their_results_out(django_assert_num_queries: Any) -> None:
+    user = somebody()
+    jobs = [new_job(user) for _ in range(3)]
+    Job.objects.update(result={"routes": []}, state=JobState.DONE)
+    client = client_of(user)
+    client.get("/api/v1/jobs")
+    with django_assert_num_queries(4):  # session, user, organisation, jobs
+        listed = client.get("/api/v1/jobs").json()["results"]
+    assert len(listed) == len(jobs)
+    assert "result" not in listed[0]
+    assert client.get(f"/api/v1/jobs/{jobs[0].pk}").json()["result"] == {"routes": []}
 
 
 def test_pages_of_jobs_follow_one_another_newest_first() -> None:
