@@ -1,11 +1,13 @@
 """Large plans, solved by a worker: with progress, and with an ear for the user who wants to stop."""
 
+import logging
 import time
 from collections.abc import Callable
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 from django.conf import settings
+from django.db import DatabaseError, connection
 
 from inspection.selectors import NoGraph
 from missions import services
@@ -13,6 +15,8 @@ from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
 from workspace.models import Job
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, report_progress, start_job
+
+logger = logging.getLogger(__name__)
 
 SOFT_LIMIT_S = 540
 HARD_LIMIT_S = 600
@@ -42,6 +46,9 @@ class _Watch:
                 report_progress(job=self.job, progress=self.progress, message=self.message)
             except JobCancelled:
                 self.is_cancelled = True
+            except DatabaseError as error:
+                logger.warning("progress of job %s is not stored: %s", self.job.pk, error)
+                connection.close_if_unusable_or_obsolete()
         return self.is_cancelled
 
 

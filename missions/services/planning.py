@@ -191,7 +191,7 @@ def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> int:
         try:
             refuse_legs_in_zones(route.line, list(zones.polygons))
         except RouteMeetsZone as error:
-            if scene.graph.ground_revision < revision:
+            if scene.graph.ground_revision < ground_revision():  # asked anew: the zones may be younger than `revision`
                 raise GraphOutdated(zones.names[error.zone]) from error
             raise
     return revision
