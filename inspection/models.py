@@ -4,7 +4,7 @@ from django.conf import settings
 from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.contrib.postgres.indexes import GinIndex, OpClass
-from django.db.models import Q
+from django.db.models import Case, F, Func, Q, Value, When
 from django.db.models.functions import Now, Upper
 
 
@@ -47,6 +47,32 @@ class OsmType(models.TextChoices):
     RELATION = "r", "Relation"
 
 
+# What a bridge may carry, as JSON paths below the tags of its own and of the ways on its area.
+_RAIL = 'railway ? (@ like_regex "^(rail|light_rail|narrow_gauge|tram|subway|monorail|funicular|preserved|miniature)$")'
+_PATH = 'highway ? (@ like_regex "^(footway|path|pedestrian|steps|cycleway|bridleway|corridor|platform)$")'
+_ROAD = 'highway ? (!(@ like_regex "^(footway|path|pedestrian|steps|cycleway|bridleway|corridor|platform)$"))'
+
+
+def _is_tagged(path: str) -> Q:
+    def exists(column: str, place: str) -> Func:
+        return Func(F(column), Value(place), function="jsonb_path_exists", output_field=models.BooleanField())
+
+    return Q(exists("tags", f"$.{path}")) | Q(exists("parts", f"$[*].tags.{path}"))
+
+
+def _what_a_bridge_carries() -> Case:
+    return Case(
+        When(~Q(kind=AssetKind.BRIDGE.value), then=Value("")),
+        When(_is_tagged(_ROAD) & _is_tagged(_RAIL), then=Value("a road and a railway")),
+        When(_is_tagged(_RAIL), then=Value("a railway")),
+        When(_is_tagged(_ROAD), then=Value("a road")),
+        When(_is_tagged(_PATH), then=Value("a path")),
+        When(_is_tagged("waterway"), then=Value("water")),
+        When(_is_tagged('man_made ? (@ == "pipeline")'), then=Value("a pipeline")),
+        default=Value(""),
+    )
+
+
 class Asset(models.Model):
     """A piece of infrastructure. One table for all kinds: targets, findings, tiles and imports point at one thing.
 
@@ -73,6 +99,13 @@ class Asset(models.Model):
     )
     tags = models.JSONField(default=dict, blank=True)
     parts = models.JSONField(default=list, blank=True, editable=False, help_text='the OSM ways on a bridge\'s area: [{"osm_id", "tags"}]')
+    line = models.ForeignKey(
+        "self", on_delete=models.SET_NULL, null=True, editable=False, related_name="supports",
+        help_text="of a support: the line of the highest voltage that it carries; see services/supports.py",
+    )  # fmt: skip
+    place_on_line = models.PositiveSmallIntegerField(null=True, editable=False, help_text="counted from 1 in the line's direction")
+    places_on_line = models.PositiveSmallIntegerField(null=True, editable=False, help_text="the line's supports")
+    carries = models.GeneratedField(expression=_what_a_bridge_carries(), output_field=models.CharField(max_length=30), db_persist=True)
     data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="assets")
     content_hash = models.CharField(max_length=64, blank=True, editable=False, help_text="of what the last import said")
     is_edited = models.BooleanField(default=False, help_text="changed by a curator; imports leave the row alone")

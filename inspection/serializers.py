@@ -6,7 +6,7 @@ from typing import Any
 from rest_framework import serializers
 
 from inspection.models import Asset, AssetKind, DataImport, HeightReference, NoFlyZone
-from inspection.selectors import GroundSummary, asset_label
+from inspection.selectors import GroundSummary, asset_detail, asset_label
 
 
 class GeometrySerializer(serializers.Serializer):
@@ -20,6 +20,7 @@ class AssetPropertiesSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=AssetKind.choices)
     subtype = serializers.CharField()
     label = serializers.CharField(help_text="what people call it: ref, name, or words made from what is known")
+    detail = serializers.CharField(help_text="a second fact: a support's line, voltage and operator, what a bridge carries; may be empty")
     name = serializers.CharField()
     ref = serializers.CharField()
     operator = serializers.CharField()
@@ -131,7 +132,8 @@ class GroundSerializer(serializers.Serializer):
 
 FIELDS_OF_AN_ASSET = (
     "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m",
-    "length_m", "is_flyable",
+    "length_m", "is_flyable", "carries", "place_on_line", "places_on_line",
+    "line__ref", "line__name", "line__operator", "line__max_voltage_v",
 )  # fmt: skip
 
 
@@ -141,6 +143,7 @@ def asset_feature(asset: Asset) -> dict[str, Any]:
         "kind": asset.kind,
         "subtype": asset.subtype,
         "label": asset_label(asset),
+        "detail": asset_detail(asset),
         "name": asset.name,
         "ref": asset.ref,
         "operator": asset.operator,

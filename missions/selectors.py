@@ -6,7 +6,7 @@ import numpy as np
 from django.db.models import Count, Max, Prefetch, Q, QuerySet
 
 from inspection.models import Asset
-from inspection.selectors import ground_revision, zones_in_force
+from inspection.selectors import UNREAD_OF_A_LINE, ground_revision, zones_in_force
 from missions.flight_plan.clearance import legs_that_meet
 from missions.models import InspectionTarget, Mission, MissionState, Route, Uav, Waypoint
 from workspace.models import AuditEntry, Organisation
@@ -40,9 +40,8 @@ def missions_of_organisation(organisation: Organisation, *, text: str = "", stat
 def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, deleted: bool = False) -> Mission:
     """One mission with all that belongs to it. Raises Mission.DoesNotExist also for another organisation's mission."""
     routes = Route.objects.select_related("mission_uav").prefetch_related(Prefetch("waypoints", Waypoint.objects.order_by("sequence")))
-    targets = InspectionTarget.objects.select_related("asset").defer(
-        "asset__geometry", "asset__tags", "asset__node_osm_ids", "asset__parts"
-    )
+    unread = {"geometry", "tags", "node_osm_ids", "parts"} | UNREAD_OF_A_LINE
+    targets = InspectionTarget.objects.select_related("asset__line").defer(*(f"asset__{name}" for name in unread))
     return (
         Mission.objects.filter(organisation=organisation, deleted_at__isnull=not deleted)
         .select_related("author", "organisation")

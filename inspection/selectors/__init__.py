@@ -1,6 +1,15 @@
 """Reads of the ground: what views, commands and the other apps call."""
 
-from inspection.selectors.assets import Box, asset_label, asset_with_geometry, assets_on_the_ground, voltage_text, zones
+from inspection.selectors.assets import (
+    UNREAD_OF_A_LINE,
+    Box,
+    asset_detail,
+    asset_label,
+    asset_with_geometry,
+    assets_on_the_ground,
+    voltage_text,
+    zones,
+)
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
 from inspection.selectors.ground import GroundSummary, ground_edition, ground_revision, ground_summary
 from inspection.selectors.terrain import ground_heights_m, has_terrain
@@ -9,10 +18,12 @@ from inspection.selectors.tiles import NoSuchTile, vector_tile
 
 __all__ = [
     "TILE_RECIPE",
+    "UNREAD_OF_A_LINE",
     "Box",
     "GroundSummary",
     "NoGraph",
     "NoSuchTile",
+    "asset_detail",
     "asset_label",
     "asset_with_geometry",
     "assets_on_the_ground",

@@ -12,6 +12,9 @@ COORDINATE_DIGITS = 7  # about a centimetre
 WORDS = {"line": "Line", "minor_line": "Line", "cable": "Cable", "pole": "Pole", "portal": "Portal", "tram": "Tramway", "subway": "Subway"}
 
 VOLTAGE = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s*kV\b", re.IGNORECASE)
+VOLTAGE_NOT_STATED = "voltage not stated"
+# Of the line that is read along with a support.
+UNREAD_OF_A_LINE = {f"line__{name}" for name in ("geometry", "centre", "node_osm_ids", "tags", "parts")}
 OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
 
 Box = tuple[float, float, float, float]  # west, south, east, north; west > east crosses the 180th meridian
@@ -21,7 +24,7 @@ def assets_on_the_ground(
     *, box: Box | None = None, kinds: list[AssetKind] | None = None, text: str = "", flyable: bool | None = None
 ) -> QuerySet[Asset]:
     """Assets that the last import still had, with their geometry as GeoJSON text in `geometry_json`."""
-    assets = Asset.objects.filter(vanished_at=None)
+    assets = Asset.objects.select_related("line").filter(vanished_at=None)
     if box is not None:
         assets = assets.filter(geometry__intersects=area_of(box))
     if kinds:
@@ -30,13 +33,15 @@ def assets_on_the_ground(
         assets = assets.filter(is_flyable=flyable)
     if text:
         assets = assets.filter(_text_filter(text))
-    return assets.defer("geometry", "node_osm_ids", "parts").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+    unread = {"geometry", "node_osm_ids", "parts"} | UNREAD_OF_A_LINE
+    return assets.defer(*unread).annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
 
 
 def asset_with_geometry(asset_id: int) -> Asset:
     """One asset, also when it has vanished: missions may still point at it. Raises Asset.DoesNotExist."""
     return (
-        Asset.objects.select_related("data_import")
+        Asset.objects.select_related("data_import", "line")
+        .defer(*UNREAD_OF_A_LINE)
         .annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
         .get(pk=asset_id)
     )
@@ -74,7 +79,8 @@ def _text_filter(text: str) -> Q:
 
 
 def asset_label(asset: Asset) -> str:
-    """What an asset is called: ref, name, operator and voltage of a line, else its kind and OSM id ("Tower n42").
+    """What an asset is called: ref, name, a support's place on its line ("Tower 18 of 41"), operator and voltage of a line, else its
+    kind and OSM id ("Tower n42").
 
     The same words as LABEL in selectors/tiles.py.
     """
@@ -85,7 +91,34 @@ def asset_label(asset: Asset) -> str:
     if asset.kind == AssetKind.RAILWAY and asset.operator:
         return f"{asset.operator} railway"
     word = WORDS.get(asset.subtype, AssetKind(asset.kind).name.capitalize())
+    if asset.line_id is not None:
+        return f"{word} {asset.place_on_line} of {asset.places_on_line}"
     return f"{word} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{word} {asset.pk}"
+
+
+def asset_detail(asset: Asset) -> str:
+    """The second fact, which the label does not say: "138 kV AEP" of a support's line or of a line; what a bridge carries. May be empty.
+
+    Reads the line of a support: load it with select_related. The same words as the details in selectors/tiles.py.
+    """
+    given = asset.ref or asset.name
+    operator = asset.operator if asset.operator != given else ""
+    if asset.kind == AssetKind.TOWER and asset.line is not None:
+        line = asset.line
+        return _voltage_and_owner(voltage_text(line.max_voltage_v or asset.max_voltage_v), line.ref or line.name or line.operator)
+    if asset.kind == AssetKind.TOWER:
+        return f"{voltage_text(asset.max_voltage_v)} {operator}".strip()
+    if asset.kind == AssetKind.LINE and (given or len(asset.voltages_v) != 1):
+        return _voltage_and_owner(", ".join(map(voltage_text, asset.voltages_v)), operator if given else "")
+    if asset.kind == AssetKind.RAILWAY and given:
+        return ", ".join(fact for fact in (asset.name, operator) if fact and fact != given)
+    return f"carries {asset.carries}" if asset.carries else ""
+
+
+def _voltage_and_owner(voltage: str, owner: str) -> str:
+    if voltage:
+        return f"{voltage} {owner}".strip()
+    return f"{owner}, {VOLTAGE_NOT_STATED}" if owner else VOLTAGE_NOT_STATED
 
 
 def voltage_text(voltage_v: int | None) -> str:

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 from django.db import connection
 
+from inspection.selectors.assets import VOLTAGE_NOT_STATED
+
 DEEPEST_ZOOM = 22
-RECIPE = 1  # part of the ETag: counts the changes to this file's statements
+RECIPE = 2  # part of the ETag: counts the changes to this file's statements
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
@@ -30,14 +32,45 @@ LABEL = f"""COALESCE(
          WHEN kind = 'railway' THEN NULLIF(operator, '') || ' railway' END,
     CASE subtype WHEN 'minor_line' THEN 'Line' WHEN 'cable' THEN 'Cable' WHEN 'pole' THEN 'Pole' WHEN 'portal' THEN 'Portal'
                  WHEN 'tram' THEN 'Tramway' WHEN 'subway' THEN 'Subway' ELSE INITCAP(kind) END
-    || ' ' || COALESCE(osm_type || osm_id, id::text)
+    || ' ' || CASE WHEN line_id IS NOT NULL THEN place_on_line || ' of ' || places_on_line ELSE COALESCE(osm_type || osm_id, id::text) END
 )"""
-ASSET_COLUMNS = f"""
-    id AS feature_id, id, kind, NULLIF(subtype, '') AS subtype, {LABEL} AS label,
-    NULLIF(ref, '') AS ref, NULLIF(name, '') AS name, NULLIF(operator, '') AS operator, is_flyable AS flyable,
-    (max_voltage_v / 1000.0)::float8 AS voltage,
-    (SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v) AS voltages
-"""  # noqa: S608 - constants alone
+VOLTAGES_TEXT = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
+GIVEN = "COALESCE(NULLIF(ref, ''), NULLIF(name, ''))"
+OPERATOR = f"NULLIF(NULLIF(operator, ''), {GIVEN})"
+
+
+def _voltage_and_owner(voltage: str, owner: str) -> str:
+    return f"COALESCE({voltage} || COALESCE(' ' || {owner}, ''), {owner} || ', {VOLTAGE_NOT_STATED}', '{VOLTAGE_NOT_STATED}')"
+
+
+def _asset_columns(detail: str, voltage_v: str = "max_voltage_v") -> str:
+    return f"""
+        id AS feature_id, id, kind, NULLIF(subtype, '') AS subtype, {LABEL} AS label, {detail} AS detail,
+        NULLIF(ref, '') AS ref, NULLIF(name, '') AS name, NULLIF(operator, '') AS operator, is_flyable AS flyable,
+        ({voltage_v} / 1000.0)::float8 AS voltage, {VOLTAGES_TEXT} AS voltages
+    """
+
+
+# The words of asset_detail in selectors/assets.py; null instead of an empty text.
+LINE_COLUMNS = _asset_columns(
+    f"""CASE WHEN {GIVEN} IS NOT NULL THEN {_voltage_and_owner(VOLTAGES_TEXT, OPERATOR)}
+             WHEN CARDINALITY(voltages_v) <> 1 THEN {_voltage_and_owner(VOLTAGES_TEXT, "NULL")} END"""
+)
+RAILWAY_COLUMNS = _asset_columns(
+    f"CASE WHEN {GIVEN} IS NOT NULL THEN NULLIF(CONCAT_WS(', ', NULLIF(NULLIF(name, ''), {GIVEN}), {OPERATOR}), '') END"
+)
+BRIDGE_COLUMNS = _asset_columns("'carries ' || NULLIF(carries, '')")
+TOWER_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"  # from which zoom on a tower is drawn goes by its line
+TOWER_COLUMNS = _asset_columns(
+    f"""CASE WHEN line_id IS NOT NULL THEN {_voltage_and_owner(f"trim_scale({TOWER_VOLTAGE_V} / 1000.0) || ' kV'", "line_owner")}
+             ELSE NULLIF(CONCAT_WS(' ', {VOLTAGE_TEXT}, {OPERATOR}), '') END""",
+    TOWER_VOLTAGE_V,
+)
+TOWERS = """inspection_asset LEFT JOIN (
+    SELECT id AS own_id, max_voltage_v AS line_voltage_v,
+           COALESCE(NULLIF(ref, ''), NULLIF(name, ''), NULLIF(operator, '')) AS line_owner
+    FROM inspection_asset
+) line ON own_id = line_id"""
 ZONE_COLUMNS = """
     id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
     lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference
@@ -59,18 +92,19 @@ class Layer:
 SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 LAYERS = (
     Layer(
-        "lines", 0, ASSET_COLUMNS,
+        "lines", 0, LINE_COLUMNS,
         f"""inspection_asset WHERE kind = 'line' AND {ON_GROUND} AND (
             %(zoom)s >= {ALL_VOLTAGES_ZOOM} OR max_voltage_v >= %(least_voltage_v)s
             OR (max_voltage_v IS NULL AND subtype = 'line' AND %(zoom)s >= {MEDIUM_VOLTAGE_ZOOM}))""",
         SIMPLIFIED, "geometry", "max_voltage_v DESC NULLS LAST, length_m DESC NULLS LAST",
     ),
-    Layer("railways", RAILWAY_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'railway' AND {ON_GROUND}", SIMPLIFIED, "geometry",
+    Layer("railways", RAILWAY_ZOOM, RAILWAY_COLUMNS, f"inspection_asset WHERE kind = 'railway' AND {ON_GROUND}", SIMPLIFIED, "geometry",
           "length_m DESC NULLS LAST"),
-    Layer("bridges", BRIDGE_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "geometry", "geometry", "id"),
-    Layer("bridge_points", BRIDGE_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "centre", "centre", "id"),
-    Layer("towers", TOWER_ZOOM, ASSET_COLUMNS, f"inspection_asset WHERE kind = 'tower' AND {ON_GROUND}", "centre", "centre",
-          "max_voltage_v DESC NULLS LAST, id"),
+    Layer("bridges", BRIDGE_ZOOM, BRIDGE_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "geometry", "geometry", "id"),
+    Layer("bridge_points", BRIDGE_ZOOM, BRIDGE_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "centre", "centre",
+          "id"),
+    Layer("towers", TOWER_ZOOM, TOWER_COLUMNS, f"{TOWERS} WHERE kind = 'tower' AND {ON_GROUND}", "centre", "centre",
+          f"{TOWER_VOLTAGE_V} DESC NULLS LAST, id"),
     Layer("zones", 0, ZONE_COLUMNS, "inspection_noflyzone WHERE true", "geometry", "geometry", "ST_Area(geometry) DESC"),
     Layer("zone_labels", ZONE_LABEL_ZOOM, ZONE_COLUMNS, "inspection_noflyzone WHERE true", "ST_PointOnSurface(geometry)", "geometry", "id"),
 )  # fmt: skip

@@ -11,7 +11,8 @@ from django.utils import timezone
 from inspection.geodesy.wgs84 import path_length_m
 from inspection.graph.ground_data import NO_OSM_NODE
 from inspection.models import Asset, AssetKind, NoFlyZone
-from inspection.services.ground import mark_ground_changed
+from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.supports import number_supports
 from workspace.models import User
 from workspace.services import record_change
 
@@ -43,6 +44,7 @@ def save_asset(*, asset: Asset, actor: User) -> Asset:
             f"A {kind.label.lower()} is drawn as {' or '.join(sorted(GEOMETRY_TYPES[kind]))}, not as {asset.geometry.geom_type}."
         )
     with transaction.atomic():
+        hold_ground()
         before = Asset.objects.select_for_update().filter(pk=asset.pk).first()
         asset.is_edited = True
         asset.voltages_v = sorted(set(asset.voltages_v), reverse=True)
@@ -53,6 +55,7 @@ def save_asset(*, asset: Asset, actor: User) -> Asset:
             asset.node_osm_ids = _osm_nodes(asset.geometry, before)
         asset.save()
         _record(actor, before, asset, asset_facts)
+        _number_supports_after(kind)
         mark_ground_changed()
     return asset
 
@@ -63,6 +66,7 @@ def delete_asset(*, asset: Asset, actor: User) -> None:
     One that a mission's target points at is marked as vanished instead: the target keeps its place.
     """
     with transaction.atomic():
+        hold_ground()
         kept = Asset.objects.select_for_update().get(pk=asset.pk)
         if _is_pointed_at(kept):
             before = Asset.objects.get(pk=asset.pk)
@@ -73,6 +77,7 @@ def delete_asset(*, asset: Asset, actor: User) -> None:
         else:
             _record(actor, asset, None, asset_facts)
             asset.delete()
+        _number_supports_after(AssetKind(kept.kind))
         mark_ground_changed()
 
 
@@ -96,9 +101,19 @@ def delete_zone(*, zone: NoFlyZone, actor: User) -> None:
         mark_ground_changed()
 
 
+def _number_supports_after(kind: AssetKind) -> None:
+    """A changed line or support may change which place others have."""
+    if kind in {AssetKind.LINE, AssetKind.TOWER}:
+        number_supports()
+
+
 def _is_pointed_at(asset: Asset) -> bool:
     """Whether a row of a later app, which this one does not know, points at the asset and shows it (related_name "+" does not)."""
-    pointing = [(relation.related_model, relation.field.name) for relation in Asset._meta.related_objects]
+    pointing = [
+        (relation.related_model, relation.field.name)
+        for relation in Asset._meta.related_objects
+        if relation.related_model._meta.app_label != Asset._meta.app_label
+    ]
     return any(model._base_manager.filter(**{field: asset.pk}).exists() for model, field in pointing)
 
 

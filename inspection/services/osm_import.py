@@ -19,14 +19,14 @@ from inspection.models import Asset, DataImport, ImportKind
 from inspection.osm.file_gate import OsmFileError
 from inspection.osm.reader import read_osm
 from inspection.osm.records import AssetRecord, Extent, OsmContent
-from inspection.services.ground import mark_ground_changed
+from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.supports import number_supports
 from workspace.models import User
 
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"
 SAME_SOURCE_OVERLAP = 0.5  # two files show the same region if their extents share at least half of what they cover together
 EXTENT_MARGIN_DEG = 0.01
 HANDFUL = 10  # of one subtype; so few can really all be gone, more of them missing at once were filtered out of the file
-IMPORT_LOCK = 0x05A7_0001  # advisory lock: one import at a time
 
 _COLUMNS = (
     "kind", "subtype", "osm_type", "osm_id", "geometry", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits",
@@ -97,8 +97,7 @@ def import_osm(
     if progress is not None:
         progress("writing", 0.0)
     with transaction.atomic():
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT pg_advisory_xact_lock(%s)", [IMPORT_LOCK])
+        hold_ground()
         earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic)
         sources = [row for row in earlier if _is_same_source(row.counts.get("extent"), content.extent)]
         data_import = DataImport.objects.create(
@@ -108,6 +107,8 @@ def import_osm(
         written = _write(content, data_import, sources)
         counts = content.counts | written | {"extent": content.extent}
         has_changed = any(written[key] for key in ("new", "changed", "vanished"))
+        if number_supports() or has_changed:
+            mark_ground_changed()
         known = next((row for row in earlier if row.sha256 == sha256), None)
         if known is not None and not has_changed:
             data_import.delete()
@@ -115,8 +116,6 @@ def import_osm(
             return known
         data_import.counts = counts
         data_import.save(update_fields=["counts"])
-        if has_changed:
-            mark_ground_changed()
     return data_import
 
 

@@ -11,8 +11,8 @@ from django.contrib.gis.geos import Polygon
 from django.db import connection, transaction
 
 from inspection.models import DataImport, ImportKind, NoFlyZone, ZoneSet
-from inspection.services.ground import mark_ground_changed
-from inspection.services.osm_import import IMPORT_LOCK, SYNTHETIC_ATTRIBUTION
+from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
 from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.records import ZoneRecord
 from inspection.zones.zone_file import MAX_FILE_BYTES, ZoneFileError, read_zones
@@ -51,8 +51,7 @@ def import_zones(*, path: Path, set_name: str | None = None, imported_by: User |
     content = read_zones(data)
     name = (set_name or path.stem)[:200]
     with transaction.atomic():
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT pg_advisory_xact_lock(%s)", [IMPORT_LOCK])
+        hold_ground()
         zone_set, _ = ZoneSet.objects.select_related("data_import").get_or_create(name=name)
         extent = shapely.total_bounds([zone.geometry for zone in content.zones]).tolist()
         if set_name is None and _is_elsewhere(zone_set, extent):

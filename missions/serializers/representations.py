@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from inspection.selectors import asset_label
+from inspection.selectors import asset_detail, asset_label
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
 from missions.selectors import is_stale, sketch, stale_reason
 from missions.services import FLAT_GROUND, TERRAIN_MODEL
@@ -68,6 +68,7 @@ def _target(row: InspectionTarget) -> dict[str, Any]:
     return {
         "asset": row.asset_id,
         "label": row.label if asset is None else asset_label(asset),
+        "detail": "" if asset is None else asset_detail(asset),
         "kind": None if asset is None else asset.kind,
         "position": None if at is None else list(at.coords),
         "stretch": [list(end) for end in row.stretch.coords] if row.stretch else None,

@@ -86,6 +86,7 @@ class MissionUavSerializer(serializers.Serializer):
 class MissionTargetSerializer(serializers.Serializer):
     asset = serializers.IntegerField(allow_null=True)
     label = serializers.CharField()
+    detail = serializers.CharField(help_text="the asset's second fact, as in the list of assets; may be empty")
     kind = serializers.CharField(allow_null=True)
     position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
     stretch = serializers.ListField(child=PositionField(), allow_null=True)

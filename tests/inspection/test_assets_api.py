@@ -7,7 +7,7 @@ from django.test import Client
 from django.utils import timezone
 
 from inspection.models import Asset, DataImport, GraphSnapshot, TerrainTile, ZoneSet
-from inspection.selectors import asset_label
+from inspection.selectors import asset_detail, asset_label
 from inspection.services import mark_ground_changed
 from tests.inspection.ground import bridge, line, railway, square, tower, zone
 from tests.workspace.people import client_of, somebody
@@ -41,6 +41,7 @@ def test_an_asset_is_a_geojson_feature(client: Client) -> None:
                 "kind": "line",
                 "subtype": "line",
                 "label": "Energinet 380 kV",
+                "detail": "380 kV, 110 kV",
                 "name": "",
                 "ref": "",
                 "operator": "Energinet",
@@ -155,6 +156,56 @@ def test_what_is_not_there_is_not_found(client: Client, address: str) -> None:
 )
 def test_everything_has_a_name(kind: Any, facts: dict[str, Any], label: str) -> None:
     assert asset_label(kind(**facts)) == label
+
+
+@pytest.mark.parametrize(
+    ("subtype", "of_the_line", "label", "detail"),
+    [
+        ("tower", {"operator": "AEP", "voltages_v": [138_000, 69_000]}, "Tower 18 of 41", "138 kV AEP"),
+        ("pole", {"ref": "L1", "name": "North", "operator": "AEP", "voltages_v": [12_470]}, "Pole 18 of 41", "12.47 kV L1"),
+        ("portal", {"name": "North", "operator": "AEP"}, "Portal 18 of 41", "North, voltage not stated"),
+        ("tower", {}, "Tower 18 of 41", "voltage not stated"),
+    ],
+)
+def test_a_support_is_called_by_its_place_on_its_line(subtype: str, of_the_line: dict[str, Any], label: str, detail: str) -> None:
+    asset = tower(subtype=subtype, line=line(**of_the_line), place_on_line=18, places_on_line=41)
+    assert (asset_label(asset), asset_detail(asset)) == (label, detail)
+    asset.ref = "A7"
+    assert (asset_label(asset), asset_detail(asset)) == ("A7", detail)
+
+
+@pytest.mark.parametrize(
+    ("kind", "facts", "detail"),
+    [
+        (tower, {}, ""),
+        (tower, {"operator": "AEP", "voltages_v": [138_000]}, "138 kV AEP"),
+        (line, {"operator": "AEP", "voltages_v": [138_000]}, ""),
+        (line, {"ref": "L1", "operator": "AEP", "voltages_v": [138_000, 69_000]}, "138 kV, 69 kV AEP"),
+        (line, {"ref": "L1", "operator": "AEP"}, "AEP, voltage not stated"),
+        (line, {"operator": "AEP"}, "voltage not stated"),
+        (railway, {"operator": "CSX"}, ""),
+        (railway, {"ref": "12", "name": "Buckeye Line", "operator": "CSX"}, "Buckeye Line, CSX"),
+        (bridge, {"ref": "I 270", "tags": {"highway": "motorway"}}, "carries a road"),
+        (bridge, {"tags": {"highway": "cycleway", "railway": "abandoned"}}, "carries a path"),
+        (bridge, {"tags": {"man_made": "bridge"}, "parts": [{"tags": {"railway": "rail"}}]}, "carries a railway"),
+        (bridge, {"parts": [{"tags": {"railway": "tram"}}, {"tags": {"highway": "primary"}}]}, "carries a road and a railway"),
+        (bridge, {"tags": {"waterway": "canal"}}, "carries water"),
+        (bridge, {"tags": {"man_made": "bridge"}}, ""),
+    ],
+)
+def test_a_second_fact_says_what_the_name_does_not(kind: Any, facts: dict[str, Any], detail: str) -> None:
+    assert asset_detail(kind(**facts)) == detail
+
+
+def test_a_list_reads_all_lines_of_its_supports_at_once(client: Client, django_assert_num_queries: Any) -> None:
+    for place in range(1, 6):
+        tower((10.0 + place / 100, 56.0), line=line(operator="AEP", voltages_v=[138_000]), place_on_line=place, places_on_line=9)
+    with django_assert_num_queries(3):  # session, user, assets
+        answer = client.get("/api/v1/assets?kind=tower").json()
+    names = [(feature["properties"]["label"], feature["properties"]["detail"]) for feature in answer["features"]]
+    assert names == [(f"Tower {place} of 9", "138 kV AEP") for place in range(1, 6)]
+    with django_assert_num_queries(3):
+        client.get(f"/api/v1/assets/{answer['features'][0]['id']}")
 
 
 def test_a_zone_states_facts_and_keeps_not_stated_apart_from_zero(client: Client) -> None:

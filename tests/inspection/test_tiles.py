@@ -9,7 +9,7 @@ from django.test import Client
 from django.utils import timezone
 
 from inspection.models import Ground, NoFlyZone
-from inspection.selectors import asset_label, vector_tile
+from inspection.selectors import asset_detail, asset_label, vector_tile
 from inspection.services import mark_ground_changed
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from tests.inspection.vector_tile import Feature, read_tile
@@ -48,6 +48,7 @@ def test_a_line_says_what_the_map_needs() -> None:
         "kind": "line",
         "subtype": "line",
         "label": "R1",
+        "detail": "380 kV, 12.47 kV AEP",
         "ref": "R1",
         "name": "Ring",
         "operator": "AEP",
@@ -60,7 +61,8 @@ def test_a_line_says_what_the_map_needs() -> None:
 def test_what_is_not_stated_is_absent() -> None:
     row = line(osm_id=9)
     [feature] = layers_at(14)["lines"]
-    assert feature.properties == {"id": row.pk, "kind": "line", "subtype": "line", "label": "Line w9", "flyable": True}
+    stated = {"id": row.pk, "kind": "line", "subtype": "line", "label": "Line w9", "flyable": True}
+    assert feature.properties == stated | {"detail": "voltage not stated"}
 
 
 @pytest.mark.parametrize(
@@ -68,25 +70,56 @@ def test_what_is_not_stated_is_absent() -> None:
     [
         (tower, {"ref": "18", "name": "Big"}),
         (tower, {"name": "Big"}),
+        (tower, {"ref": "18", "operator": "AEP", "voltages_v": [138_000]}),
+        (tower, {"ref": "AEP", "operator": "AEP"}),
         (tower, {}),
         (tower, {"subtype": "pole"}),
         (tower, {"subtype": "portal", "osm_id": None, "osm_type": ""}),
         (line, {"operator": "AEP", "voltages_v": [138_000]}),
         (line, {"voltages_v": [12_470]}),
         (line, {"operator": "AEP"}),
+        (line, {"operator": "AEP", "voltages_v": [138_000, 69_000]}),
+        (line, {"ref": "L1", "operator": "AEP"}),
+        (line, {"name": "AEP", "operator": "AEP"}),
+        (line, {"ref": "L1", "name": "North", "voltages_v": [138_000, 69_000]}),
         (line, {"subtype": "minor_line"}),
         (line, {"subtype": "cable"}),
         (railway, {"operator": "CSX"}),
+        (railway, {"ref": "12", "name": "Buckeye Line", "operator": "CSX"}),
+        (railway, {"name": "Buckeye Line", "operator": "CSX"}),
+        (railway, {"name": "CSX", "operator": "CSX"}),
         (railway, {"subtype": "tram"}),
         (railway, {"subtype": "subway"}),
         (railway, {"subtype": "light_rail"}),
         (bridge, {}),
+        (bridge, {"tags": {"railway": "rail"}}),
     ],
 )
 def test_the_map_and_the_api_call_an_asset_alike(kind: Any, facts: dict[str, Any]) -> None:
     asset = kind(**facts)
     [feature, *_] = [feature for features in layers_at(14).values() for feature in features]
     assert feature.properties["label"] == asset_label(asset)
+    assert feature.properties.get("detail", "") == asset_detail(asset)
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [
+        {"operator": "AEP", "voltages_v": [138_000, 69_000]},
+        {"ref": "L1", "name": "North", "operator": "AEP", "voltages_v": [138_000]},
+        {"operator": "AEP"},
+        {},
+    ],
+)
+def test_the_map_and_the_api_call_a_support_of_a_line_alike(facts: dict[str, Any]) -> None:
+    asset = tower(line=line((11.0, 56.0), (11.1, 56.0), **facts), place_on_line=18, places_on_line=41)
+    [feature] = layers_at(14)["towers"]
+    assert (feature.properties["label"], feature.properties["detail"]) == (asset_label(asset), asset_detail(asset))
+
+
+def test_a_tower_has_the_voltage_of_its_line() -> None:
+    tower(line=line(voltages_v=[345_000, 138_000]), place_on_line=1, places_on_line=1, voltages_v=[138_000])
+    assert layers_at(10)["towers"][0].properties["voltage"] == 345
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { basisOf, EMPTY, keyOf, requestOf, selectionOf, targetOf, withoutTargets, withTargets, withUav, withUavAt } from "../../static/js/mission/selection.js";
+import { basisOf, detailOf, EMPTY, keyOf, nameOf, requestOf, selectionOf, targetOf, withoutTargets, withTargets, withUav, withUavAt } from "../../static/js/mission/selection.js";
 
-const tower = targetOf({ id: 7, kind: "tower", properties: { label: "18", voltages: "138 kV" }, centre: [10, 50] });
-const wholeLine = targetOf({ id: 9, kind: "line", properties: { label: "North" }, centre: [10, 50] });
-const pointOnLine = targetOf({ id: 9, kind: "line", properties: { label: "North" }, position: [10.5, 50.5] });
+const tower = targetOf({ id: 7, kind: "tower", properties: { label: "Tower 18 of 41", detail: "138 kV AEP" }, centre: [10, 50] });
+const wholeLine = targetOf({ id: 9, kind: "line", properties: { label: "North", detail: "voltage not stated" }, centre: [10, 50] });
+const pointOnLine = targetOf({ id: 9, kind: "line", properties: { label: "North", detail: "voltage not stated" }, position: [10.5, 50.5] });
 const heron = { id: 3, name: "Heron", base_name: "West", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" };
 
 test("the same thing is picked once, a line and a point on it are two", () => {
@@ -37,15 +37,25 @@ test("a stored mission opens as it was picked", () => {
     objective: "total", return_to_start: false,
     uavs: [{ id: 3, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" }],
     targets: [
-      { asset: 7, label: "18", kind: "tower", position: [10, 50], is_point: false, stretch: null, task: null },
-      { asset: 9, label: "North", kind: "line", position: [10, 50], is_point: false, stretch: null, task: null },
-      { asset: 9, label: "North", kind: "line", position: [10.5, 50.5], is_point: true, stretch: null, task: null },
-      { asset: null, label: "Place", kind: null, position: [11, 51], is_point: true, stretch: null, task: null },
+      { asset: 7, label: "Tower 18 of 41", detail: "138 kV AEP", kind: "tower", position: [10, 50], is_point: false, stretch: null, task: null },
+      { asset: 9, label: "North", detail: "voltage not stated", kind: "line", position: [10, 50], is_point: false, stretch: null, task: null },
+      { asset: 9, label: "North", detail: "voltage not stated", kind: "line", position: [10.5, 50.5], is_point: true, stretch: null, task: null },
+      { asset: null, label: "Place", detail: "", kind: null, position: [11, 51], is_point: true, stretch: null, task: null },
     ],
   };
   const selection = selectionOf(mission);
   assert.deepEqual(requestOf(selection).targets, [{ asset: 7 }, { asset: 9 }, { asset: 9, position: [10.5, 50.5] }, { position: [11, 51] }]);
+  assert.deepEqual(selection.targets.map(({ label, detail }) => [label, detail]).slice(0, 3), [tower, wholeLine, pointOnLine].map(({ label, detail }) => [label, detail]));
   assert.deepEqual(selection.targets.map(({ centre }) => centre), [[10, 50], [10, 50], [10.5, 50.5], [11, 51]]);
+});
+
+test("a row's second fact says how much of a line is picked, then what the server says", () => {
+  assert.deepEqual([tower, wholeLine, pointOnLine].map(({ detail }) => detail), ["138 kV AEP", "whole line · voltage not stated", "one point · voltage not stated"]);
+  assert.equal(detailOf("railway", "CSX"), "whole track · CSX");
+  assert.equal(detailOf("line", ""), "whole line");
+  assert.equal(detailOf("bridge", undefined), "");
+  assert.equal(nameOf(tower), "Tower 18 of 41, 138 kV AEP");
+  assert.equal(nameOf({ label: "Place", detail: "" }), "Place");
 });
 
 test("a key names asset and place", () => {

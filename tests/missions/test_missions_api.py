@@ -11,6 +11,7 @@ from django.db import connections
 from django.test import Client
 
 from inspection.services import mark_ground_changed
+from inspection.services.supports import number_supports
 from missions import tasks
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan
@@ -48,6 +49,23 @@ def test_a_mission_is_created_planned_and_found_again(here: World, client: Clien
     assert (mission["name"], mission["state"], mission["is_stale"]) == ("Bexley spring", "planned", False)
     assert [target["unassigned_reason"] for target in mission["targets"]] == ["", "", "too_far_from_network"]
     assert [target["kind"] for target in mission["targets"]] == ["tower", "line", None]
+
+
+def test_a_reopened_mission_names_its_targets_as_the_list_of_assets_does(client: Client, django_assert_num_queries: Any) -> None:
+    here = world()
+    here.line.operator = "AEP"
+    here.line.save()
+    number_supports()
+    targets = [*here.towers, here.line, here.bridge, {"position": [10.0, 56.3]}]
+    mission = post(client, "missions", mission_body(*targets)).json()
+    with django_assert_num_queries(8):  # session, user, organisation, mission, UAVs, targets, routes, ground
+        opened = client.get(f"/api/v1/missions/{mission['id']}").json()
+    names = [(target["label"], target["detail"]) for target in opened["targets"]]
+    assert names[:6] == [(f"Tower {place} of 6", "110 kV AEP") for place in range(1, 7)]
+    for asset, name in zip([*here.towers, here.line, here.bridge], names, strict=False):
+        properties = client.get(f"/api/v1/assets/{asset.pk}").json()["properties"]
+        assert name == (properties["label"], properties["detail"])
+    assert names[-1][1] == ""
 
 
 def test_a_stored_plan_equals_the_plan_that_the_planner_answers(here: World, client: Client) -> None:

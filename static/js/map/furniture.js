@@ -139,11 +139,10 @@ export function tipOf({ kind, properties }) {
       properties.reason && h("div", { class: "quiet-text" }, properties.reason),
     ].filter(Boolean);
   }
-  const facts = [properties.voltages, properties.operator].filter(Boolean).join(" · ");
   return [
     h("strong", {}, properties.label),
     h("div", {}, KIND_WORDS[properties.subtype] ?? KIND_WORDS[kind]),
-    facts && h("div", { class: "quiet-text" }, facts),
+    properties.detail && h("div", { class: "quiet-text" }, properties.detail),
     properties.flyable === false && h("div", { class: "quiet-text" }, "Not part of the flying network"),
   ].filter(Boolean);
 }

@@ -4,12 +4,12 @@ const NOTHING = { type: "FeatureCollection", features: [] };
 export const TILES = "ground-tiles";
 
 /** Layers that a click or the pointer can meet, in the order of picking. */
-export const PICKABLE = ["towers", "towers-ring", "bridges-fill", "bridges", "bridge-points", "railways", "lines", "lines-unknown", "zones-fill"];
+export const PICKABLE = ["towers", "towers-high", "towers-ring", "bridges-fill", "bridges", "bridge-points", "railways", "lines", "lines-unknown", "zones-fill"];
 
 /** What the layers menu switches: words, and the layers behind them. */
 export const GROUPS = [
   { name: "Power lines", layers: ["lines-casing", "lines", "lines-unknown", "line-labels"] },
-  { name: "Towers", layers: ["towers", "towers-ring", "tower-labels"] },
+  { name: "Towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels"] },
   { name: "Railways", layers: ["railways", "railways-ties"] },
   { name: "Bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
   { name: "No-fly zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zone-labels"] },
@@ -86,6 +86,7 @@ export function mapStyle(palette, options) {
 function infrastructureLayers(palette) {
   const tiles = (id, type, sourceLayer, rest) => ({ id, type, source: TILES, "source-layer": sourceLayer, ...rest });
   const round = { "line-cap": "round", "line-join": "round" };
+  const towerDot = { "circle-color": palette.tower, "circle-radius": ["case", isPole, 0.8, 1.2] };
   const lineColour = byVoltage(palette.voltUnknown, palette.volt20, palette.volt66, palette.volt132, palette.volt220, palette.volt400);
   return [
     tiles("zones-fill", "fill", "zones", { paint: { "fill-color": palette.zone, "fill-opacity": palette.isDark ? 0.08 : 0.07 } }),
@@ -114,11 +115,8 @@ function infrastructureLayers(palette) {
       paint: { "line-color": palette.voltUnknown, "line-width": lineWidth(), "line-dasharray": [4, 2] },
     }),
     tiles("lines", "line", "lines", { filter: ["has", "voltage"], layout: round, paint: { "line-color": lineColour, "line-width": lineWidth() } }),
-    tiles("towers", "circle", "towers", {
-      minzoom: 10,
-      maxzoom: 12.6,
-      paint: { "circle-color": palette.tower, "circle-radius": ["case", isPole, 0.8, 1.2] },
-    }),
+    tiles("towers-high", "circle", "towers", { minzoom: 10, maxzoom: 10.6, filter: [">=", voltage, 200], paint: towerDot }),
+    tiles("towers", "circle", "towers", { minzoom: 10.6, maxzoom: 12.6, paint: towerDot }),
     tiles("towers-ring", "circle", "towers", {
       minzoom: 12.6,
       paint: {

@@ -14,7 +14,7 @@ import { onTheme } from "../page/theme.js";
 import { toast } from "../page/toast.js";
 import { isPlanCurrent, placesOf, routesOf } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
-import { isWhole, targetOf } from "./selection.js";
+import { isWhole, nameOf, targetOf } from "./selection.js";
 
 const UNDER_KEY = "spanwise.base-map";
 
@@ -103,8 +103,8 @@ export function mountMap(store, actions, page, { askForUav }) {
     };
     choice = h(
       "div",
-      { class: "map-choice float", role: "group", "aria-label": thing.properties.label },
-      h("p", { class: "caption" }, thing.properties.label),
+      { class: "map-choice float", role: "group", "aria-label": nameOf(thing.properties) },
+      h("p", { class: "caption" }, nameOf(thing.properties)),
       h("button", { type: "button", onclick: pick(null) }, icon(thing.kind), "Whole line"),
       h("button", { type: "button", onclick: pick(place) }, icon("map-pin"), "This point"),
     );
@@ -179,7 +179,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     const pills = state.selection.targets
       .map((target, index) => {
         const place = places.get(target.key);
-        return { key: target.key, name: target.label, position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1 };
+        return { key: target.key, name: nameOf(target), position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1 };
       })
       .filter((pill) => pill.position);
     targets.update(pills);

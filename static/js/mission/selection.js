@@ -10,26 +10,21 @@ export function keyOf({ asset, position, stretch }) {
 
 /** A target from an asset feature of the API or a tile. `position` makes it one point of a line or railway. */
 export function targetOf({ id, kind, properties, centre = null, position = null, stretch = null, task = null }) {
-  const target = { asset: id, kind, label: properties.label || kind, detail: detailOf(kind, properties, position), position, stretch, centre: position ?? centre, task };
+  const target = { asset: id, kind, label: properties.label || kind, detail: detailOf(kind, properties.detail, position), position, stretch, centre: position ?? centre, task };
   return { key: keyOf(target), ...target };
 }
 
-export function voltageWords(properties) {
-  if (properties.voltages) return properties.voltages;
-  if (properties.voltages_v?.length) return properties.voltages_v.map((volts) => `${volts / 1000} kV`).join(", ");
-  return "";
+const WHOLE = { line: "whole line", railway: "whole track" };
+
+/** The second fact of a row, in secondary ink: how much of a line or track is picked, then what the server says of the asset. */
+export function detailOf(kind, detail, position = null) {
+  const extent = WHOLE[kind] && (position ? "one point" : WHOLE[kind]);
+  return [extent, detail].filter(Boolean).join(" · ");
 }
 
-const wholeWords = (kind) => (kind === "line" ? "whole line" : "whole track");
-
-/** The second fact of a row, in secondary ink. */
-export function detailOf(kind, properties, position = null) {
-  const facts = [];
-  if (kind === "line") facts.push(position ? "one point" : wholeWords(kind), voltageWords(properties) || "voltage not stated");
-  else if (kind === "railway") facts.push(position ? "one point" : wholeWords(kind));
-  else if (kind === "tower") facts.push(voltageWords(properties));
-  if (properties.operator && properties.operator !== properties.label) facts.push(properties.operator);
-  return facts.filter((fact) => fact && !properties.label?.includes(fact)).join(" · ");
+/** Label and second fact in one, of a target or of an asset's properties. */
+export function nameOf({ label, detail }) {
+  return detail ? `${label}, ${detail}` : label;
 }
 
 export function isWhole(target) {
@@ -96,10 +91,9 @@ export function selectionOf(mission, fleet = []) {
     targets: mission.targets.map((target) => {
       const position = target.is_point || target.asset === null ? target.position : null;
       const made = {
-        asset: target.asset, kind: target.kind ?? "place", label: target.label, detail: "", position,
+        asset: target.asset, kind: target.kind ?? "place", label: target.label, detail: detailOf(target.kind, target.detail, position), position,
         stretch: target.stretch ?? null, centre: target.position, task: target.task ?? null,
       };
-      if (made.kind === "line" || made.kind === "railway") made.detail = position ? "one point" : wholeWords(made.kind);
       return { key: keyOf(made), ...made };
     }),
     uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),

@@ -17,7 +17,7 @@ export function createTargets(map, { onPick, onHover }) {
   function elementOf(group) {
     const [first] = group.members;
     const label = mergedLabel(first.letter, group.members.map((pill) => pill.number));
-    const names = group.members.slice(0, MOST_NAMES).map((pill) => pill.name).join(", ");
+    const names = group.members.slice(0, MOST_NAMES).map((pill) => pill.name).join("; ");
     const element = h(
       "button",
       {

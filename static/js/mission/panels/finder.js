@@ -2,7 +2,6 @@
 
 import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
-import { voltageWords } from "../selection.js";
 
 const WAIT_MS = 180;
 const MOST = 12;
@@ -32,13 +31,12 @@ export function mountFinder({ box, show, add, canPlan }) {
   }
 
   function option(feature, index) {
-    const { kind, label, operator } = feature.properties;
-    const facts = [voltageWords(feature.properties), operator !== label ? operator : ""].filter((fact) => fact && !label.includes(fact)).join(" · ");
+    const { kind, label, detail } = feature.properties;
     return h(
       "div",
       { role: "option", id: `found-${index}`, "aria-selected": String(index === active), onpointerdown: (event) => event.preventDefault(), onclick: () => take(index), onpointerenter: () => activate(index, false) },
       icon(kind),
-      h("span", { class: "what" }, label, " ", h("span", {}, facts)),
+      h("span", { class: "what" }, label, " ", h("span", {}, detail)),
       h("span", { class: "end" }, canPlan ? "Add" : "Show"),
     );
   }

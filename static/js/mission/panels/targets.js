@@ -3,6 +3,7 @@
 import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { inPlanOrder, isPlanCurrent, placesOf, unreachedOf } from "../plan_view.js";
+import { nameOf } from "../selection.js";
 
 const SHOWN_FIRST = 40;
 const ICONS = { tower: "tower", line: "line", railway: "railway", bridge: "bridge", place: "map-pin" };
@@ -54,7 +55,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       pill.textContent = place ? `${place.letter}${place.number}` : missed.has(target.key) ? "×" : `${index + 1}`;
       pill.setAttribute("aria-label", place ? `Target ${place.number} of UAV ${place.letter}` : missed.has(target.key) ? "Not reached" : "Not planned yet");
       row.querySelector("small").textContent = target.detail;
-      row.querySelector(".what").title = [target.label, target.detail].filter(Boolean).join(", ");
+      row.querySelector(".what").title = nameOf(target);
       row.classList.toggle("chosen", chosenTarget === target.key);
     },
   );

@@ -1,0 +1,42 @@
+"""Which line a support carries, and as which of its supports: what a tower without a name is called by."""
+
+from django.db import connection
+
+# A line that comes by the same support twice counts it once, where it comes first. A support that has vanished keeps what it was:
+# missions still name it.
+_NUMBER = """
+WITH carried AS (
+    SELECT l.id AS line_id, l.max_voltage_v, s.id AS support_id, min(node.vertex) AS vertex
+    FROM inspection_asset l
+    CROSS JOIN LATERAL unnest(l.node_osm_ids) WITH ORDINALITY AS node(osm_id, vertex)
+    JOIN inspection_asset s ON s.kind = 'tower' AND s.osm_type = 'n' AND s.osm_id = node.osm_id AND s.vanished_at IS NULL
+    WHERE l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL
+    GROUP BY l.id, s.id
+), numbered AS (
+    SELECT line_id, max_voltage_v, support_id, row_number() OVER (PARTITION BY line_id ORDER BY vertex) AS place,
+           count(*) OVER (PARTITION BY line_id) AS places
+    FROM carried
+), chosen AS (
+    SELECT DISTINCT ON (support_id) support_id, line_id, place::smallint AS place, places::smallint AS places
+    FROM numbered ORDER BY support_id, max_voltage_v DESC NULLS LAST, line_id
+)
+UPDATE inspection_asset a
+SET line_id = found.line_id, place_on_line = found.place, places_on_line = found.places
+FROM (
+    SELECT s.id, c.line_id, c.place, c.places
+    FROM inspection_asset s LEFT JOIN chosen c ON c.support_id = s.id
+    WHERE s.kind = 'tower' AND s.vanished_at IS NULL
+) found
+WHERE a.id = found.id AND (a.line_id, a.place_on_line, a.places_on_line) IS DISTINCT FROM (found.line_id, found.place, found.places)
+"""
+
+
+def number_supports() -> int:
+    """Bring line, place and number of places of every support up to date; return how many rows were not.
+
+    Call it in the transaction that changed supports or lines, under hold_ground. It writes only rows that differ, and of these neither
+    `updated_at` nor what makes a row count as edited.
+    """
+    with connection.cursor() as cursor:
+        cursor.execute(_NUMBER)
+        return int(cursor.rowcount)
