@@ -15,6 +15,7 @@ from rest_framework.views import APIView
 from inspection import selectors, serializers
 from inspection.models import Asset, AssetKind, NoFlyZone
 from inspection.selectors import Box, NoSuchTile
+from inspection.selectors.asset_search import BEST_FIRST, with_match_rank
 from workspace.errors import ApiProblem
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
@@ -64,14 +65,15 @@ class AssetList(APIView):
         parameters=[
             BOX,
             OpenApiParameter("kind", str, description=f"one or several of {', '.join(AssetKind.values)}, with commas"),
-            OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123'),
+            OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
             *PAGE_PARAMETERS,
         ],
         responses=serializers.AssetCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
-        assets = selectors.assets_on_the_ground(box=_box(request), kinds=_kinds(request), text=_text(request))
-        page = page_of(request, assets.only(*serializers.FIELDS_OF_AN_ASSET))
+        text = _text(request)
+        assets = selectors.assets_on_the_ground(box=_box(request), kinds=_kinds(request), text=text).only(*serializers.FIELDS_OF_AN_ASSET)
+        page = page_of(request, with_match_rank(assets, text=text), order=BEST_FIRST) if text else page_of(request, assets)
         features = [serializers.asset_feature(asset) for asset in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 

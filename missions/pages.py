@@ -10,7 +10,9 @@ from django.core.exceptions import ValidationError
 from django.http import Http404
 from django.views.generic import TemplateView
 
+from inspection.selectors import ground_extent
 from missions.models import Mission
+from missions.selectors import mission_bounds
 from workspace.models import User
 from workspace.sign_in_attempts import address_of, count_failure, forget_failures, is_locked
 
@@ -50,7 +52,7 @@ class _SignedInPage(LoginRequiredMixin, TemplateView):
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
         assert isinstance(user, User)  # noqa: S101 (LoginRequiredMixin lets nobody else in)
-        page = {"user": user.get_full_name() or user.username, "role": user.role, "canPlan": user.can_plan} | self.page(**kwargs)
+        page = {"userId": user.pk, "userName": user.username, "role": user.role, "canPlan": user.can_plan} | self.page(**kwargs)
         return super().get_context_data(**kwargs) | {"page": page}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
@@ -74,6 +76,8 @@ class MissionPage(_SignedInPage):
             raise Http404
         return {
             "mission": str(mission_id) if mission_id else None,
+            "extent": ground_extent(),
+            "bounds": mission_bounds(mission_id) if mission_id else None,
             "baseMap": {"tiles": settings.BASE_MAP_TILES, "attribution": settings.BASE_MAP_ATTRIBUTION},
             "satellite": {"tiles": settings.SATELLITE_TILES, "attribution": settings.SATELLITE_ATTRIBUTION},
         }

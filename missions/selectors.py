@@ -3,12 +3,13 @@
 from uuid import UUID
 
 import numpy as np
+from django.contrib.gis.db.models import Extent
 from django.db.models import Count, Max, Prefetch, Q, QuerySet
 
 from inspection.models import Asset
 from inspection.selectors import UNREAD_OF_A_LINE, ground_revision, zones_in_force
 from missions.flight_plan.clearance import legs_that_meet
-from missions.models import InspectionTarget, Mission, MissionState, Route, Uav, Waypoint
+from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route, Uav, Waypoint
 from workspace.models import AuditEntry, Organisation
 
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
@@ -82,6 +83,21 @@ def stale_reason(mission: Mission) -> str:
 
 def _passed_assets(mission: Mission) -> set[int]:
     return {waypoint.asset_id for route in mission.routes.all() for waypoint in route.waypoints.all() if waypoint.asset_id is not None}
+
+
+def mission_bounds(mission_id: UUID) -> tuple[float, float, float, float] | None:
+    """West, south, east, north of what a mission's map shows first: targets and routes, or without routes the places where UAVs stand."""
+    targets = InspectionTarget.objects.filter(mission=mission_id).order_by()
+    of_targets = targets.aggregate(
+        points=Extent("position"), stretches=Extent("stretch"), assets=Extent("asset__centre", filter=Q(position=None, stretch=None))
+    )
+    routes = Route.objects.filter(mission=mission_id).order_by().aggregate(extent=Extent("geometry"))["extent"]
+    starts = None if routes else MissionUav.objects.filter(mission=mission_id).order_by().aggregate(extent=Extent("start"))["extent"]
+    boxes = [box for box in (*of_targets.values(), routes, starts) if box]
+    if not boxes:
+        return None
+    west, south, east, north = zip(*boxes, strict=True)
+    return min(west), min(south), max(east), max(north)
 
 
 def sketch(mission: Mission) -> list[list[list[float]]]:

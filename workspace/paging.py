@@ -22,16 +22,19 @@ class Page:
 def page_of(
     request: Request, queryset: QuerySet[Any], *, order: tuple[str, ...] = ("pk",), default_limit: int = 100, max_limit: int = 1000
 ) -> Page:
-    """The page that `?limit=` and `?cursor=` ask for. `order` names model fields ("-" for descending); the last one must be unique."""
+    """The page that `?limit=` and `?cursor=` ask for.
+
+    `order` names model fields or annotations ("-" for descending); the last one must be unique.
+    """
     limit = _limit(request, default_limit, max_limit)
     if cursor := request.query_params.get("cursor"):
-        queryset = queryset.filter(_rows_after(queryset.model, order, cursor))
+        queryset = queryset.filter(_rows_after(queryset, order, cursor))
     rows = list(queryset.order_by(*order)[: limit + 1])
     if len(rows) <= limit:
         return Page(rows, None)
     rows = rows[:limit]
     query = request.query_params.copy()
-    query["cursor"] = _cursor_of(rows[-1], order)
+    query["cursor"] = _cursor_of(queryset, rows[-1], order)
     return Page(rows, f"{request.path}?{query.urlencode()}")
 
 
@@ -44,21 +47,26 @@ def _limit(request: Request, default_limit: int, max_limit: int) -> int:
     return min(int(text), max_limit)
 
 
-def _field(model: type[Model], name: str) -> Any:
+def _field(queryset: QuerySet[Any], name: str) -> Any:
     name = name.removeprefix("-")
-    return model._meta.pk if name == "pk" else model._meta.get_field(name)
+    if annotation := queryset.query.annotations.get(name):
+        return annotation.output_field
+    return queryset.model._meta.pk if name == "pk" else queryset.model._meta.get_field(name)
 
 
-def _cursor_of(row: Model, order: tuple[str, ...]) -> str:
-    values = [_field(type(row), name).value_to_string(row) for name in order]
+def _cursor_of(queryset: QuerySet[Any], row: Model, order: tuple[str, ...]) -> str:
+    values = []
+    for name in order:
+        field = _field(queryset, name)
+        values.append(str(getattr(row, name.removeprefix("-"))) if field.name is None else field.value_to_string(row))
     return base64.urlsafe_b64encode(json.dumps(values).encode()).decode().rstrip("=")
 
 
-def _rows_after(model: type[Model], order: tuple[str, ...], cursor: str) -> Q:
+def _rows_after(queryset: QuerySet[Any], order: tuple[str, ...], cursor: str) -> Q:
     """(a, b) > (x, y) written as a > x or (a = x and b > y), each column in its own direction."""
     try:
         texts = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
-        values = [_field(model, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]
+        values = [_field(queryset, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]
     except (binascii.Error, ValueError, TypeError, OverflowError, RecursionError, DjangoValidationError) as error:
         raise ApiProblem(400, "invalid_cursor", "The cursor is not one that this address gave.") from error
     after = Q()

@@ -11,7 +11,7 @@ from inspection.selectors.assets import (
     zones,
 )
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
-from inspection.selectors.ground import GroundSummary, ground_edition, ground_revision, ground_summary
+from inspection.selectors.ground import GroundSummary, ground_edition, ground_extent, ground_revision, ground_summary
 from inspection.selectors.terrain import ground_heights_m, has_terrain
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
 from inspection.selectors.tiles import NoSuchTile, vector_tile
@@ -30,6 +30,7 @@ __all__ = [
     "current_graph",
     "graph_of_version",
     "ground_edition",
+    "ground_extent",
     "ground_heights_m",
     "ground_revision",
     "ground_summary",

@@ -8,12 +8,16 @@ from django.db.models import Count, Exists, OuterRef, Q
 
 from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Ground, NoFlyZone, TerrainTile, ZoneSet
 
+Extent_deg = tuple[float, float, float, float]  # west, south, east, north
+
+_extent: tuple[tuple[int, datetime | None], Extent_deg | None] | None = None
+
 
 @dataclass(frozen=True)
 class GroundSummary:
     revision: int
     graph: GraphSnapshot | None  # the newest one, without its arrays
-    extent: tuple[float, float, float, float] | None  # west, south, east, north of all assets
+    extent: Extent_deg | None  # of all assets
     counts: dict[str, int]  # by asset kind, and of zones
     attribution: list[str]
     is_synthetic: bool
@@ -33,6 +37,17 @@ def ground_edition() -> tuple[int, datetime | None]:
     return Ground.objects.values_list("revision", "changed_at").first() or (0, None)
 
 
+def ground_extent() -> Extent_deg | None:
+    """West, south, east, north of all assets. Costs one small query until the ground changes."""
+    global _extent
+    edition = ground_edition()
+    remembered = _extent
+    if remembered is None or remembered[0] != edition or edition[1] is None:  # a ground without an edition has never been marked as changed
+        extent = Asset.objects.filter(vanished_at=None).aggregate(extent=Extent("centre"))["extent"]
+        _extent = remembered = edition, extent
+    return remembered[1]
+
+
 def ground_summary() -> GroundSummary:
     assets = Asset.objects.filter(vanished_at=None)
     by_kind = dict(assets.order_by().values_list("kind").annotate(Count("pk")))
@@ -40,7 +55,7 @@ def ground_summary() -> GroundSummary:
     return GroundSummary(
         revision=ground_revision(),
         graph=GraphSnapshot.objects.defer("arrays").first(),
-        extent=assets.aggregate(extent=Extent("centre"))["extent"],
+        extent=ground_extent(),
         counts={kind.value: by_kind.get(kind.value, 0) for kind in AssetKind} | {"zone": NoFlyZone.objects.count()},
         attribution=sorted({source.attribution for source in sources if source.attribution}),
         is_synthetic=any(source.is_synthetic for source in sources),

@@ -8,7 +8,7 @@ from django.db import connection
 from inspection.selectors.assets import VOLTAGE_NOT_STATED
 
 DEEPEST_ZOOM = 22
-RECIPE = 2  # part of the ETag: counts the changes to this file's statements
+RECIPE = 3  # part of the ETag: counts the changes to this file's statements
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
@@ -47,7 +47,8 @@ def _asset_columns(detail: str, voltage_v: str = "max_voltage_v") -> str:
     return f"""
         id AS feature_id, id, kind, NULLIF(subtype, '') AS subtype, {LABEL} AS label, {detail} AS detail,
         NULLIF(ref, '') AS ref, NULLIF(name, '') AS name, NULLIF(operator, '') AS operator, is_flyable AS flyable,
-        ({voltage_v} / 1000.0)::float8 AS voltage, {VOLTAGES_TEXT} AS voltages
+        ({voltage_v} / 1000.0)::float8 AS voltage, {VOLTAGES_TEXT} AS voltages,
+        CASE WHEN kind IN ('line', 'railway') THEN ROUND(length_m)::int END AS length_m
     """
 
 
@@ -73,7 +74,8 @@ TOWERS = """inspection_asset LEFT JOIN (
 ) line ON own_id = line_id"""
 ZONE_COLUMNS = """
     id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
-    lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference
+    lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference,
+    (ST_XMax(geometry) - ST_XMin(geometry))::float8 AS width_deg
 """
 ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
 

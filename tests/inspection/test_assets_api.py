@@ -106,6 +106,38 @@ def test_text_that_nothing_matches_finds_nothing(client: Client, text: str) -> N
     assert found(client, f"text={text}") == []
 
 
+def named_h133() -> list[int]:
+    """Supports first, as an import stores them; the ids in the order in which a search for their line has them."""
+    supports = [tower((10.0 + index / 100, 56.0), ref=f"H133-{index}").pk for index in range(3)]
+    exact_tower = tower(name="h133").pk
+    branch = line(ref="H133-B").pk
+    return [line(ref="H133").pk, bridge(name="H133").pk, exact_tower, branch, *supports]
+
+
+def test_what_is_called_exactly_so_comes_first_and_lines_before_their_supports(client: Client) -> None:
+    expected = named_h133()
+    assert found(client, "text=H133") == expected
+    assert found(client, "text=H133&kind=tower") == [pk for pk in expected if pk not in {expected[0], expected[1], expected[3]}]
+
+
+def test_pages_of_a_search_follow_one_another_in_the_order_of_matches(client: Client) -> None:
+    expected = named_h133()
+    for limit in (1, 2, 3):
+        seen, address = [], f"/api/v1/assets?text=H133&limit={limit}"
+        while address:
+            page = client.get(address).json()
+            seen += [feature["id"] for feature in page["features"]]
+            address = page["next"]
+        assert seen == expected
+
+
+def test_a_cursor_of_a_list_is_refused_by_a_search(client: Client) -> None:
+    named_h133()
+    address = client.get("/api/v1/assets?limit=1").json()["next"]
+    answer = client.get(f"{address}&text=H133")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (400, "invalid_cursor")
+
+
 def test_pages_follow_one_another(client: Client) -> None:
     towers = [tower((10.0 + index / 100, 56.0)).pk for index in range(5)]
     line()

@@ -55,6 +55,7 @@ def test_a_line_says_what_the_map_needs() -> None:
         "flyable": True,
         "voltage": 380,
         "voltages": "380 kV, 12.47 kV",
+        "length_m": 1500,
     }
 
 
@@ -62,7 +63,7 @@ def test_what_is_not_stated_is_absent() -> None:
     row = line(osm_id=9)
     [feature] = layers_at(14)["lines"]
     stated = {"id": row.pk, "kind": "line", "subtype": "line", "label": "Line w9", "flyable": True}
-    assert feature.properties == stated | {"detail": "voltage not stated"}
+    assert feature.properties == stated | {"detail": "voltage not stated", "length_m": 1500}
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,9 @@ from django.test import Client
 from django.urls import reverse
 from redis.exceptions import ConnectionError as RedisAway
 
-from missions.models import Mission, Uav
+from inspection.services import mark_ground_changed
+from missions.models import InspectionTarget, Mission, MissionUav, Uav
+from tests.inspection.ground import tower
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -79,6 +81,20 @@ def test_nothing_of_the_organisation_is_written_into_the_page(client: Client, op
     Uav.objects.create(name="Secret Heron", location=Point(10, 50, srid=4326), organisation=operator.organisation)
     client.force_login(operator)
     assert "Secret Heron" not in client.get("/missions/new").content.decode()
+
+
+def test_the_map_knows_where_to_open_before_its_first_request(client: Client, operator: User) -> None:
+    asset, far = tower((10.0, 56.0)), tower((10.5, 56.5))
+    mark_ground_changed()
+    mission = Mission.objects.create(name="Ours", organisation=operator.organisation)
+    client.force_login(operator)
+    page = client.get(f"/missions/{mission.pk}").context["page"]
+    assert (page["extent"], page["bounds"]) == ((10.0, 56.0, 10.5, 56.5), None)
+    MissionUav.objects.create(mission=mission, sequence=0, name="Heron", start=Point(10.2, 56.3, srid=4326), cruise_speed_mps=12)
+    InspectionTarget.objects.create(mission=mission, sequence=0, asset=asset, label="1")
+    InspectionTarget.objects.create(mission=mission, sequence=1, asset=far, label="2", position=Point(10.1, 56.1, srid=4326))
+    assert client.get(f"/missions/{mission.pk}").context["page"]["bounds"] == (10.0, 56.0, 10.2, 56.3)
+    assert client.get("/missions/new").context["page"]["bounds"] is None
 
 
 def test_a_name_with_markup_is_text(client: Client) -> None:
