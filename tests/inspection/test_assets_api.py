@@ -90,12 +90,12 @@ def test_kinds_can_be_chosen(client: Client) -> None:
 
 @pytest.mark.parametrize(
     ("text", "expected"),
-    [("north", "North ring"), ("RING", "North ring"), ("138 kV", "A-138"), ("138kv aep", "A-138"), ("12.47 kV", "L1"), ("w77", "L1")],
+    [("north", "North ring"), ("RING", "North ring"), ("138 kV", "A-138"), ("138kv aep", "A-138"), ("12.47 kV", "L1"), ("w7000077", "L1")],
 )
 def test_text_finds_name_ref_operator_voltage_and_osm_id(client: Client, text: str, expected: str) -> None:
     line(name="North ring", voltages_v=[69_000])
     line(ref="A-138", operator="AEP Ohio", voltages_v=[345_000, 138_000])
-    line(ref="L1", osm_id=77, voltages_v=[12_470])
+    line(ref="L1", osm_id=7_000_077, voltages_v=[12_470])
     [asset_id] = found(client, f"text={text}")
     assert asset_label(Asset.objects.get(pk=asset_id)) == expected
 
