@@ -55,6 +55,11 @@ def targets(page: Page) -> list[str]:
     return page.locator("#target-list .what span").all_text_contents()
 
 
+def second_facts(page: Page) -> dict[str, str]:
+    """Of each target's row, by its name."""
+    return dict(zip(targets(page), page.locator("#target-list .what small").all_text_contents(), strict=True))
+
+
 def adds_uav(page: Page, name: str, position: list[float], *, range_km: float | None = None) -> None:
     page.get_by_role("button", name="Add a UAV").click()
     place = look_at(page, position, 12)

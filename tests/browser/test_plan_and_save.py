@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import adds_uav, clicks_at, find_pickable, look_at, stores_mission, targets, wait_for_map
+from tests.browser.operator_map import adds_uav, clicks_at, find_pickable, look_at, second_facts, stores_mission, targets, wait_for_map
 
 pytestmark = pytest.mark.browser
 
@@ -34,6 +34,11 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     assert picked[0] == things.tower["properties"]["label"]
     assert picked[1] == things.bridge["properties"]["label"]
     assert picked[3] == things.line["properties"]["label"]
+    facts_of_targets = second_facts(page)
+    assert re.fullmatch(r"Tower \d+ of \d+", picked[0])
+    assert facts_of_targets[picked[0]] == things.tower["properties"]["detail"] != ""
+    assert facts_of_targets[picked[1]] == things.bridge["properties"]["detail"] != ""
+    assert facts_of_targets[picked[3]].startswith("whole line")
 
     page.get_by_role("textbox", name="Name of the mission").fill("South belt, autumn")
     page.keyboard.press("Tab")
@@ -65,6 +70,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     wait_for_map(page)
     expect(page.locator("#plan-facts")).to_have_text(facts or "")
     assert sorted(targets(page)) == sorted(picked)
+    assert second_facts(page) == facts_of_targets
     expect(page.locator("#mission-facts")).not_to_contain_text("not saved")
     address = page.url.split("#")[0]
 

@@ -73,6 +73,15 @@ test("a line's colour goes by its highest voltage", () => {
   assert.equal(voltageColour(palette, undefined), palette.voltUnknown);
 });
 
+test("towers of 200 kV and over are drawn from zoom 10, the others from 10.6", () => {
+  const palette = readPalette((token) => light[token]);
+  const { layers } = mapStyle(palette, { tilesAddress: "", baseMap: null, satellite: null, under: "" });
+  const [high, all] = ["towers-high", "towers"].map((id) => layers.find((layer) => layer.id === id));
+  assert.deepEqual([high.minzoom, high.maxzoom, all.minzoom], [10, 10.6, 10.6]);
+  assert.deepEqual(high.filter, [">=", ["coalesce", ["get", "voltage"], -1], 200]);
+  assert.equal(all.filter, undefined);
+});
+
 test("routes lie over lines and zone hatching under them", () => {
   const palette = readPalette((token) => light[token]);
   const ids = mapStyle(palette, { tilesAddress: "", baseMap: null, satellite: null, under: "" }).layers.map((layer) => layer.id);
