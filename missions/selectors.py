@@ -31,6 +31,7 @@ def missions_of_organisation(organisation: Organisation, *, text: str = "", stat
         missions.select_related("author")
         .annotate(
             target_count=Count("targets", distinct=True),
+            unassigned_count=Count("targets", filter=~Q(targets__unassigned_reason=""), distinct=True),
             uav_count=Count("mission_uavs", distinct=True),
             duration_s=Max("routes__duration_s"),
         )

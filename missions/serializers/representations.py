@@ -42,6 +42,7 @@ def mission_summary(mission: Mission, revision: int) -> dict[str, Any]:
         "updated_at": mission.updated_at,
         "planned_at": mission.planned_at,
         "target_count": mission.target_count,
+        "unassigned_count": mission.unassigned_count,
         "uav_count": mission.uav_count,
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,

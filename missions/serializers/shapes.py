@@ -125,6 +125,7 @@ class MissionSummarySerializer(serializers.Serializer):
     updated_at = serializers.DateTimeField()
     planned_at = serializers.DateTimeField(allow_null=True)
     target_count = serializers.IntegerField()
+    unassigned_count = serializers.IntegerField(help_text="of these, how many the plan does not reach")
     uav_count = serializers.IntegerField()
     total_length_m = serializers.FloatField(allow_null=True)
     longest_route_m = serializers.FloatField(allow_null=True)

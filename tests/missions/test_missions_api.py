@@ -116,7 +116,7 @@ def test_the_list_shows_summaries_with_a_sketch_and_filters(here: World, client:
     listed = client.get("/api/v1/missions").json()["results"]
     assert [mission["id"] for mission in listed] == [second["id"], first["id"]]
     summary = listed[1]
-    assert (summary["target_count"], summary["uav_count"]) == (2, 1)
+    assert (summary["target_count"], summary["unassigned_count"], summary["uav_count"]) == (2, 0, 1)
     assert summary["total_length_m"] == first["plan"]["total_length_m"]
     assert summary["duration_s"] == first["plan"]["routes"][0]["duration_s"]
     assert len(summary["sketch"]) == 1
@@ -127,6 +127,12 @@ def test_the_list_shows_summaries_with_a_sketch_and_filters(here: World, client:
     page = client.get("/api/v1/missions?limit=1").json()
     assert [row["name"] for row in page["results"]] == ["Bexley"]
     assert [row["name"] for row in client.get(page["next"]).json()["results"]] == ["Alum creek"]
+
+
+def test_the_list_says_how_many_targets_a_plan_leaves_out(here: World, client: Client) -> None:
+    post(client, "missions", mission_body(here.towers[2], here.line, {"position": [10.0, 56.3]}, plan=True))
+    [summary] = client.get("/api/v1/missions").json()["results"]
+    assert (summary["target_count"], summary["unassigned_count"]) == (3, 1)
 
 
 def test_a_deleted_mission_is_gone_and_can_be_brought_back(here: World, client: Client) -> None:

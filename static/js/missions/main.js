@@ -1,6 +1,6 @@
 /** The list of missions: find, open, delete and bring back. */
 
-import { ApiError, get, post, remove } from "../api.js";
+import { ApiError, get, post, remove, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../map/palette.js";
 import { menuOf, readPage, startChrome, toggleMenu } from "../page/chrome.js";
@@ -11,6 +11,7 @@ import { sketch } from "./sketch.js";
 
 const STATES = { draft: "Draft", planned: "Planned", approved: "Approved", dispatched: "Dispatched", active: "Active", completed: "Completed", aborted: "Aborted", failed: "Failed" };
 const MOST_DOTS = 24;
+const STALE_WORDS = "Assets or zones were changed after this was planned. Open it to see whether that touches its routes.";
 
 const page = readPage();
 const store = createStore({ missions: null, next: null, text: "", state: "", problem: null });
@@ -21,6 +22,12 @@ startChrome({ bindings: [{ keys: ["/"], words: "Find a mission", act: () => filt
 function matches(mission, { text, state }) {
   const wanted = text.trim().toLocaleLowerCase();
   return (!state || mission.state === state) && (!wanted || `${mission.name}\n${mission.author ?? ""}`.toLocaleLowerCase().includes(wanted));
+}
+
+/** "39 of 46 targets" where a plan leaves some out. */
+function reachedWords({ target_count, unassigned_count }) {
+  const all = countText(target_count, "target");
+  return unassigned_count ? `${target_count - unassigned_count} of ${all}` : all;
 }
 
 function row(mission) {
@@ -41,16 +48,14 @@ function row(mission) {
       "td",
       { class: "name" },
       h("a", { href: address }, mission.name),
-      mission.is_stale
-        ? h("span", { class: "stale" }, icon("triangle-alert", "small"), "Ground changed since planning")
-        : h("span", { class: "caption" }, mission.author ?? ""),
+      h("span", { class: "caption" }, mission.author ?? "", mission.is_stale && h("span", { class: "stale", title: STALE_WORDS }, icon("info", "small"), "Ground changed since")),
     ),
     h("td", { class: "state" }, h("span", { class: `chip ${mission.state}` }, STATES[mission.state] ?? mission.state)),
     h(
       "td",
       { class: "targets" },
-      mission.target_count > 0 && mission.target_count <= MOST_DOTS && h("div", { class: "dots", "aria-hidden": "true" }, Array.from({ length: mission.target_count }, () => h("i"))),
-      h("span", { class: "caption" }, countText(mission.target_count, "target")),
+      mission.target_count > 0 && mission.target_count <= MOST_DOTS && h("div", { class: "dots", "aria-hidden": "true" }, Array.from({ length: mission.target_count }, (_, place) => h("i", { class: place < mission.target_count - mission.unassigned_count ? null : "missed" }))),
+      h("span", { class: "caption" }, reachedWords(mission)),
     ),
     h(
       "td",
@@ -92,7 +97,8 @@ function offerUndo(id, name) {
 
 function tell(error, title) {
   if (!(error instanceof ApiError)) throw error;
-  store.update({ problem: { title, text: error.message } });
+  const isOut = error.isSignedOut;
+  store.update({ problem: isOut ? { title: "You are signed out.", text: "Sign in to go on.", isOut } : { title, text: error.message } });
 }
 
 async function load(address = "/missions?limit=50") {
@@ -112,7 +118,7 @@ function empty(words, action) {
 function draw(state) {
   const { missions, next, problem } = state;
   byId("problem").replaceChildren(
-    ...(problem ? [h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, problem.title), ` ${problem.text}`))] : []),
+    ...(problem ? [h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, problem.title), ` ${problem.text} `, problem.isOut && h("a", { class: "text-button", href: signInAddress() }, "Sign in")))] : []),
   );
   if (missions === null) return;
   const shown = missions.filter((mission) => matches(mission, state));

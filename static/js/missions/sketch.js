@@ -1,6 +1,6 @@
 /** A small drawing of a mission's routes, without a map. */
 
-import { svg } from "../dom.js";
+import { h, icon, svg } from "../dom.js";
 import { routeNumber } from "../map/palette.js";
 
 const WIDTH_PX = 112;
@@ -26,6 +26,7 @@ export function placeSketch(routes, width = WIDTH_PX, height = HEIGHT_PX, margin
 
 export function sketch(routes) {
   const places = placeSketch(routes ?? []);
+  if (!places.length) return h("span", { class: "sketch none" }, icon("pencil", "small"), "not planned");
   return svg(
     "svg",
     { class: "sketch", viewBox: `0 0 ${WIDTH_PX} ${HEIGHT_PX}`, "aria-hidden": "true" },
