@@ -14,6 +14,22 @@ export class ApiError extends Error {
   get isAway() {
     return this.status === 0 || this.status === 502 || this.status === 504;
   }
+
+  get isSignedOut() {
+    return this.status === 401;
+  }
+}
+
+const SIGNED_OUT = "You are signed out. Your selection is kept in this browser.";
+
+/** Also where the session ended and the page's CSRF token with it. */
+export function isSignedOut(status, code, message) {
+  return status === 401 || (status === 403 && (code === "not_authenticated" || (message ?? "").startsWith("CSRF")));
+}
+
+/** The door, and from there back to where the page is now. */
+export function signInAddress({ pathname, search = "", hash = "" } = location) {
+  return `/sign-in?next=${encodeURIComponent(pathname + search + hash)}`;
 }
 
 function cookie(name) {
@@ -47,12 +63,12 @@ async function problemOf(response) {
   }
   const detail = status === 400 ? firstDetail(error.details) : "";
   const words = {
-    401: "You are signed out. Sign in again; your selection is kept in this browser.",
     413: "That is too much for one request.",
     429: "Too many requests. Wait a moment, then try again.",
     502: "The server cannot be reached.",
     504: "The server did not answer in time.",
   };
+  if (isSignedOut(status, error.code, error.message)) return new ApiError(SIGNED_OUT, { status: 401, code: "not_authenticated" });
   const message = detail || error.message || words[status] || `The server answered with ${status}.`;
   return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null });
 }

@@ -63,6 +63,10 @@ export function createHistory(store, name) {
       show(value);
       return true;
     },
+    /** The same step in other words, as the server has stored it: what went before can still be undone. */
+    settle(value) {
+      show(value);
+    },
     /** A new beginning: what is loaded from the server cannot be undone. */
     startFrom(value) {
       past = [];

@@ -26,6 +26,10 @@ export function heightText(height_m) {
   return `${grouped(Math.round(height_m))}${SPACE}m`;
 }
 
+export function speedText(speed_mps) {
+  return `${grouped(speed_mps, Number.isInteger(speed_mps) ? 0 : 1)}${SPACE}m/s`;
+}
+
 export function percentText(percent) {
   return `${grouped(Math.round(percent))}${SPACE}%`;
 }

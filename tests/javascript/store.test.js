@@ -63,3 +63,15 @@ test("what was loaded cannot be undone", () => {
   assert.equal(history.undo(), false);
   assert.equal(store.state.canUndo, false);
 });
+
+test("what was saved keeps the steps before it", () => {
+  const { store, history } = selectionStore();
+  history.changeTo({ targets: ["A"] });
+  history.changeTo({ targets: ["A", "B"] });
+  history.settle({ targets: ["A", "B"], stored: true });
+  assert.deepEqual(store.state.selection, { targets: ["A", "B"], stored: true });
+  history.undo();
+  assert.deepEqual(store.state.selection.targets, ["A"]);
+  history.redo();
+  assert.equal(store.state.selection.stored, true);
+});

@@ -1,10 +1,10 @@
 /** What an operator does with a mission: pick, plan, stop, save, open. Each changes the store; the panels listen. */
 
-import { ApiError, follow, get, patch, post, remove } from "../api.js";
+import { ApiError, follow, get, patch, post, remove, signInAddress } from "../api.js";
 import { say, toast } from "../page/toast.js";
 import { clockText, countText } from "../units.js";
-import { dropDraft, keepDraft, readDraft } from "./draft.js";
-import { sentenceOf, unreachedOf } from "./plan_view.js";
+import { draftDecision, isStarted, whoseSave } from "./draft.js";
+import { isUnsaved, sentenceOf, unreachedOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_IN_A_BOX = 300;
@@ -17,15 +17,28 @@ function planOf(result, selection) {
   return { result, basis: picks.basisOf(selection), targets: selection.targets, uavs: selection.uavs };
 }
 
-export function createActions(store, history, missionId) {
+/** page: { mission, canPlan, userName }; drafts: see draft.js. */
+export function createActions(store, history, page, drafts) {
   let stopping = null;
   let retry = 0;
 
   const selection = () => store.state.selection;
   const change = (next) => history.changeTo(next);
 
-  function problem(title, text, actions = []) {
-    store.update({ problem: { title, text, actions } });
+  /** Stays until the next try; with `untilChanged` until the selection is another one. */
+  function problem(title, text, actions = [], { untilChanged = false } = {}) {
+    store.update({ problem: { title, text, actions, about: untilChanged ? selection() : null } });
+  }
+  store.listen(["selection"], (state) => {
+    if (state.problem?.about && state.problem.about !== state.selection) store.update({ problem: null });
+  });
+
+  /** What an error says, and the way out that goes with it. */
+  function failed(title, error, actions = [], how = {}) {
+    if (error.isSignedOut) {
+      const words = page.canPlan ? "Your selection is kept in this browser." : "Sign in to go on.";
+      problem("You are signed out.", words, [{ label: "Sign in", href: signInAddress }]);
+    } else problem(title, wordsOf(error), actions, how);
   }
 
   // picking
@@ -54,7 +67,7 @@ export function createActions(store, history, missionId) {
         next = data.next;
       }
       if (found.length > MOST_IN_A_BOX) {
-        problem(`More than ${MOST_IN_A_BOX} assets stand in the box.`, "Take a smaller one, or pick whole lines.");
+        problem(`More than ${MOST_IN_A_BOX} assets stand in the box.`, "Take a smaller one, or pick whole lines.", [], { untilChanged: true });
         return;
       }
       const added = addTargets(found.filter((feature) => feature.properties.is_flyable !== false).map(targetOfFeature));
@@ -63,7 +76,7 @@ export function createActions(store, history, missionId) {
         added ? { label: "Undo", act: () => history.undo() } : null,
       );
     } catch (error) {
-      problem("The box could not be read.", wordsOf(error));
+      failed("The box could not be read.", error);
     }
   }
 
@@ -90,7 +103,7 @@ export function createActions(store, history, missionId) {
     if (store.state.planning || store.state.saving) return;
     const lacking = missing();
     if (lacking) {
-      problem(...lacking);
+      problem(...lacking, [], { untilChanged: true });
       return;
     }
     const asked = selection();
@@ -107,7 +120,7 @@ export function createActions(store, history, missionId) {
       say(`${sentence}. ${facts}.${unreached ? ` ${countText(unreached, "target is", "targets are")} not reached.` : ""}`);
     } catch (error) {
       if (error.name === "AbortError") toast("Planning stopped. Nothing was changed.");
-      else problem("Not planned.", wordsOf(error), [{ label: "Plan again", act: plan }]);
+      else failed("Not planned.", error, [{ label: "Plan again", act: plan }]);
     } finally {
       stopping = null;
       store.update({ planning: null });
@@ -119,26 +132,44 @@ export function createActions(store, history, missionId) {
     try {
       if (job) await post(`/jobs/${job}/cancel`, {});
     } catch (error) {
-      if (error.status !== 409) problem("Not stopped.", wordsOf(error)); // 409: it ended by itself
+      if (error.status !== 409) failed("Not stopped.", error); // 409: it ended by itself
     }
     if (!job) stopping?.abort();
   }
 
   // saving and opening
 
-  function openStored(mission) {
-    const stored = picks.selectionOf(mission, store.state.fleet);
-    const plan = mission.plan ? planOf(mission.plan, stored) : null;
-    history.startFrom(stored);
+  function shownAs(mission, stored, plan) {
     store.update({
       mission,
-      name: mission.name,
       plan,
       planIsStored: Boolean(plan),
       savedBasis: picks.basisOf(stored),
       figures: plan ? { ...store.state.figures, [plan.basis]: plan.result } : store.state.figures,
       problem: null,
+      conflict: null,
     });
+  }
+
+  function storedOf(mission) {
+    const stored = picks.selectionOf(mission, store.state.fleet);
+    return { stored, plan: mission.plan ? planOf(mission.plan, stored) : null };
+  }
+
+  function openStored(mission) {
+    const { stored, plan } = storedOf(mission);
+    history.startFrom(stored);
+    store.update({ name: mission.name });
+    shownAs(mission, stored, plan);
+  }
+
+  /** The mission as it has just been stored. The history stays, and what was changed meanwhile stays as well. */
+  function keepOpen(mission, asked) {
+    const { stored, plan } = storedOf(mission);
+    const isAsAsked = picks.basisOf(stored) === picks.basisOf(asked.selection);
+    if (selection() === asked.selection && !isAsAsked) history.settle(stored);
+    if (store.state.name === asked.name) store.update({ name: mission.name });
+    shownAs(mission, stored, plan);
   }
 
   function addressNow(mission) {
@@ -147,12 +178,18 @@ export function createActions(store, history, missionId) {
 
   async function save({ asCopy = false } = {}) {
     if (store.state.saving || store.state.planning) return;
+    if (store.state.conflict && !asCopy) {
+      toast("Choose first: see what was saved, put yours on top, or keep yours as a copy.");
+      return;
+    }
     clearTimeout(retry);
     const { mission, plan, name } = store.state;
+    const asked = { selection: selection(), name };
     const isNew = !mission || asCopy;
-    const basis = picks.basisOf(selection());
+    const draftOf = mission?.id ?? null; // the copy takes the changes along
+    const basis = picks.basisOf(asked.selection);
     const withPlan = plan !== null && plan.basis === basis;
-    const body = { ...picks.requestOf(selection()), name: name.trim() || `Mission of ${new Date().toLocaleDateString("en-GB", { day: "numeric", month: "short" })}, ${clockText(new Date())}` };
+    const body = { ...picks.requestOf(asked.selection), name: name.trim() || `Mission of ${new Date().toLocaleDateString("en-GB", { day: "numeric", month: "short" })}, ${clockText(new Date())}` };
     if (asCopy) body.name = `${body.name} (copy)`;
     if (withPlan && (isNew || !store.state.planIsStored || basis !== store.state.savedBasis)) body.plan = true;
     store.update({ saving: true, problem: null });
@@ -163,78 +200,157 @@ export function createActions(store, history, missionId) {
       let stored = answer.data;
       if (answer.status === 202) {
         draftId = answer.data.mission;
-        dropDraft(isNew ? missionId() : mission.id);
+        drafts.dropOwn(draftOf);
         if (isNew) addressNow({ id: draftId });
         stopping = new AbortController();
         await waitForJob(answer.data.job, "Planning what is saved");
         stored = (await get(`/missions/${draftId}`)).data;
       }
-      dropDraft(isNew ? missionId() : mission.id);
-      openStored(stored);
+      drafts.dropOwn(draftOf);
+      keepOpen(stored, asked);
       if (isNew) addressNow(stored);
+      settleDraft();
       toast(`“${stored.name}” is saved.`);
     } catch (error) {
-      if (draftId) await get(`/missions/${draftId}`).then(({ data }) => openStored(data), () => {});
-      saveFailed(error);
+      if (draftId) await get(`/missions/${draftId}`).then(({ data }) => keepOpen(data, asked), () => {});
+      await saveFailed(error, asCopy);
     } finally {
       stopping = null;
       store.update({ saving: false, planning: null });
     }
   }
 
-  function saveFailed(error) {
+  const KEEP_COPY = { label: "Keep mine as a copy", act: () => save({ asCopy: true }) };
+
+  async function saveFailed(error, asCopy) {
+    const again = () => save({ asCopy });
     if (error.name === "AbortError") {
       problem("Saved as a draft.", "Planning was stopped before it was done.");
     } else if (error.status === 412) {
-      problem("Changed by another operator.", "Your selection is kept in this browser.", [
-        { label: "See theirs", act: () => (dropDraft(store.state.mission.id), location.reload()) },
-        { label: "Keep mine as a copy", act: () => save({ asCopy: true }) },
-      ]);
+      await meet();
+    } else if (error.status === 404 && store.state.mission && !asCopy) {
+      problem("Not saved: the mission has been deleted.", "Your selection is kept in this browser.", [KEEP_COPY]);
     } else if (error.isAway) {
-      problem("Not saved: the server cannot be reached.", `Your selection is kept in this browser. Next try in ${RETRY_S} s.`, [{ label: "Try now", act: () => save() }]);
-      retry = setTimeout(save, RETRY_S * 1000);
+      problem("Not saved: the server cannot be reached.", `Your selection is kept in this browser. Next try in ${RETRY_S} s.`, [{ label: "Try now", act: again }]);
+      retry = setTimeout(again, RETRY_S * 1000);
     } else {
-      problem("Not saved.", wordsOf(error), [{ label: "Try again", act: () => save() }]);
+      failed("Not saved.", error, [{ label: "Try again", act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])]);
     }
   }
+
+  // somebody else has saved since
+
+  /** Whose save it was: the newest entry of the history, where that can be read. */
+  async function lastSave(mission) {
+    const newest = await get(`/missions/${mission.id}/history?limit=1`).then(({ data }) => data.results[0], () => null);
+    return { whose: whoseSave(newest?.actor, page.userName), at: newest?.recorded_at ?? mission.updated_at };
+  }
+
+  /** The server holds a younger revision than the one this selection was made from: theirs is fetched, mine stays on the page. */
+  async function meet() {
+    try {
+      const base = store.state.mission.revision;
+      const { data } = await get(`/missions/${store.state.mission.id}`);
+      store.update({ planIsStored: false }); // what is stored now is theirs
+      await conflictWith(data, base);
+    } catch (error) {
+      failed("Not saved: changed by another operator.", error, [{ label: "Try again", act: () => save() }, KEEP_COPY]);
+    }
+  }
+
+  async function conflictWith(theirs, base) {
+    const { stored } = storedOf(theirs);
+    const { name } = store.state;
+    if (picks.basisOf(stored) === picks.basisOf(selection()) && name === theirs.name) {
+      keepOpen(theirs, { selection: selection(), name });
+      toast("The same is saved already.");
+      return;
+    }
+    const between = await lastSave(theirs);
+    store.update({ mission: theirs, savedBasis: picks.basisOf(stored), problem: null, conflict: { ...between, base } });
+  }
+
+  /** Theirs becomes one more step of the history, so that mine is one step back. */
+  function seeTheirs() {
+    const { mission, conflict, name, plan } = store.state;
+    const mine = selection();
+    const { stored, plan: theirPlan } = storedOf(mission);
+    change(stored);
+    store.update({ name: mission.name });
+    shownAs(mission, stored, theirPlan);
+    toast(`This is ${conflict.whose} save of ${clockText(conflict.at)}.`, {
+      label: "Back to mine",
+      act() {
+        change(mine);
+        store.update({ name, plan, planIsStored: false, conflict });
+      },
+    });
+  }
+
+  function putMineOnTop() {
+    store.update({ conflict: null });
+    return save();
+  }
+
+  // opening, and the draft that outlives the page
 
   async function open(id) {
     const { data } = await get(`/missions/${id}`);
     openStored(data);
-    const draft = readDraft(id);
-    if (draft && draft.revision === data.revision && picks.basisOf(draft.selection) !== store.state.savedBasis) {
-      change(draft.selection);
-      store.update({ name: draft.name || data.name });
-      toast("Your unsaved changes are back.", { label: "Drop them", act: () => (dropDraft(id), openStored(data)) });
-    }
+    const draft = page.canPlan ? drafts.read(id) : null;
+    const decision = draftDecision(draft, data, store.state.savedBasis);
+    if (draft && decision === "none") drafts.drop(id);
+    if (decision === "none") return;
+    change(draft.selection);
+    store.update({ name: draft.name || data.name });
+    if (decision === "behind") await conflictWith(data, draft.revision);
+    else toast("Your unsaved changes are back.", { label: "Drop them", act: () => dropChanges(data) });
+    settleDraft(); // from now on it is this page's
+  }
+
+  function dropChanges(mission) {
+    const { name } = store.state;
+    const mine = selection();
+    const { stored, plan } = storedOf(mission);
+    change(stored);
+    store.update({ name: mission.name });
+    shownAs(mission, stored, plan);
+    toast("Your changes are dropped.", { label: "Undo", act: () => (change(mine), store.update({ name })) });
   }
 
   function openDraft() {
-    const draft = readDraft(null);
-    if (!draft || (!draft.selection.targets.length && !draft.name)) return;
+    const draft = drafts.read(null);
+    if (!draft || !isStarted({ name: draft.name ?? "", selection: draft.selection })) return;
     history.startFrom(draft.selection);
-    store.update({ name: draft.name });
-    toast("Your unsaved mission is back.", { label: "Start empty", act: startEmpty });
+    store.update({ name: draft.name ?? "" });
+    settleDraft();
+    if (draft.selection.targets.length || draft.name) toast("Your unsaved mission is back.", { label: "Start empty", act: startEmpty });
   }
 
   function startEmpty() {
-    dropDraft(missionId());
-    history.startFrom({ ...picks.EMPTY });
-    store.update({ name: "", plan: null, problem: null });
+    const { name, plan } = store.state;
+    const mine = selection();
+    if (!change({ ...picks.EMPTY }) && !name) return;
+    store.update({ name: "", plan: null, problem: null, chosenTarget: null, litTarget: null });
+    toast("Everything is cleared.", { label: "Undo", act: () => (change(mine), store.update({ name, plan })) });
   }
 
-  function keep() {
-    const { mission, name } = store.state;
-    return keepDraft(mission?.id ?? null, { name, selection: selection(), revision: mission?.revision ?? 0 });
+  /** Keeps what is unsaved, and drops this page's draft where there is nothing left to keep. False where it could not be kept. */
+  function settleDraft() {
+    const { mission, name, conflict } = store.state;
+    const isWorthKeeping = mission ? isUnsaved(store.state) : isStarted(store.state);
+    if (isWorthKeeping) return drafts.keep(mission?.id ?? null, { name, selection: selection(), revision: conflict?.base ?? mission?.revision ?? 0 });
+    drafts.dropOwn(mission?.id ?? null);
+    return true;
   }
 
   async function deleteMission() {
     try {
       await remove(`/missions/${store.state.mission.id}`);
-      dropDraft(store.state.mission.id);
+      drafts.drop(store.state.mission.id);
       location.href = `/?deleted=${store.state.mission.id}&name=${encodeURIComponent(store.state.mission.name)}`;
     } catch (error) {
-      problem("Not deleted.", wordsOf(error));
+      failed("Not deleted.", error);
     }
   }
 
@@ -254,11 +370,13 @@ export function createActions(store, history, missionId) {
   }
 
   return {
-    plan, stop, save, open, openDraft, startEmpty, keep, deleteMission, problem,
+    plan, stop, save, open, openDraft, startEmpty, settleDraft, deleteMission, failed,
+    seeTheirs, putMineOnTop, keepMineAsCopy: KEEP_COPY.act,
     addTargets, addBox, removeTargets, targetOfFeature, addUav, toggleUav,
     undo: () => history.undo() && say("Undone."),
     redo: () => history.redo() && say("Done again."),
     moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),
+    changeUav: (sequence, values) => change(picks.withUavAs(selection(), sequence, values)),
     setOption: (name, value) => change({ ...selection(), [name]: value }),
     rename: (name) => store.update({ name }),
   };

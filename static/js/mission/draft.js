@@ -1,30 +1,62 @@
-/** The unsaved selection, kept in this browser until it is saved. */
+/** The unsaved selection, kept in this browser for each user until it is saved. */
 
-const keyOf = (mission) => `spanwise.draft.${mission ?? "new"}`;
+import { basisOf, EMPTY } from "./selection.js";
 
-/** draft: { name, selection, revision } */
-export function keepDraft(mission, draft) {
-  try {
-    localStorage.setItem(keyOf(mission), JSON.stringify({ ...draft, kept_at: new Date().toISOString() }));
-    return true;
-  } catch {
-    return false; // storage is full or closed: leaving the page asks first
+/** What somebody has picked is theirs alone, also where several use one browser. */
+export const keyOf = (user, mission) => `spanwise.draft.${user}.${mission ?? "new"}`;
+
+/** Drafts of one user. `editor` names this page: what another window of the same user keeps is not dropped when this one saves. */
+export function createDrafts({ user, editor, storage = () => globalThis.localStorage }) {
+  function read(mission) {
+    try {
+      const draft = JSON.parse(storage().getItem(keyOf(user, mission)));
+      return Array.isArray(draft?.selection?.targets) && Array.isArray(draft.selection.uavs) ? draft : null;
+    } catch {
+      return null;
+    }
   }
+
+  function drop(mission) {
+    try {
+      storage().removeItem(keyOf(user, mission));
+    } catch {
+      /* nothing was kept */
+    }
+  }
+
+  return {
+    read,
+    drop,
+    dropOwn(mission) {
+      if (read(mission)?.editor === editor) drop(mission);
+    },
+    /** draft: { name, selection, revision }. False where storage is full or closed: leaving the page asks first. */
+    keep(mission, draft) {
+      try {
+        storage().setItem(keyOf(user, mission), JSON.stringify({ ...draft, editor, kept_at: new Date().toISOString() }));
+        return true;
+      } catch {
+        return false;
+      }
+    },
+  };
 }
 
-export function readDraft(mission) {
-  try {
-    const draft = JSON.parse(localStorage.getItem(keyOf(mission)));
-    return Array.isArray(draft?.selection?.targets) && Array.isArray(draft.selection.uavs) ? draft : null;
-  } catch {
-    return null;
-  }
+/** Whether a new mission holds something that a reload should bring back, be it only a chosen UAV or an option. */
+export function isStarted({ name, selection }) {
+  return name.trim() !== "" || basisOf(selection) !== basisOf(EMPTY);
 }
 
-export function dropDraft(mission) {
-  try {
-    localStorage.removeItem(keyOf(mission));
-  } catch {
-    /* nothing was kept */
-  }
+/** What to do with a draft of a stored mission: "none", "restore" it, or say that it is "behind" what somebody has saved since. */
+export function draftDecision(draft, mission, storedBasis) {
+  if (!draft) return "none";
+  const isSame = basisOf(draft.selection) === storedBasis && (draft.name || mission.name) === mission.name;
+  if (isSame) return "none";
+  return draft.revision === mission.revision ? "restore" : "behind";
+}
+
+/** "vera's", "your own" or "another operator's": whose save came in between. */
+export function whoseSave(actor, userName) {
+  if (!actor) return "another operator’s";
+  return actor === userName ? "your own" : `${actor}’s`;
 }

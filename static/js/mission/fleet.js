@@ -1,6 +1,7 @@
 /** Fleet and mission together, as values. */
 
 import { routeLetter } from "../map/palette.js";
+import { lengthText, speedText } from "../units.js";
 
 /** Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet. */
 export function standingUavs({ selection, fleet }) {
@@ -16,4 +17,14 @@ export function inFleetOrder(state) {
     return index < 0 ? state.fleet.length : index;
   };
   return standingUavs(state).sort((a, b) => place(a) - place(b));
+}
+
+const END_WORDS = { hover: "hovers at its last target", land: "lands at its last target", return: "returns to start" };
+
+/** "range 80 km · 12 m/s · hovers at its last target": what a UAV can do and how its flight ends. */
+export function factsOfUav({ max_range_m, cruise_speed_mps, end_action }, returnsToStart) {
+  const facts = [max_range_m ? `range ${lengthText(max_range_m)}` : "range not stated"];
+  if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
+  const end = END_WORDS[returnsToStart ? "return" : end_action];
+  return end ? [...facts, end].join(" · ") : facts.join(" · ");
 }

@@ -4,12 +4,14 @@ import { ApiError, get } from "../api.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { createHistory, createStore } from "../store.js";
 import { createActions } from "./actions.js";
+import { createDrafts } from "./draft.js";
 import { mountLayout } from "./layout.js";
 import { mountMap } from "./map_panel.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFoot } from "./panels/foot.js";
 import { mountHeader } from "./panels/header.js";
 import { mountOptions } from "./panels/options.js";
+import { mountOptionsRead } from "./panels/options_read.js";
 import { mountRoutes } from "./panels/routes.js";
 import { mountTargets } from "./panels/targets.js";
 import { mountUavs } from "./panels/uavs.js";
@@ -19,11 +21,12 @@ import { EMPTY, uavOf } from "./selection.js";
 const page = readPage();
 const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
-  plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null,
+  plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   tool: "point", litTarget: null, chosenTarget: null, lookedAt: null, chosenRoute: null,
 });
 const history = createHistory(store, "selection");
-const actions = createActions(store, history, () => page.mission);
+const drafts = createDrafts({ user: page.userId, editor: crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` });
+const actions = createActions(store, history, page, drafts);
 
 let uavPanel = null;
 const layout = mountLayout();
@@ -32,7 +35,8 @@ const targetOfFeature = (feature) => actions.targetOfFeature(feature);
 mountHeader(store, actions, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
 uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
-mountOptions(store, actions, page.canPlan);
+if (page.canPlan) mountOptions(store, actions, page.canPlan);
+else mountOptionsRead(store);
 mountFoot(store, actions);
 mountRoutes(store, { onAlong: (position) => map.showPoint(position) });
 const finder = mountFinder({
@@ -42,28 +46,33 @@ const finder = mountFinder({
   add: (feature) => actions.addTargets([targetOfFeature(feature)]),
 });
 
-const planner = (act) => () => (page.canPlan ? act() : false);
-const choose = (tool) => planner(() => store.update({ tool }));
 startChrome({
   bindings: [
     { keys: ["/"], words: "Find an asset", act: finder.focus },
-    { keys: ["p"], words: "Plan, plan again", act: planner(actions.plan) },
-    { keys: ["mod+s"], words: "Save", whileTyping: true, act: planner(() => void actions.save()) },
-    { keys: ["mod+z"], words: "Undo", act: planner(actions.undo) },
-    { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: planner(actions.redo) },
-    { keys: ["delete", "backspace"], words: "Remove the chosen target", act: planner(removeChosen) },
-    { keys: ["v"], words: "Pick points", act: choose("point") },
-    { keys: ["b"], words: "Pick by box", act: choose("box") },
-    { keys: ["w"], words: "Pick whole lines", act: choose("line") },
+    ...(page.canPlan ? planningKeys() : []),
     { keys: ["f"], words: "Fit the mission", act: () => map.fit() },
     { keys: ["+", "="], words: "Zoom in", act: () => map.zoom(1) },
     { keys: ["-"], words: "Zoom out", act: () => map.zoom(-1) },
     { keys: ["["], words: "Fold the side", act: layout.foldSide },
     { keys: ["]"], words: "Fold the routes", act: layout.foldDock },
-    { keys: ["escape"], words: "Close, back to points", act: escape },
+    { keys: ["escape"], words: page.canPlan ? "Close, back to points" : "Close", act: escape },
     { keys: ["enter"], act: placeInTheMiddle },
   ],
 });
+
+function planningKeys() {
+  const choose = (tool) => () => store.update({ tool });
+  return [
+    { keys: ["p"], words: "Plan, plan again", act: actions.plan },
+    { keys: ["mod+s"], words: "Save", whileTyping: true, act: () => void actions.save() },
+    { keys: ["mod+z"], words: "Undo", act: actions.undo },
+    { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: actions.redo },
+    { keys: ["delete", "backspace"], words: "Remove the chosen target", act: removeChosen },
+    { keys: ["v"], words: "Pick points", act: choose("point") },
+    { keys: ["b"], words: "Pick by box", act: choose("box") },
+    { keys: ["w"], words: "Pick whole lines", act: choose("line") },
+  ];
+}
 
 function removeChosen() {
   const key = store.state.chosenTarget;
@@ -85,16 +94,16 @@ function placeInTheMiddle() {
   return true;
 }
 
-// The selection outlives the page: it is kept a moment after each change.
+// The selection outlives the page: it is kept a moment after each change, and dropped once there is nothing to keep.
 let keepTimer = 0;
 let isKept = true;
-store.listen(["selection", "name"], (state) => {
+let isLoaded = false;
+store.listen(["selection", "name", "savedBasis", "mission", "conflict"], () => {
   clearTimeout(keepTimer);
-  if (!page.canPlan || !isUnsaved(state)) return;
-  keepTimer = setTimeout(() => (isKept = actions.keep()), 400);
+  if (page.canPlan && isLoaded) keepTimer = setTimeout(() => (isKept = actions.settleDraft()), 400);
 });
 addEventListener("pagehide", () => {
-  if (page.canPlan && isUnsaved(store.state)) actions.keep();
+  if (page.canPlan && isLoaded) actions.settleDraft();
 });
 addEventListener("beforeunload", (event) => {
   if (page.canPlan && !isKept && isUnsaved(store.state)) event.preventDefault(); // storage is closed: ask
@@ -118,8 +127,9 @@ async function load() {
     store.update({ fleet: await fleet });
     if (page.mission) await actions.open(page.mission);
     else if (page.canPlan) actions.openDraft();
+    isLoaded = true;
   } catch (error) {
-    actions.problem("Not loaded.", error instanceof ApiError ? error.message : "The page failed while it was loading.", [{ label: "Load again", act: () => location.reload() }]);
+    actions.failed("Not loaded.", error, [{ label: "Load again", act: () => location.reload() }]);
     if (!(error instanceof ApiError)) throw error;
   }
   await map.ready;

@@ -58,12 +58,18 @@ export function withUavAt(selection, sequence, position) {
   return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, position } : uav)) };
 }
 
+/** The same UAV with other values, in this mission. */
+export function withUavAs(selection, sequence, values) {
+  return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, ...values } : uav)) };
+}
+
 /** The body of /plans and of a mission. */
 export function requestOf(selection) {
   return {
     uavs: selection.uavs.map((uav) => {
       const body = { name: uav.name, position: uav.position };
       if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
+      if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
       for (const name of ["max_range_m", "cruise_speed_mps", "end_action"]) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
       return body;
     }),

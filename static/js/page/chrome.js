@@ -13,7 +13,7 @@ export function startChrome({ bindings = [] } = {}) {
   const go = (address) => () => void (location.href = address);
   const all = [
     ...bindings,
-    { keys: ["n"], words: "New mission", act: go("/missions/new") },
+    { keys: ["n"], words: readPage().canPlan ? "New mission" : "Go to the map", act: go("/missions/new") },
     { keys: ["g m"], words: "Go to the missions", act: go("/") },
     { keys: ["?"], words: "Show the keys", act: () => showKeys(all) },
   ];

@@ -18,18 +18,18 @@ export function mountHeader(store, actions, canPlan) {
   more.addEventListener("click", () =>
     toggleMenu(more, () => {
       const { mission } = store.state;
-      const items = [{ icon: "trash-2", label: "Clear everything", act: actions.startEmpty }];
-      if (mission && canPlan) {
-        items[0] = { icon: "copy", label: "Save a copy", act: () => actions.save({ asCopy: true }) };
+      const items = [];
+      if (canPlan && mission) {
+        items.push({ icon: "copy", label: "Save a copy", act: () => actions.save({ asCopy: true }) });
         items.push({ icon: "trash-2", label: "Delete", act: actions.deleteMission });
-      }
+      } else if (canPlan) items.push({ icon: "trash-2", label: "Clear everything", act: actions.startEmpty });
       items.push({ icon: "clipboard-list", label: "All missions", act: () => void (location.href = "/") });
       return menuOf("This mission", items);
     }),
   );
 
   store.listen(["name", "mission", "selection", "plan", "planIsStored", "savedBasis"], (state) => {
-    const shown = state.name || "New mission";
+    const shown = state.name || (canPlan ? "New mission" : "Map");
     if (name.value !== state.name) name.value = state.name;
     byId("page-title").textContent = shown;
     byId("bar-title").textContent = shown;
@@ -38,10 +38,11 @@ export function mountHeader(store, actions, canPlan) {
     const chip = byId("mission-state");
     chip.className = `chip ${stateName}`;
     chip.textContent = STATE_WORDS[stateName];
-    byId("mission-facts").textContent = factsOf(state).join(" · ");
+    chip.hidden = !canPlan && !state.mission; // just the map: there is nothing that could be a draft
+    byId("mission-facts").textContent = chip.hidden ? "no mission is open" : factsOf(state).join(" · ");
   });
 
-  store.listen(["problem", "plan", "selection", "mission"], (state) => {
+  store.listen(["problem", "conflict", "plan", "selection", "mission"], (state) => {
     byId("notices").replaceChildren(...noticesOf(state, actions, canPlan));
   });
 }
@@ -67,8 +68,14 @@ function notice(level, image, title, text, acts = []) {
     "div",
     { class: `notice ${level}`, role: level === "critical" ? "alert" : null },
     icon(image),
-    h("p", {}, h("strong", {}, title), ` ${text} `, acts.map((act) => h("button", { type: "button", class: "text-button", onclick: act.act }, act.label))),
+    h("p", {}, h("strong", {}, title), ` ${text} `, acts.map(way)),
   );
+}
+
+/** A way out of a notice: something to do here, or an address as it is when it is followed. */
+function way({ label, act, href }) {
+  if (act) return h("button", { type: "button", class: "text-button", onclick: act }, label);
+  return h("a", { class: "text-button", href: href(), onclick: (event) => (event.currentTarget.href = href()) }, label);
 }
 
 function noticesOf(state, actions, canPlan) {
@@ -76,6 +83,16 @@ function noticesOf(state, actions, canPlan) {
   if (state.problem) {
     const isAway = state.problem.title.includes("cannot be reached");
     notices.push(notice("critical", isAway ? "cloud-off" : "circle-alert", state.problem.title, state.problem.text, state.problem.actions));
+  }
+  if (state.conflict && isUnsaved(state)) {
+    const title = `Your changes are from before ${state.conflict.whose} save at ${clockText(state.conflict.at)}.`;
+    notices.push(
+      notice("warning", "triangle-alert", title, "Both are kept.", [
+        { label: "See theirs", act: actions.seeTheirs },
+        { label: "Put mine on top", act: actions.putMineOnTop },
+        { label: "Keep mine as a copy", act: actions.keepMineAsCopy },
+      ]),
+    );
   }
   const planAgain = canPlan ? [{ label: "Plan again", act: actions.plan }] : [];
   if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) {

@@ -1,0 +1,12 @@
+/** The options of a mission in words, for those who may not change them. */
+
+import { byId } from "../../dom.js";
+import { OBJECTIVES } from "../plan_view.js";
+
+export function mountOptionsRead(store) {
+  store.listen(["selection"], ({ selection }) => {
+    const best = OBJECTIVES.find(({ value }) => value === selection.objective)?.words ?? "";
+    const end = selection.return_to_start ? "each UAV flies back to where it took off" : "each UAV ends as its row says";
+    byId("options-words").textContent = [best, end].filter(Boolean).join(" · ");
+  });
+}
