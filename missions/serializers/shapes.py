@@ -87,6 +87,7 @@ class MissionTargetSerializer(serializers.Serializer):
     asset = serializers.IntegerField(allow_null=True)
     label = serializers.CharField()
     detail = serializers.CharField(help_text="the asset's second fact, as in the list of assets; may be empty")
+    length_m = serializers.FloatField(allow_null=True, help_text="of the whole asset, where it is a line or a railway")
     kind = serializers.CharField(allow_null=True)
     position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
     stretch = serializers.ListField(child=PositionField(), allow_null=True)

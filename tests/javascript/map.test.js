@@ -1,10 +1,12 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
+import { hashOf, showsAnything, viewOf } from "../../static/js/map/address.js";
 import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
 import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
 import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
-import { mergedLabel, mergePills } from "../../static/js/map/pills.js";
+import { plainWords } from "../../static/js/map/furniture.js";
+import { mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { placeSketch } from "../../static/js/missions/sketch.js";
 
 const feature = (id, sourceLayer, properties = { id: 1 }) => ({ layer: { id }, sourceLayer, properties, geometry: { type: "Point", coordinates: [0, 0] } });
@@ -67,11 +69,63 @@ test("a sketch of nothing and of one point does not fail", () => {
   assert.deepEqual(placeSketch([[[10, 50]]]), [[[56, 28]]]);
 });
 
-test("pills of one route that would overlap are merged, and a long label becomes a count", () => {
-  const pill = (sequence, number, x, y) => ({ key: `${sequence} ${number}`, sequence, letter: "AB"[sequence] ?? "", number, x, y });
-  const groups = mergePills([pill(0, 1, 0, 0), pill(0, 2, 10, 0), pill(1, 1, 5, 0), pill(0, 3, 100, 0)]);
-  assert.deepEqual(groups.map(({ members }) => members.length), [2, 1, 1]);
+const pill = (sequence, number, x, y, isMissed = false) => ({ key: `${sequence} ${number}`, sequence, letter: "AB"[sequence] ?? "", number, x, y, isMissed });
+const labels = (pills) => mergePills(pills).map(({ label }) => label);
+
+test("pills of one UAV that would overlap are merged, those of two are not", () => {
+  assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 2, 10, 0), pill(1, 1, 5, 0), pill(0, 3, 100, 0)]), ["A1–2", "B1", "A3"]);
+});
+
+test("a pill that has grown by merging takes the next one too", () => {
+  assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 3, 20, 0), pill(0, 2, 40, 0)]), ["A1–3"]);
+  const groups = mergePills(Array.from({ length: 40 }, (_, index) => pill(0, index + 1, index * 9, 0)));
+  for (let index = 1; index < groups.length; index += 1) {
+    assert.ok(groups[index].x - groups[index - 1].x >= (pillWidth(groups[index].label) + pillWidth(groups[index - 1].label)) / 2);
+  }
+});
+
+test("pills under one another stay apart from 22 px", () => {
+  assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 2, 0, 21)]), ["A1–2"]);
+  assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 2, 0, 23)]), ["A1", "A2"]);
+});
+
+test("a merged pill says runs, and where they are long how many targets", () => {
   assert.equal(mergedLabel("C", [4, 3]), "C3–4");
   assert.equal(mergedLabel("C", [1, 3]), "C1, 3");
-  assert.equal(mergedLabel("C", [10, 11, 12, 13, 16, 17]), "C × 6");
+  assert.equal(mergedLabel("C", [10, 11, 12, 13, 16, 17]), "C, 6 targets");
+  assert.equal(mergedLabel("", [1, 3, 5, 7, 9, 11, 13, 15, 17]), "9 targets");
+});
+
+test("targets that are not reached keep their cross and stay apart from the planned ones", () => {
+  assert.deepEqual(labels([pill(null, 4, 0, 0, true), pill(0, 1, 5, 0)]), ["×", "A1"]);
+  assert.deepEqual(labels([pill(null, 4, 0, 0, true), pill(null, 9, 5, 0, true)]), ["× 2 targets"]);
+});
+
+const COLUMBUS = [-83.2, 39.8, -82.7, 40.2];
+const SCREEN = [1064, 852];
+
+test("a view goes into the address and comes back", () => {
+  const view = { zoom: 12.35, centre: [-82.99879, 39.96118] };
+  assert.equal(hashOf(view), "#map=12.35/39.96118/-82.99879");
+  assert.deepEqual(viewOf(hashOf(view)), view);
+  for (const hash of ["", "#map=", "#map=1/2", "#map=4/95/10", "#map=4/10/190", "#map=99/1/1"]) assert.equal(viewOf(hash), null, hash);
+});
+
+test("a view without anything of the ground is not worth going to", () => {
+  assert.equal(showsAnything({ zoom: 11, centre: [-83, 40] }, SCREEN, COLUMBUS), true);
+  assert.equal(showsAnything({ zoom: 11, centre: [-84, 40] }, SCREEN, COLUMBUS), false);
+  assert.equal(showsAnything({ zoom: 11, centre: [-83, 41] }, SCREEN, COLUMBUS), false);
+  assert.equal(showsAnything({ zoom: 11, centre: [-84, 40] }, SCREEN, null), true);
+});
+
+test("nor is one in which the whole ground is a dot", () => {
+  assert.equal(showsAnything({ zoom: 3.48, centre: [-80, 40] }, SCREEN, COLUMBUS), false);
+  assert.equal(showsAnything({ zoom: 7, centre: [-80, 40] }, SCREEN, COLUMBUS), true);
+  assert.equal(showsAnything({ zoom: 14, centre: [10, 50] }, SCREEN, [10, 50, 10, 50]), true); // a single tower, near
+});
+
+test("codes of a zone file are told in words", () => {
+  assert.equal(plainWords("AIR_TRAFFIC"), "Air traffic");
+  assert.equal(plainWords("AIR_TRAFFIC, NATURE"), "Air traffic, nature");
+  assert.equal(plainWords("Breeding season; keep out"), "Breeding season; keep out");
 });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { firstDetail } from "../../static/js/api.js";
-import { inPlanOrder, isPlanCurrent, isUnsaved, placesOf, sentenceOf, unreachedOf } from "../../static/js/mission/plan_view.js";
+import { endingOf, endingsOf, inPlanOrder, isPlanCurrent, isUnsaved, placesOf, sentenceOf, unreachedOf } from "../../static/js/mission/plan_view.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";
 
 const target = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [id, 50] });
@@ -41,7 +41,23 @@ test("the sentence says what happens, then the figures", () => {
 
 test("UAVs that stay out are not said to be back", () => {
   const open = { ...plan, result: { ...plan.result, return_to_start: false } };
-  assert.equal(plain(sentenceOf(open).sentence), "All done in 33 min");
+  assert.equal(plain(sentenceOf(open).sentence), "Done in 33 min");
+});
+
+test("a route says how its flight ends", () => {
+  const route = { letter: "A", targets: [4, 2] };
+  assert.equal(endingOf({ ...route, end_action: "hover" }), "ends hovering at A2");
+  assert.equal(endingOf({ ...route, end_action: "land" }), "lands at A2");
+  assert.equal(endingOf({ ...route, end_action: "return" }), "returns to start");
+});
+
+test("the switch says what happens without it", () => {
+  const [hovers, lands] = [{ end_action: "hover" }, { end_action: "land" }];
+  assert.match(endingsOf({ return_to_start: true, uavs: [hovers] }), /flies back/);
+  assert.match(endingsOf({ return_to_start: false, uavs: [hovers, hovers] }), /ends hovering at its last target/);
+  assert.match(endingsOf({ return_to_start: false, uavs: [lands] }), /lands at its last target/);
+  assert.match(endingsOf({ return_to_start: false, uavs: [hovers, lands] }), /as set for it/);
+  assert.match(endingsOf({ return_to_start: false, uavs: [] }), /ends at its last target/);
 });
 
 test("what is not reached is told with the server's reason", () => {

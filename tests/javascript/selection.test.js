@@ -51,9 +51,10 @@ test("a stored mission opens as it was picked", () => {
 
 test("a row's second fact says how much of a line is picked, then what the server says", () => {
   assert.deepEqual([tower, wholeLine, pointOnLine].map(({ detail }) => detail), ["138 kV AEP", "whole line · voltage not stated", "one point · voltage not stated"]);
-  assert.equal(detailOf("railway", "CSX"), "whole track · CSX");
-  assert.equal(detailOf("line", ""), "whole line");
-  assert.equal(detailOf("bridge", undefined), "");
+  assert.equal(detailOf("railway", { detail: "CSX", length_m: 4_612 }), "section, 4.6\u00a0km · CSX");
+  assert.equal(detailOf("railway", { detail: "CSX", length_m: 4_612 }, [10, 50]), "one point · CSX");
+  assert.equal(detailOf("line", { detail: "", length_m: 12_300 }), "whole line, 12.3\u00a0km");
+  assert.equal(detailOf("bridge", {}), "");
   assert.equal(nameOf(tower), "Tower 18 of 41, 138 kV AEP");
   assert.equal(nameOf({ label: "Place", detail: "" }), "Place");
 });

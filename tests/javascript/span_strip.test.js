@@ -35,19 +35,42 @@ test("ticks are at least 3.5 px apart", () => {
   for (let index = 1; index < ticks.length; index += 1) assert.ok(ticks[index] - ticks[index - 1] >= 3.5 - 1e-9);
 });
 
-test("targets that would touch are pushed 19 px apart and stay inside", () => {
-  const crowd = [waypoint(0, "start"), ...[3.96, 3.97, 3.98].map((longitude, target) => waypoint(longitude, "target", { target })), waypoint(4, "end")];
-  const { targets } = layOut(profileOf(crowd, 400_000), 400_000, 300);
-  assert.deepEqual(targets.map(({ target }) => target), [0, 1, 2]);
-  assert.ok(targets[1].x - targets[0].x >= 19 && targets[2].x - targets[1].x >= 19);
-  assert.ok(targets[2].x <= 290);
+const targetsAt = (longitudes) => [waypoint(0, "start"), ...longitudes.map((longitude, target) => waypoint(longitude, "target", { target })), waypoint(4, "end")];
+const pillsOf = (longitudes, width_px = 420) => layOut(profileOf(targetsAt(longitudes), 400_000), 400_000, width_px).pills;
+
+function assertApart(pills, width_px) {
+  for (let index = 1; index < pills.length; index += 1) assert.ok(pills[index].x - pills[index - 1].x >= (pills[index].width + pills[index - 1].width) / 2);
+  assert.ok(pills[0].x - pills[0].width / 2 >= 0 && pills.at(-1).x + pills.at(-1).width / 2 <= width_px);
+}
+
+test("two targets that would touch are pushed 19 px apart", () => {
+  const pills = pillsOf([2, 2.1]);
+  assert.deepEqual(pills.map(({ label }) => label), ["1", "2"]);
+  assert.ok(Math.abs(pills[1].x - pills[0].x - 19) < 1e-9);
 });
 
-test("more targets than fit side by side are drawn at their true places", () => {
-  const many = [waypoint(0, "start"), ...Array.from({ length: 60 }, (_, target) => waypoint(1 + target / 100, "target", { target })), waypoint(4, "end")];
-  const plan = layOut(profileOf(many, 400_000), 400_000, 420);
-  assert.equal(plan.isCrowded, true);
-  assert.ok(Math.abs(plan.targets[0].x - 110) < 0.5 && plan.targets[59].x < 170);
+test("targets that stand where others are pushed to become one pill", () => {
+  const pills = pillsOf([1, 2, 2.01, 2.02, 2.03, 2.04, 3]);
+  assert.deepEqual([pills[0].label, pills.at(-1).label], ["1", "7"]);
+  assert.deepEqual(pills.flatMap(({ targets }) => targets), [0, 1, 2, 3, 4, 5, 6]);
+  for (const pill of pills) assert.ok(Math.abs(pill.x - pill.true_x) <= 14);
+  assertApart(pills, 420);
+});
+
+test("33 targets in a row stay on the strip", () => {
+  for (const width_px of [160, 420, 700]) {
+    const pills = pillsOf(Array.from({ length: 33 }, (_, index) => 0.5 + index / 20), width_px);
+    assert.deepEqual([pills[0].first, pills.at(-1).last], [1, 33]);
+    assert.ok(pills.some(({ label }) => /^\d+–\d+$/.test(label)));
+    assert.ok(pills.every(({ x }) => x >= 10 - 1 && x <= width_px - 10 + 1));
+    assertApart(pills, width_px);
+  }
+});
+
+test("a route too short for its targets has one pill for all of them", () => {
+  const [pill, ...rest] = layOut(profileOf(targetsAt([1, 2, 3]), 400), 400_000, 420).pills;
+  assert.deepEqual([pill.label, rest.length], ["1–3", 0]);
+  assert.ok(pill.x - pill.width / 2 >= 0);
 });
 
 test("a distance in the strip is a position on the map", () => {

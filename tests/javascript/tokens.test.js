@@ -78,8 +78,10 @@ test("towers of 200 kV and over are drawn from zoom 10, the others from 10.6", (
   const { layers } = mapStyle(palette, { tilesAddress: "", baseMap: null, satellite: null, under: "" });
   const [high, all] = ["towers-high", "towers"].map((id) => layers.find((layer) => layer.id === id));
   assert.deepEqual([high.minzoom, high.maxzoom, all.minzoom], [10, 10.6, 10.6]);
-  assert.deepEqual(high.filter, [">=", ["coalesce", ["get", "voltage"], -1], 200]);
-  assert.equal(all.filter, undefined);
+  const isNoPole = ["!", ["==", ["get", "subtype"], "pole"]];
+  assert.deepEqual(high.filter, ["all", isNoPole, [">=", ["coalesce", ["get", "voltage"], -1], 200]]);
+  assert.deepEqual(all.filter, isNoPole);
+  assert.equal(layers.find((layer) => layer.id === "towers-ring").filter, undefined); // from here on poles too
 });
 
 test("routes lie over lines and zone hatching under them", () => {

@@ -1,18 +1,18 @@
 /** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
 
-import { PICKABLE } from "./style.js";
+import { PICKABLE, TILES } from "./style.js";
 
 const REACH_PX = { fine: 6, coarse: 16 };
 const KINDS = { towers: "tower", bridges: "bridge", bridge_points: "bridge", railways: "railway", lines: "line", zones: "zone" };
 
-/** Of what lies under the pointer, the first in the order of picking: { kind, id, properties, geometry } or null. */
+/** Of what lies under the pointer, the first in the order of picking: { kind, layer, id, properties, geometry } or null. */
 export function firstInOrder(features, kinds = null) {
   const isIdle = (feature) => feature.properties.flyable === false; // underground, out of use: behind all that can be flown to
   const rank = (feature) => PICKABLE.indexOf(feature.layer.id) + (isIdle(feature) ? PICKABLE.length : 0);
   const isWanted = (feature) => PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
   const best = features.filter(isWanted).sort((a, b) => rank(a) - rank(b))[0];
   if (!best) return null;
-  return { kind: KINDS[best.sourceLayer], id: best.properties.id, properties: best.properties, geometry: best.geometry };
+  return { kind: KINDS[best.sourceLayer], layer: best.sourceLayer, id: best.properties.id, properties: best.properties, geometry: best.geometry };
 }
 
 /** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */
@@ -33,6 +33,13 @@ export function nearestOnLine(geometry, [longitude, latitude]) {
     }
   }
   return best?.position.map((degrees) => Number(degrees.toFixed(7))) ?? null;
+}
+
+/** All pieces of what was met that the map has loaded: a tile holds a line only as far as its own edge. */
+export function piecesOf(map, thing) {
+  if (thing.geometry.type === "Point") return [thing.geometry];
+  const pieces = map.querySourceFeatures(TILES, { sourceLayer: thing.layer, filter: ["==", ["get", "id"], thing.id] }).map((feature) => feature.geometry);
+  return pieces.length ? pieces : [thing.geometry];
 }
 
 /** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), tool(), kinds(): those that count now, or null } */

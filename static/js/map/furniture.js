@@ -34,7 +34,18 @@ const LEGEND = [
   },
 ];
 
+/** UAVs stand on the map as HTML, not in a layer. */
+const UAV_ROW = {
+  words: "UAV",
+  draw: () => sample(svg("path", { d: "M13 1L18.5 11L13 8.5L7.5 11Z", fill: "var(--map-casing)", stroke: "var(--ink-2)", "stroke-width": 1.3, "stroke-linejoin": "round" })),
+};
+
 const legendItems = (rows) => rows.map(({ words, draw }) => h("li", {}, draw(), words));
+
+function isWithin(element, frame) {
+  const [inner, outer] = [element.getBoundingClientRect(), frame.getBoundingClientRect()];
+  return inner.right > outer.left && inner.left < outer.right && inner.bottom > outer.top && inner.top < outer.bottom;
+}
 
 /** A legend of what is in view. */
 export function mountLegend(map) {
@@ -44,6 +55,7 @@ export function mountLegend(map) {
     const layers = [...new Set(LEGEND.map((row) => row.layer))].filter((id) => map.getLayer(id));
     const seen = map.queryRenderedFeatures({ layers });
     const rows = LEGEND.filter((row) => seen.some((feature) => feature.layer.id === row.layer && row.test(feature.properties)));
+    if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer()))) rows.push(UAV_ROW);
     const words = rows.map((row) => row.words).join();
     if (words === shown) return;
     shown = words;
@@ -126,6 +138,13 @@ function limitWords(value, reference) {
   return `${Math.round(value)} m${references[String(reference).toLowerCase()] ? ` ${references[String(reference).toLowerCase()]}` : ""}`;
 }
 
+/** The words of a zone file's code: "AIR_TRAFFIC, NATURE" becomes "Air traffic, nature". Other texts stay as they are. */
+export function plainWords(text) {
+  if (!/^[A-Z][A-Z_]+(, ?[A-Z][A-Z_]+)*$/.test(text)) return text;
+  const words = text.toLowerCase().replaceAll("_", " ");
+  return words[0].toUpperCase() + words.slice(1);
+}
+
 /** The tooltip's content for an asset or a zone. */
 export function tipOf({ kind, properties }) {
   if (kind === "zone") {
@@ -135,8 +154,9 @@ export function tipOf({ kind, properties }) {
     return [
       h("strong", {}, properties.name),
       h("span", { class: "zone-chip" }, icon("circle-alert", "small"), "No-fly zone"),
-      h("div", {}, isStated ? `From ${lower} to ${upper}` : "Heights not stated: all heights"),
-      properties.reason && h("div", { class: "quiet-text" }, properties.reason),
+      h("div", {}, isStated ? `From ${lower} to ${upper}` : "Heights not stated"),
+      properties.reason && h("div", {}, plainWords(properties.reason)),
+      h("div", { class: "quiet-text" }, "Counts at all heights and times for now"),
     ].filter(Boolean);
   }
   return [
@@ -162,7 +182,7 @@ export function layersMenu({ under, isShown, show }) {
     h("h2", {}, "Shown"),
     ...GROUPS.map((group) => h("label", {}, h("input", { type: "checkbox", class: "check", checked: isShown(group), onchange: (event) => show(group, event.target.checked) }), group.name)),
     h("h2", { class: "legend-head" }, "Legend"),
-    h("ul", { class: "legend" }, legendItems(LEGEND)),
+    h("ul", { class: "legend" }, legendItems([...LEGEND, UAV_ROW])),
   );
   return menu;
 }

@@ -1,21 +1,31 @@
 /** The map itself: made once, coloured again when the theme changes, with its camera. */
 
+import { hashOf, showsAnything, viewOf } from "./address.js";
 import { provideImages } from "./images.js";
 import * as graticule from "./layers/graticule.js";
 import { maplibre } from "./maplibre.js";
 import { readPalette } from "./palette.js";
 import { mapStyle, repaint } from "./style.js";
 
-const WORLD = [-12, 25, 40, 62];
+const WORLD = [-12, 25, 40, 62]; // where nothing is known of the ground
 
-export function createMap(container, { baseMap, satellite, under, describe }) {
+const NEAREST_FIT = 15;
+const CONTROLS_PX = 68; // they stand at the right edge
+const FOOT_GAP_PX = 24;
+
+/** The map opens at the view in the page's address if that shows something of `extent`, else at `bounds`; both [west, south, east, north]. */
+export function createMap(container, { baseMap, satellite, under, describe, bounds, extent }) {
   const options = { tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`, baseMap, satellite, under };
   let palette = readPalette();
+  const addressed = () => {
+    const view = viewOf(location.hash);
+    return view && showsAnything(view, [container.clientWidth, container.clientHeight], extent) ? view : null;
+  };
+  const opened = addressed();
   const map = new maplibre.Map({
     container,
     style: mapStyle(palette, options),
-    bounds: WORLD,
-    hash: "map", // the view is part of the address: #map=zoom/lat/lon
+    ...(opened ? { center: opened.centre, zoom: opened.zoom } : { bounds: bounds ?? WORLD, fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT } }),
     attributionControl: false,
     dragRotate: false,
     pitchWithRotate: false,
@@ -29,6 +39,14 @@ export function createMap(container, { baseMap, satellite, under, describe }) {
   map.keyboard.disableRotation();
   const redrawImages = provideImages(map, () => palette);
   map.on("load", () => graticule.addTo(map));
+  let keepsAddress = opened !== null;
+  map.on("moveend", () => {
+    if (keepsAddress) history.replaceState(history.state, "", hashOf({ zoom: map.getZoom(), centre: map.getCenter().toArray() }));
+  });
+  addEventListener("hashchange", () => {
+    const view = addressed();
+    if (view) map.jumpTo({ center: view.centre, zoom: view.zoom });
+  });
   map.on("error", ({ error, sourceId }) => {
     // A base map that cannot be reached is no fault of ours: the map is complete without it.
     if (sourceId === "base-map" || sourceId === "satellite") return;
@@ -38,6 +56,7 @@ export function createMap(container, { baseMap, satellite, under, describe }) {
   return {
     map,
     palette: () => palette,
+    opensAtPlace: opened !== null,
     ready: new Promise((resolve) => map.once("load", resolve)),
     recolour() {
       palette = readPalette();
@@ -55,18 +74,21 @@ export function createMap(container, { baseMap, satellite, under, describe }) {
     },
     /** Fits [west, south, east, north] into what is visible of the map. */
     fit(box, { animate = true } = {}) {
+      keepsAddress = true; // from here on the view is one that somebody may come back to
       if (!box) return;
-      const room = Math.min(container.clientWidth, container.clientHeight);
       const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-      const padding = Math.min(64, room / 6);
-      const controls_px = 68; // they stand at the right edge
-      map.fitBounds([[box[0], box[1]], [box[2], box[3]]], {
-        padding: { top: padding, bottom: padding, left: padding, right: Math.max(padding, controls_px) },
-        maxZoom: 15,
-        duration: animate && !calm ? 350 : 0,
-      });
+      map.fitBounds([[box[0], box[1]], [box[2], box[3]]], { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration: animate && !calm ? 350 : 0 });
     },
   };
+}
+
+/** Room for pills at the edges, for the controls on the right and for legend and attribution below. */
+function paddingIn(container) {
+  const { clientWidth: width, clientHeight: height } = container;
+  const edge = Math.min(64, Math.min(width, height) / 6);
+  const foot = container.parentElement.querySelector(".map-edge")?.offsetHeight ?? 0;
+  const bottom = Math.min(Math.max(edge, foot + FOOT_GAP_PX), height / 3);
+  return { top: edge, bottom, left: edge, right: Math.min(Math.max(edge, CONTROLS_PX), width / 4) };
 }
 
 /** The box round positions, or null where there are none. */

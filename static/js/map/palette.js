@@ -23,6 +23,7 @@ const NAMES = {
   zone: "--zone",
   zoneFill: "--zone-fill",
   select: "--select",
+  critical: "--critical",
   font: "--font",
 };
 

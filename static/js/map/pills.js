@@ -1,22 +1,48 @@
 /** Which target pills share one place on the screen, and what a shared one says. Values in, values out. */
 
-const MERGE_PX = 25;
-const LONGEST_LABEL = 8;
+import { countText } from "../units.js";
 
-/** Groups of pills to draw, given their places on the screen: [{ members, x, y }]. */
+const LONGEST_RUNS = 8;
+const LETTER_PX = 7;
+const PADDING_PX = 18;
+const LEAST_WIDTH_PX = 28;
+const HEIGHT_PX = 22;
+
+/** How wide a pill with this label is drawn, about. */
+export const pillWidth = (label) => Math.max(LEAST_WIDTH_PX, label.length * LETTER_PX + PADDING_PX);
+
+const isSameKind = (a, b) => a.sequence === b.sequence && a.isMissed === b.isMissed;
+
+/** Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Those of one UAV that would overlap become one. */
 export function mergePills(pills) {
-  const groups = [];
-  for (const pill of pills) {
-    const group = groups.find(
-      (candidate) => candidate.members[0].sequence === pill.sequence && Math.hypot(candidate.x - pill.x, candidate.y - pill.y) < MERGE_PX,
-    );
-    if (group) group.members.push(pill);
-    else groups.push({ x: pill.x, y: pill.y, members: [pill] });
+  let groups = pills.map((pill) => ({ x: pill.x, y: pill.y, members: [pill], label: groupLabel([pill]) }));
+  for (let isMerged = true; isMerged; ) {
+    isMerged = false;
+    const kept = [];
+    for (const group of groups) {
+      const near = kept.find((other) => isSameKind(other.members[0], group.members[0]) && overlap(other, group));
+      if (near) {
+        near.members.push(...group.members);
+        near.label = groupLabel(near.members);
+        isMerged = true;
+      } else kept.push(group);
+    }
+    groups = kept;
   }
   return groups;
 }
 
-/** "C3", "C3–4", "C1, 3–4": letter once, runs with a dash; "C × 12" where that would be long. */
+function overlap(a, b) {
+  return Math.abs(a.x - b.x) < (pillWidth(a.label) + pillWidth(b.label)) / 2 && Math.abs(a.y - b.y) < HEIGHT_PX;
+}
+
+function groupLabel(members) {
+  const [first] = members;
+  if (first.isMissed) return members.length === 1 ? "×" : `× ${countText(members.length, "target")}`;
+  return mergedLabel(first.letter, members.map((pill) => pill.number));
+}
+
+/** "C3", "C3–4", "C1, 3–4": letter once, runs with a dash; "C, 12 targets" where that would be long. */
 export function mergedLabel(letter, numbers) {
   const runs = [];
   for (const number of [...numbers].sort((a, b) => a - b)) {
@@ -25,5 +51,6 @@ export function mergedLabel(letter, numbers) {
     else runs.push([number]);
   }
   const label = letter + runs.map((run) => (run.length > 1 ? `${run[0]}–${run.at(-1)}` : `${run[0]}`)).join(", ");
-  return label.length <= LONGEST_LABEL ? label : `${letter} × ${numbers.length}`.trim();
+  if (label.length <= LONGEST_RUNS) return label;
+  return [letter, countText(numbers.length, "target")].filter(Boolean).join(", ");
 }

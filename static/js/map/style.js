@@ -23,6 +23,7 @@ const byVoltage = (...values) => {
 const WIDTHS_PX = [1.2, 0.8, 1.1, 1.6, 2.2, 3]; // at zoom 12: not stated, under 50, 50, 100, 200, 380 kV and over
 const widthsTimes = (factor, more = 0) => byVoltage(...WIDTHS_PX.map((width) => width * factor + more));
 const lineWidth = (more = 0) => ["interpolate", ["linear"], ["zoom"], 5, widthsTimes(0.5, more), 9, widthsTimes(0.75, more), 12, widthsTimes(1, more), 17, widthsTimes(1.7, more)];
+const NEAR_ZOOM = 13; // zone names stand from here on, however small the zone
 const isPole = ["==", ["get", "subtype"], "pole"];
 
 /** Colour of a voltage in kV, for the legend and the tests. */
@@ -32,7 +33,7 @@ export function voltageColour(palette, voltage_kv) {
   return palette[steps.find(([least]) => voltage_kv >= least)?.[1] ?? "volt20"];
 }
 
-const routeColour = (palette) => ["match", ["get", "route"], ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond];
+const routeColour = (palette) => ["match", ["get", "route"], -1, palette.critical, ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond];
 const routeWidth = (more = 0) => ["interpolate", ["linear"], ["zoom"], 10, 2.8 + more, 14, 4.5 + more];
 const ROUTE_OFFSET = ["interpolate", ["linear"], ["zoom"], 10, 2.4, 14, 4.5]; // drive on the right
 const whereDashed = (isDashed) => ["==", ["get", "dashed"], isDashed];
@@ -86,7 +87,8 @@ export function mapStyle(palette, options) {
 function infrastructureLayers(palette) {
   const tiles = (id, type, sourceLayer, rest) => ({ id, type, source: TILES, "source-layer": sourceLayer, ...rest });
   const round = { "line-cap": "round", "line-join": "round" };
-  const towerDot = { "circle-color": palette.tower, "circle-radius": ["case", isPole, 0.8, 1.2] };
+  const towerDot = { "circle-color": palette.tower, "circle-radius": 1.2 };
+  const isTower = ["!", isPole]; // a pole would be too small to see, and what is not drawn cannot be clicked
   const lineColour = byVoltage(palette.voltUnknown, palette.volt20, palette.volt66, palette.volt132, palette.volt220, palette.volt400);
   return [
     tiles("zones-fill", "fill", "zones", { paint: { "fill-color": palette.zone, "fill-opacity": palette.isDark ? 0.08 : 0.07 } }),
@@ -115,8 +117,8 @@ function infrastructureLayers(palette) {
       paint: { "line-color": palette.voltUnknown, "line-width": lineWidth(), "line-dasharray": [4, 2] },
     }),
     tiles("lines", "line", "lines", { filter: ["has", "voltage"], layout: round, paint: { "line-color": lineColour, "line-width": lineWidth() } }),
-    tiles("towers-high", "circle", "towers", { minzoom: 10, maxzoom: 10.6, filter: [">=", voltage, 200], paint: towerDot }),
-    tiles("towers", "circle", "towers", { minzoom: 10.6, maxzoom: 12.6, paint: towerDot }),
+    tiles("towers-high", "circle", "towers", { minzoom: 10, maxzoom: 10.6, filter: ["all", isTower, [">=", voltage, 200]], paint: towerDot }),
+    tiles("towers", "circle", "towers", { minzoom: 10.6, maxzoom: 12.6, filter: isTower, paint: towerDot }),
     tiles("towers-ring", "circle", "towers", {
       minzoom: 12.6,
       paint: {
@@ -177,6 +179,10 @@ export function routeOpacity(palette, lookedAt) {
   return lookedAt === null ? 1 : ["case", ["==", ["get", "sequence"], lookedAt], 1, palette.isDark ? 0.42 : 0.3];
 }
 
+const zoneName = ["coalesce", ["get", "name"], ["get", "label"], ""];
+const zoneWidth_px = ["*", ["coalesce", ["get", "width_deg"], 0], 512 / 360, ["^", 2, ["zoom"]]];
+const zoneNameWidth_px = ["min", 100, ["*", 6.5, ["length", zoneName]]]; // longer names are broken
+
 function labelLayers(palette) {
   const halo = { "text-color": palette.label, "text-halo-color": palette.halo, "text-halo-width": 2 };
   const text = (size = 11) => ({ "text-font": palette.fonts, "text-size": size });
@@ -205,7 +211,8 @@ function labelLayers(palette) {
       id: "zone-labels",
       "source-layer": "zone_labels",
       minzoom: 9,
-      layout: { ...text(12), "text-field": ["coalesce", ["get", "name"], ["get", "label"], ""], "text-max-width": 9 },
+      filter: ["any", [">=", ["zoom"], NEAR_ZOOM], [">=", zoneWidth_px, zoneNameWidth_px]],
+      layout: { ...text(12), "text-field": zoneName, "text-max-width": 9 },
       paint: { ...halo, "text-color": palette.zone },
     },
   ];

@@ -2,7 +2,7 @@
 
 import { get } from "../api.js";
 import { byId, h, icon } from "../dom.js";
-import { routeClicks, nearestOnLine } from "../map/click_router.js";
+import { nearestOnLine, piecesOf, routeClicks } from "../map/click_router.js";
 import { createTip, layersMenu, mountCoordinates, mountLegend, mountScale, setAttribution, tipOf } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import * as selectionLayer from "../map/layers/selection.js";
@@ -12,10 +12,11 @@ import { boxAround, createMap } from "../map/map_view.js";
 import { toggleMenu } from "../page/chrome.js";
 import { onTheme } from "../page/theme.js";
 import { toast } from "../page/toast.js";
-import { isPlanCurrent, placesOf, routesOf } from "./plan_view.js";
+import { isPlanCurrent, placesOf, routesOf, unreachedOf } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
-import { isWhole, nameOf, targetOf } from "./selection.js";
+import { extentOf, isWhole, nameOf, targetOf } from "./selection.js";
 
+const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 const UNDER_KEY = "spanwise.base-map";
 
 function rememberedUnder(page) {
@@ -29,23 +30,30 @@ function rememberedUnder(page) {
   return remembered === "" || offered.includes(remembered) ? remembered : (offered[0] ?? "");
 }
 
+const cornersOf = (...boxes) => boxes.flatMap(([west, south, east, north]) => [[west, south], [east, north]]);
+
 export function mountMap(store, actions, page, { askForUav }) {
   const frame = byId("map").parentElement;
   const container = byId("map");
   let under = rememberedUnder(page);
-  const opensAtPlace = location.hash.includes("map="); // asked before the map writes its own view there
-  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: "Map" });
-  const { map } = view;
+  const { baseMap, satellite, extent } = page;
+  const view = createMap(container, { baseMap, satellite, under, describe: "Map", bounds: page.bounds ?? extent, extent: page.bounds && extent ? boxAround(cornersOf(page.bounds, extent)) : extent });
+  const { map, opensAtPlace } = view;
   const shapes = new Map(); // asset id → geometry of what is picked whole
   const hidden = new Set();
+  let pointed = null; // what the pointer is at on the map
   const targets = createTargets(map, { onPick: (key) => store.update({ chosenTarget: key }), onHover: (key) => store.update({ litTarget: key }) });
   const uavs = createUavs(map, {
     onMove: actions.moveUav,
-    onPick: (id) => page.canPlan && actions.toggleUav(id, true),
+    onPick: (id) => page.canPlan && actions.addUavOfFleet(id),
     onLook: (sequence) => store.update({ lookedAt: store.state.plan ? sequence : null }),
   });
   const tip = createTip(frame);
   const showCoordinates = mountCoordinates();
+
+  // The focus ring is for the keyboard: a click into the map gives it the focus too, and a key pressed later would show the ring.
+  container.addEventListener("pointerdown", () => (container.dataset.pointed = "true"));
+  container.addEventListener("focusout", () => delete container.dataset.pointed);
 
   container.project = (position) => map.project(position); // screen place of a position, for tests
   map.on("idle", () => (container.dataset.idle = "true"));
@@ -105,7 +113,7 @@ export function mountMap(store, actions, page, { askForUav }) {
       "div",
       { class: "map-choice float", role: "group", "aria-label": nameOf(thing.properties) },
       h("p", { class: "caption" }, nameOf(thing.properties)),
-      h("button", { type: "button", onclick: pick(null) }, icon(thing.kind), "Whole line"),
+      h("button", { type: "button", onclick: pick(null) }, icon(thing.kind), sentence(extentOf(thing.kind, thing.properties.length_m))),
       h("button", { type: "button", onclick: pick(place) }, icon("map-pin"), "This point"),
     );
     frame.append(choice);
@@ -113,7 +121,11 @@ export function mountMap(store, actions, page, { askForUav }) {
     choice.style.top = `${Math.min(point.y + 12, frame.clientHeight - choice.offsetHeight - 8)}px`;
     choice.querySelector("button").focus();
   }
-  map.on("movestart", closeChoice);
+  map.on("movestart", () => {
+    closeChoice();
+    pointed = null; // what was under the pointer moves away from it
+    ringHovered(store.state);
+  });
 
   function click(thing, place, point) {
     closeChoice();
@@ -146,7 +158,10 @@ export function mountMap(store, actions, page, { askForUav }) {
     hover(thing, point, place) {
       showCoordinates(place);
       tip(thing ? `${thing.kind} ${thing.id}` : null, point, () => tipOf(thing));
-      if (store.state.litTarget === null) selectionLayer.showHovered(map, thing && thing.kind !== "zone" && !choice ? thing.geometry : null);
+      const next = thing && thing.kind !== "zone" && !choice ? thing : null;
+      if (next?.id === pointed?.id && next?.kind === pointed?.kind) return;
+      pointed = next;
+      ringHovered(store.state);
     },
     box: (box) => {
       if (page.canPlan) actions.addBox(box);
@@ -174,12 +189,23 @@ export function mountMap(store, actions, page, { askForUav }) {
     selectionLayer.update(map, selection.targets.filter(isWhole).map((target) => shapes.get(target.asset)).filter(Boolean));
   }
 
+  /** The ring stands round what a list row or pill is at, else round what the pointer is at. */
+  function ringHovered({ litTarget, selection }) {
+    const target = selection.targets.find(({ key }) => key === litTarget);
+    const shape = target && isWhole(target) ? shapes.get(target.asset) : null;
+    if (shape) selectionLayer.showHovered(map, [shape]);
+    else if (target?.centre) selectionLayer.showHovered(map, [{ type: "Point", coordinates: target.centre }]);
+    else selectionLayer.showHovered(map, pointed ? piecesOf(map, pointed) : []);
+  }
+
   function drawTargets(state) {
-    const places = isPlanCurrent(state) ? placesOf(state.plan) : new Map();
+    const isCurrent = isPlanCurrent(state);
+    const missed = new Set(isCurrent ? unreachedOf(state.plan).map(({ target }) => target?.key) : []);
+    const places = isCurrent ? placesOf(state.plan) : new Map();
     const pills = state.selection.targets
       .map((target, index) => {
         const place = places.get(target.key);
-        return { key: target.key, name: nameOf(target), position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1 };
+        return { key: target.key, name: nameOf(target), position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1, isMissed: missed.has(target.key) };
       })
       .filter((pill) => pill.position);
     targets.update(pills);
@@ -193,7 +219,9 @@ export function mountMap(store, actions, page, { askForUav }) {
     store.listen(["selection", "plan"], drawTargets);
     store.listen(["plan"], ({ plan }) => {
       routesLayer.update(map, routesOf(plan));
-      if (plan && !(opensAtPlace && store.state.planIsStored)) fit();
+      // A plan that was just made is looked at. A stored one is what the map opened at, but the dock took room from it; after saving nothing moves.
+      if (plan && !store.state.planIsStored) fit();
+      else if (plan && !opensAtPlace && !wasFitted) fit({ animate: false });
     });
     store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], (state) => {
@@ -202,12 +230,8 @@ export function mountMap(store, actions, page, { askForUav }) {
       routesLayer.lookAt(map, view.palette(), isOutdated ? -1 : sequence);
       targets.lookAt(isOutdated ? null : sequence);
     });
-    store.listen(["litTarget", "chosenTarget"], (state) => {
-      const target = state.selection.targets.find(({ key }) => key === state.litTarget);
-      const shape = target && isWhole(target) ? shapes.get(target.asset) : null;
-      selectionLayer.showHovered(map, shape ?? (target?.centre ? { type: "Point", coordinates: target.centre } : null));
-      targets.choose(state.chosenTarget);
-    });
+    store.listen(["litTarget", "selection"], ringHovered);
+    store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
     store.listen(["ground"], ({ ground }) => {
       attribute();
       byId("demo-badge").hidden = !ground?.is_synthetic;
@@ -218,7 +242,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   store.listen(["tool"], ({ tool }) => {
     frame.dataset.tool = tool;
     const banner = byId("map-banner");
-    const words = { box: "Drag a box round towers and bridges.", line: "Click a line or a track: it is flown end to end.", place: "Click where the UAV takes off, or press Enter for the middle of the map." }[tool];
+    const words = { box: "Drag a box round towers and bridges.", line: "Click a line, or a section of a railway: it is flown end to end.", place: "Click where the UAV takes off, or press Enter for the middle of the map." }[tool];
     banner.hidden = !words;
     banner.replaceChildren(words ?? "", h("button", { type: "button", class: "text-button", onclick: () => store.update({ tool: "point" }) }, tool === "place" ? "Cancel" : "Done"));
   });
@@ -227,15 +251,19 @@ export function mountMap(store, actions, page, { askForUav }) {
     map.getCanvas().setAttribute("aria-label", `Map, ${selection.targets.length} targets, ${routes} routes`);
   });
 
+  /** Routes and targets; UAVs only as long as nothing says which of them fly. */
   function positionsOfMission({ plan, selection }) {
     const flown = routesOf(plan).flatMap((route) => route.geometry?.coordinates ?? []);
-    return [...flown, ...selection.targets.map((target) => target.centre).filter(Boolean), ...selection.uavs.map((uav) => uav.position)];
+    const places = [...flown, ...selection.targets.map((target) => target.centre).filter(Boolean)];
+    return flown.length ? places : [...places, ...selection.uavs.map((uav) => uav.position)];
   }
 
+  let wasFitted = false;
   function fit(options) {
+    wasFitted = true;
     map.resize(); // the dock may just have come: fit into what is left
     const positions = positionsOfMission(store.state);
-    view.fit(positions.length > 1 ? boxAround(positions) : (store.state.ground?.extent ?? boxAround(positions)), options);
+    view.fit(positions.length > 1 ? boxAround(positions) : (store.state.ground?.extent ?? extent ?? boxAround(positions)), options);
   }
 
   return {

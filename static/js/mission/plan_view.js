@@ -14,8 +14,8 @@ const REASONS = {
 };
 
 export const OBJECTIVES = [
-  { value: "makespan", words: "Finish soonest" },
-  { value: "total", words: "Fly least" },
+  { value: "makespan", words: "Even routes", meaning: "The longest route as short as possible" },
+  { value: "total", words: "Fly least", meaning: "All routes together as short as possible" },
 ];
 
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
@@ -59,7 +59,7 @@ export function longestDuration_s(result) {
   return Math.max(0, ...result.routes.map((route) => route.duration_s));
 }
 
-/** "Finish soonest 56 min, 79.5 km": what an objective gives, where it has been planned. */
+/** "Even routes 56 min, 79.5 km": what an objective gives, where it has been planned. */
 export function figuresOf(result) {
   return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
 }
@@ -71,13 +71,30 @@ export function sentenceOf(plan) {
   const visited = plan.targets.length - unassigned.length;
   if (!flying) return { sentence: "No target can be reached", facts: countText(plan.targets.length, "target") };
   const reached = unassigned.length ? `${visited} of ${countText(plan.targets.length, "target")}` : `all ${countText(visited, "target")}`;
-  const ends = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start) ? "All done in" : "All back in";
+  const ends = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start) ? "Done in" : "All back in";
   return { sentence: `${ends} ${durationText(longestDuration_s(plan.result))}`, facts: `${reached} · ${countText(flying, "UAV")} · ${lengthText(total_length_m)}` };
+}
+
+/** How a route's flight ends: "ends hovering at A2". */
+export function endingOf({ end_action, letter, targets }) {
+  if (end_action === "return") return "returns to start";
+  const last = `${letter}${targets.length}`;
+  return end_action === "land" ? `lands at ${last}` : `ends hovering at ${last}`;
+}
+
+/** The same for what is picked, before it is planned. */
+export function endingsOf({ return_to_start, uavs }) {
+  if (return_to_start) return "Each UAV flies back to where it took off";
+  const actions = new Set(uavs.map((uav) => uav.end_action));
+  if (actions.size === 1 && actions.has("hover")) return "Each UAV ends hovering at its last target";
+  if (actions.size === 1 && actions.has("land")) return "Each UAV lands at its last target";
+  if (actions.size === 1 && actions.has("return")) return "Each UAV of this mission is set to fly back all the same";
+  return actions.size ? "Each UAV ends as set for it, see its row" : "Each UAV ends at its last target";
 }
 
 export function stripLabel(route, targets) {
   const names = route.targets.map((target, index) => `${index + 1} ${targets[target]?.label ?? "target"}`).join(", ");
-  return `${route.name} flies ${lengthText(route.length_m)} in ${durationText(route.duration_s)}: ${names || "no targets"}.`;
+  return `${route.name} flies ${lengthText(route.length_m)} in ${durationText(route.duration_s)} and ${endingOf(route)}: ${names || "no targets"}.`;
 }
 
 /** Whether the plan on the page is the plan of what is picked. */

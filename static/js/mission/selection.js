@@ -1,5 +1,7 @@
 /** What is to be flown, as plain values: targets, UAVs, options; and its shape on the wire. */
 
+import { lengthText } from "../units.js";
+
 export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true });
 
 /** Two picks of the same place are one target: the asset whole, or one point of it. */
@@ -10,16 +12,20 @@ export function keyOf({ asset, position, stretch }) {
 
 /** A target from an asset feature of the API or a tile. `position` makes it one point of a line or railway. */
 export function targetOf({ id, kind, properties, centre = null, position = null, stretch = null, task = null }) {
-  const target = { asset: id, kind, label: properties.label || kind, detail: detailOf(kind, properties.detail, position), position, stretch, centre: position ?? centre, task };
+  const target = { asset: id, kind, label: properties.label || kind, detail: detailOf(kind, properties, position), position, stretch, centre: position ?? centre, task };
   return { key: keyOf(target), ...target };
 }
 
-const WHOLE = { line: "whole line", railway: "whole track" };
+/** How much of a line or railway is picked. OpenStreetMap cuts railways into sections: one of them is not the whole track. */
+export function extentOf(kind, length_m, position = null) {
+  const whole = { line: "whole line", railway: "section" }[kind];
+  if (!whole || position) return whole && "one point";
+  return length_m ? `${whole}, ${lengthText(length_m)}` : whole;
+}
 
-/** The second fact of a row, in secondary ink: how much of a line or track is picked, then what the server says of the asset. */
-export function detailOf(kind, detail, position = null) {
-  const extent = WHOLE[kind] && (position ? "one point" : WHOLE[kind]);
-  return [extent, detail].filter(Boolean).join(" · ");
+/** The second fact of a row, in secondary ink: how much of a line or railway is picked, then what the server says of the asset. */
+export function detailOf(kind, { detail, length_m }, position = null) {
+  return [extentOf(kind, length_m, position), detail].filter(Boolean).join(" · ");
 }
 
 /** Label and second fact in one, of a target or of an asset's properties. */
@@ -50,8 +56,8 @@ export function withUav(selection, uav) {
   return selection.uavs.some((chosen) => chosen.id === uav.id) ? selection : { ...selection, uavs: [...selection.uavs, uav] };
 }
 
-export function withoutUav(selection, id) {
-  return { ...selection, uavs: selection.uavs.filter((uav) => uav.id !== id) };
+export function withoutUavAt(selection, sequence) {
+  return { ...selection, uavs: selection.uavs.filter((_, index) => index !== sequence) };
 }
 
 export function withUavAt(selection, sequence, position) {
@@ -97,7 +103,7 @@ export function selectionOf(mission, fleet = []) {
     targets: mission.targets.map((target) => {
       const position = target.is_point || target.asset === null ? target.position : null;
       const made = {
-        asset: target.asset, kind: target.kind ?? "place", label: target.label, detail: detailOf(target.kind, target.detail, position), position,
+        asset: target.asset, kind: target.kind ?? "place", label: target.label, detail: detailOf(target.kind, target, position), position,
         stretch: target.stretch ?? null, centre: target.position, task: target.task ?? null,
       };
       return { key: keyOf(made), ...made };

@@ -1,4 +1,4 @@
-/** The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets. */
+/** The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets, pills several of them. */
 
 import { h, svg } from "../dom.js";
 import { lengthText } from "../units.js";
@@ -6,6 +6,8 @@ import { lengthText } from "../units.js";
 const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const TICK_SPACING_PX = 3.5;
 const TARGET_SPACING_PX = 19;
+const LETTER_PX = 7;
+const MOST_PUSHED_PX = 14; // from the true place; more, and neighbours become one pill
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;
 const EDGE_PX = 10;
@@ -39,7 +41,7 @@ export function profileOf(waypoints, length_m) {
   return { places, legs, targets, ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end") };
 }
 
-/** Places in px: ticks thinned, targets pushed right when they would touch; more than fit side by side are dots at their true places. */
+/** Places in px: ticks thinned, targets pushed apart when they would touch, and merged into one pill where that would push them far. */
 export function layOut(profile, longest_m, width_px) {
   const room = width_px - 2 * EDGE_PX;
   const x = (distance) => EDGE_PX + (longest_m > 0 ? (distance / longest_m) * room : 0);
@@ -47,21 +49,46 @@ export function layOut(profile, longest_m, width_px) {
   for (const distance of profile.ticks) {
     if (!ticks.length || x(distance) - ticks.at(-1) >= TICK_SPACING_PX) ticks.push(x(distance));
   }
-  const targets = profile.targets.map(({ target, at }, index) => ({ target, number: index + 1, at, x: x(at) }));
-  const isCrowded = (targets.length - 1) * TARGET_SPACING_PX > room;
-  if (!isCrowded) keepApart(targets, width_px - EDGE_PX);
-  const end = profile.places.at(-1) ?? 0;
-  return { ticks, targets, isCrowded, legs: profile.legs.map((leg) => ({ ...leg, x1: x(leg.from), x2: x(leg.to) })), start: x(0), end: x(end) };
+  const [start, end] = [x(0), x(profile.places.at(-1) ?? 0)];
+  const pills = placePills(profile.targets.map(({ target, at }) => ({ target, x: x(at) })), start, end, width_px);
+  return { ticks, pills, legs: profile.legs.map((leg) => ({ ...leg, x1: x(leg.from), x2: x(leg.to) })), start, end };
 }
 
-/** Pushes to the right, and what would leave the right edge back to the left. */
-function keepApart(targets, limit_px) {
-  for (let index = 1; index < targets.length; index += 1) {
-    targets[index].x = Math.max(targets[index].x, targets[index - 1].x + TARGET_SPACING_PX);
+const widthOf = (label) => Math.max(TARGET_SPACING_PX - 1, label.length * LETTER_PX + 10);
+
+/** Pills of neighbouring targets, "3" or "3–9", that stay on the strip: [{ first, last, targets, label, x, width }], in order. */
+export function placePills(targets, start_px, end_px, width_px) {
+  let pills = targets.map(({ target, x }, index) => pillOf([{ target, x, number: index + 1 }]));
+  for (;;) {
+    keepApart(pills, start_px, end_px, width_px);
+    if (pills.length < 2 || pills.every((pill) => Math.abs(pill.x - pill.true_x) <= MOST_PUSHED_PX && isOnStrip(pill, start_px, end_px))) return pills;
+    const gaps = pills.slice(1).map((pill, index) => pill.true_x - pills[index].true_x - (pill.width + pills[index].width) / 2);
+    const at = gaps.indexOf(Math.min(...gaps));
+    pills = [...pills.slice(0, at), pillOf([...pills[at].members, ...pills[at + 1].members]), ...pills.slice(at + 2)];
   }
-  for (let index = targets.length - 1; index >= 0; index -= 1) {
-    const after = targets[index + 1]?.x ?? limit_px + TARGET_SPACING_PX;
-    targets[index].x = Math.min(targets[index].x, after - TARGET_SPACING_PX);
+}
+
+function pillOf(members) {
+  const [first, last] = [members[0].number, members.at(-1).number];
+  const label = first === last ? `${first}` : `${first}–${last}`;
+  const true_x = (members[0].x + members.at(-1).x) / 2;
+  return { members, first, last, targets: members.map(({ target }) => target), label, true_x, x: true_x, width: widthOf(label) };
+}
+
+const isOnStrip = (pill, start_px, end_px) => pill.x >= start_px - 1 && pill.x <= end_px + 1;
+
+/** Pushes to the right, and what would leave the strip's end back to the left; nothing leaves the drawing. */
+function keepApart(pills, start_px, end_px, width_px) {
+  const spacing = (a, b) => (a.width + b.width) / 2 + 1;
+  for (const pill of pills) pill.x = pill.true_x;
+  for (let index = 0; index < pills.length; index += 1) {
+    const least = index ? pills[index - 1].x + spacing(pills[index - 1], pills[index]) : pills[0].width / 2;
+    pills[index].x = Math.max(pills[index].x, least);
+  }
+  for (let index = pills.length - 1; index >= 0; index -= 1) {
+    const after = pills[index + 1];
+    const most = after ? after.x - spacing(pills[index], after) : Math.min(Math.max(end_px, start_px + pills[index].width / 2), width_px - pills[index].width / 2);
+    pills[index].x = Math.min(pills[index].x, most);
   }
 }
 
@@ -98,8 +125,8 @@ export function spanStrip({ waypoints, length_m, longest_m, width_px, label, onA
     plan.legs.map((leg) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: leg.offNetwork ? "strip-leg off" : "strip-leg" })),
     mark(plan.start),
     mark(plan.end),
-    plan.targets.map(({ x, number }) =>
-      plan.isCrowded ? svg("circle", { cx: x, cy: MIDDLE_PX, r: 3.5, class: "strip-dot" }) : svg("g", { class: "strip-target" }, svg("circle", { cx: x, cy: MIDDLE_PX, r: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, `${number}`)),
+    plan.pills.map(({ x, width, label: numbers }) =>
+      svg("g", { class: "strip-target" }, svg("rect", { x: x - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, numbers)),
     ),
     cursor,
   );

@@ -6,6 +6,7 @@ export function update(map, geometries) {
   map.getSource("picked-shapes").setData(collection(geometries));
 }
 
-export function showHovered(map, geometry) {
-  map.getSource("selection").setData(collection(geometry ? [geometry] : []));
+/** Geometries to ring: a point, or all pieces of a line. */
+export function showHovered(map, geometries) {
+  map.getSource("selection").setData(collection(geometries));
 }

@@ -1,56 +1,89 @@
-/** Target pills: HTML up to 200, a layer beyond. Pills of one route that would overlap are merged: "C3–4". */
+/** Target pills: HTML up to 200, a layer beyond. Pills of one UAV that would overlap are merged: "C3–4". */
 
 import { h } from "../../dom.js";
 import { maplibre } from "../maplibre.js";
 import { routeNumber } from "../palette.js";
-import { mergedLabel, mergePills } from "../pills.js";
+import { mergePills } from "../pills.js";
 
 const MOST_MARKERS = 200;
 const MOST_NAMES = 6;
+const MISSED = -1; // instead of a route's number
+
+const lookOf = (pill) => (pill.isMissed ? "missed" : pill.sequence === null ? "waiting" : `route-${routeNumber(pill.sequence)}`);
+
+function namesOf(members) {
+  const names = members.slice(0, MOST_NAMES).map((pill) => pill.name);
+  const rest = members.length - names.length;
+  return `${names.join("; ")}${rest > 0 ? ` and ${rest} more` : ""}${members[0].isMissed ? ": not reached" : ""}`;
+}
 
 export function createTargets(map, { onPick, onHover }) {
   let pills = [];
-  let markers = [];
+  let markers = new Map(); // what a group says → { marker, members, element }
   let lookedAt = null;
   let chosen = "";
+  let hovered = null; // the element under the pointer: it may be taken away without the pointer leaving it
 
-  function elementOf(group) {
-    const [first] = group.members;
-    const label = mergedLabel(first.letter, group.members.map((pill) => pill.number));
-    const names = group.members.slice(0, MOST_NAMES).map((pill) => pill.name).join("; ");
+  function elementOf({ members, label }) {
+    const [first] = members;
+    const names = namesOf(members);
     const element = h(
       "button",
       {
         type: "button",
-        class: `map-pill ${first.sequence === null ? "" : `route-${routeNumber(first.sequence)}`}`,
+        class: `map-pill ${lookOf(first)}`,
         "aria-label": `Target ${label}: ${names}`,
         title: names,
         tabindex: "-1",
         onclick: (event) => (event.stopPropagation(), onPick(first.key)),
-        onpointerenter: () => onHover(first.key),
-        onpointerleave: () => onHover(null),
+        onpointerenter: () => {
+          hovered = element;
+          onHover(first.key);
+        },
+        onpointerleave: () => {
+          hovered = null;
+          onHover(null);
+        },
       },
       h("span", { class: "pill" }, label),
     );
-    element.classList.toggle("far", lookedAt !== null && first.sequence !== lookedAt);
-    element.classList.toggle("chosen", group.members.some((pill) => pill.key === chosen));
     return element;
   }
 
+  /** Markers that say the same as before stay, so that the pointer and the focus stay with them. */
   function draw() {
-    markers.forEach((marker) => marker.remove());
-    markers = [];
-    if (pills.length > MOST_MARKERS) return;
-    const placed = pills.map((pill) => ({ ...pill, ...map.project(pill.position) }));
+    const next = new Map();
+    const placed = pills.length > MOST_MARKERS ? [] : pills.map((pill) => ({ ...pill, ...map.project(pill.position) }));
     for (const group of mergePills(placed)) {
-      const marker = new maplibre.Marker({ element: elementOf(group), subpixelPositioning: true });
-      markers.push(marker.setLngLat(group.members[0].position).addTo(map));
+      const [first] = group.members;
+      const key = JSON.stringify([group.label, lookOf(first), first.position, group.members.map((pill) => pill.key)]);
+      const kept = markers.get(key);
+      const element = kept?.element ?? elementOf(group);
+      const marker = kept?.marker ?? new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat(first.position).addTo(map);
+      next.set(key, { marker, element, members: group.members });
+    }
+    for (const [key, { marker, element }] of markers) {
+      if (next.has(key)) continue;
+      marker.remove();
+      if (element === hovered) {
+        hovered = null;
+        onHover(null);
+      }
+    }
+    markers = next;
+    mark();
+  }
+
+  function mark() {
+    for (const { element, members } of markers.values()) {
+      element.classList.toggle("far", lookedAt !== null && members[0].sequence !== lookedAt);
+      element.classList.toggle("chosen", members.some((pill) => pill.key === chosen));
     }
   }
 
   map.on("zoomend", draw);
   return {
-    /** pills: [{ key, position, sequence or null, letter, number, name }] */
+    /** pills: [{ key, position, sequence or null, letter, number, name, isMissed }] */
     update(next) {
       pills = next;
       const isMany = pills.length > MOST_MARKERS;
@@ -59,7 +92,10 @@ export function createTargets(map, { onPick, onHover }) {
         features: isMany
           ? pills.map((pill) => ({
               type: "Feature",
-              properties: { route: pill.sequence === null ? 0 : routeNumber(pill.sequence), label: `${pill.letter}${pill.number}` },
+              properties: {
+                route: pill.isMissed ? MISSED : pill.sequence === null ? 0 : routeNumber(pill.sequence),
+                label: pill.isMissed ? "×" : `${pill.letter}${pill.number}`,
+              },
               geometry: { type: "Point", coordinates: pill.position },
             }))
           : [],
@@ -68,11 +104,11 @@ export function createTargets(map, { onPick, onHover }) {
     },
     lookAt(sequence) {
       lookedAt = sequence;
-      draw();
+      mark();
     },
     choose(key) {
       chosen = key ?? "";
-      draw();
+      mark();
     },
   };
 }

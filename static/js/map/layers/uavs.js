@@ -1,10 +1,11 @@
-/** Where UAVs stand: a square with the letter for those of the mission, a dart for the others. Squares can be dragged. */
+/** Where UAVs stand: a square with the letter for those of the mission, a dart with the name for the others. Squares can be dragged. */
 
 import { h, icon } from "../../dom.js";
 import { maplibre } from "../maplibre.js";
 import { routeNumber } from "../palette.js";
 
 const SQUARE_PX = 22;
+const DART_MIDDLE_PX = 14; // from a dart's left edge; its name stands to the right
 
 export function createUavs(map, { onMove, onPick, onLook }) {
   let markers = [];
@@ -38,6 +39,7 @@ export function createUavs(map, { onMove, onPick, onLook }) {
         onclick: (event) => (event.stopPropagation(), onPick(uav.id)),
       },
       icon("uav"),
+      h("span", { class: "dart-name", "aria-hidden": "true" }, uav.name),
     );
   }
 
@@ -45,17 +47,15 @@ export function createUavs(map, { onMove, onPick, onLook }) {
     /** uavs: [{ id, name, position, sequence or null, letter, canMove }] */
     update(uavs) {
       markers.forEach((marker) => marker.remove());
-      const standing = new Map();
+      const standing = new Map(); // place → how many squares and darts stand there already
       markers = uavs.map((uav) => {
         const isChosen = uav.sequence !== null;
         const place = uav.position.map((degrees) => degrees.toFixed(5)).join();
-        const before = standing.get(place) ?? 0;
-        standing.set(place, before + 1);
-        const marker = new maplibre.Marker({
-          element: isChosen ? square(uav) : dart(uav),
-          draggable: isChosen && uav.canMove,
-          offset: [before * SQUARE_PX, 0],
-        });
+        const before = standing.get(place) ?? { squares: 0, darts: 0 };
+        standing.set(place, before);
+        const marker = isChosen
+          ? new maplibre.Marker({ element: square(uav), draggable: uav.canMove, offset: [before.squares++ * SQUARE_PX, 0] })
+          : new maplibre.Marker({ element: dart(uav), anchor: "left", offset: [-DART_MIDDLE_PX, ((before.squares > 0 ? 1 : 0) + before.darts++) * SQUARE_PX] });
         marker.on("dragend", () => {
           const { lng, lat } = marker.getLngLat();
           onMove(uav.sequence, [Number(lng.toFixed(6)), Number(lat.toFixed(6))]);

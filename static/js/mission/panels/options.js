@@ -1,7 +1,7 @@
 /** What the plan is to be best at, with the figures of each where they are known, and whether UAVs fly back. */
 
 import { byId, h } from "../../dom.js";
-import { figuresOf, OBJECTIVES } from "../plan_view.js";
+import { endingsOf, figuresOf, OBJECTIVES } from "../plan_view.js";
 import { basisOf } from "../selection.js";
 
 export function mountOptions(store, actions, canPlan) {
@@ -11,8 +11,11 @@ export function mountOptions(store, actions, canPlan) {
     return { value, radio, figures, label: h("label", {}, radio, h("span", { class: "segment" }, h("span", {}, words), figures)) };
   });
   byId("objective").append(...choices.map((choice) => choice.label));
+  const meaning = h("p", { class: "caption objective-meaning" });
+  byId("objective").after(meaning);
 
   const back = byId("return-to-start");
+  const ending = back.closest("label").querySelector("small");
   back.disabled = !canPlan;
   back.addEventListener("change", () => actions.setOption("return_to_start", back.checked));
 
@@ -22,6 +25,8 @@ export function mountOptions(store, actions, canPlan) {
       const known = figures[basisOf({ ...selection, objective: choice.value })];
       choice.figures.textContent = known ? figuresOf(known) : "";
     }
+    meaning.textContent = OBJECTIVES.find(({ value }) => value === selection.objective)?.meaning ?? "";
     back.checked = selection.return_to_start;
+    ending.textContent = endingsOf(selection);
   });
 }

@@ -3,8 +3,10 @@
 import { byId, h } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { countText, durationText, lengthText } from "../../units.js";
-import { isPlanCurrent, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
+import { endingOf, isPlanCurrent, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
 import { spanStrip, stripAxis, stripTable } from "../span_strip.js";
+
+const NAME_PX = 152; // as in mission.css
 
 export function mountRoutes(store, { onAlong }) {
   const dock = byId("dock");
@@ -22,7 +24,13 @@ export function mountRoutes(store, { onAlong }) {
         "button",
         { type: "button", class: "who", disabled: !isUsed, onclick: () => store.update({ chosenRoute: store.state.chosenRoute === route.sequence ? null : route.sequence }) },
         h("span", { class: "letter" }, route.letter),
-        h("span", {}, h("strong", {}, route.name), h("small", {}, isUsed ? countText(route.targets.length, "target") : "not needed")),
+        h(
+          "span",
+          {},
+          h("strong", {}, route.name),
+          h("small", { class: "desk-line" }, isUsed ? countText(route.targets.length, "target") : "not needed"),
+          isUsed && h("small", {}, endingOf(route)),
+        ),
       ),
       h("div", { class: "strip-place" }, isUsed && strip(route, state)),
       h("span", { class: "figure" }, isUsed ? lengthText(route.length_m) : "—"),
@@ -54,7 +62,7 @@ export function mountRoutes(store, { onAlong }) {
   /** Room for a strip: what the grid leaves beside name and figures. */
   function measure() {
     const room = dock.clientWidth - 32;
-    return Math.max(160, matchMedia("(max-width: 720px)").matches ? room : room - 128 - 2 * 76 - 3 * 12);
+    return Math.max(160, matchMedia("(max-width: 720px)").matches ? room : room - NAME_PX - 2 * 76 - 3 * 12);
   }
 
   function mark({ lookedAt, chosenRoute }) {

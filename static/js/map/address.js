@@ -1,0 +1,32 @@
+/** The view as part of the page's address, #map=zoom/latitude/longitude, and whether one is worth going to. Values in, values out. */
+
+const WORLD_PX = 512; // the whole world at zoom 0
+const LEAST_PX = 24; // an extent smaller than this on the screen shows nothing
+const NEAR_ZOOM = 12; // from here on even a single place is worth looking at
+
+const toX = (longitude) => (longitude + 180) / 360;
+const toY = (latitude) => (1 - Math.asinh(Math.tan((latitude * Math.PI) / 180)) / Math.PI) / 2;
+
+/** { zoom, centre: [lon, lat] } or null. */
+export function viewOf(hash) {
+  const found = /[#&]map=([\d.]+)\/(-?[\d.]+)\/(-?[\d.]+)/.exec(hash);
+  if (!found) return null;
+  const [zoom, latitude, longitude] = found.slice(1).map(Number);
+  const isPlace = zoom <= 24 && Math.abs(latitude) < 90 && Math.abs(longitude) <= 180;
+  return isPlace ? { zoom, centre: [longitude, latitude] } : null;
+}
+
+export function hashOf({ zoom, centre: [longitude, latitude] }) {
+  const digits = Math.max(2, Math.ceil((zoom * Math.LN2 + Math.log(WORLD_PX / 360 / 0.5)) / Math.LN10)); // half a pixel
+  return `#map=${Number(zoom.toFixed(2))}/${latitude.toFixed(digits)}/${longitude.toFixed(digits)}`;
+}
+
+/** Whether [west, south, east, north] can be made out in a view of this size in px. Without an extent every view is as good. */
+export function showsAnything({ zoom, centre: [longitude, latitude] }, [width_px, height_px], extent) {
+  if (!extent) return true;
+  const scale = WORLD_PX * 2 ** zoom;
+  const [left, right] = [extent[0], extent[2]].map((edge) => (toX(edge) - toX(longitude)) * scale);
+  const [top, bottom] = [extent[3], extent[1]].map((edge) => (toY(edge) - toY(latitude)) * scale);
+  const isInside = right >= -width_px / 2 && left <= width_px / 2 && bottom >= -height_px / 2 && top <= height_px / 2;
+  return isInside && (zoom >= NEAR_ZOOM || Math.max(right - left, bottom - top) >= LEAST_PX);
+}
