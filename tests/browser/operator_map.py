@@ -119,8 +119,8 @@ def _is_alone(page: Page, place: list[float], kinds: str) -> bool:
     return len(asks(page, f"/assets?kind={kinds}&bbox={box}&limit=3")["features"]) == 1
 
 
-def stores_mission(page: Page, name: str) -> None:
-    """A planned mission with two UAVs and two towers, made through the API with the page's session."""
+def stores_mission(page: Page, name: str) -> str:
+    """A planned mission with two UAVs and two towers, made through the API with the page's session. Its address."""
     towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=2")["features"]
     uavs = [{"name": "Heron", "position": [-83.045, 39.935]}, {"name": "Kite", "position": [-82.945, 39.945]}]
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
@@ -133,3 +133,4 @@ def stores_mission(page: Page, name: str) -> None:
         headers={"X-CSRFToken": token},
     )  # fmt: skip
     assert answer.status == 201, answer.text()
+    return f"/missions/{answer.json()['id']}"

@@ -138,7 +138,10 @@ def test_what_is_picked_can_be_undone_and_survives_a_reload(visitor: Visitor) ->
     page.get_by_role("status").get_by_role("button", name="Undo").click()
     expect(page.locator("#target-list .target")).to_have_count(2)
 
-    page.wait_for_function("() => JSON.parse(localStorage.getItem('spanwise.draft.new'))?.selection.targets.length === 2")
+    page.wait_for_function(
+        """() => Object.keys(localStorage).some((key) => /^spanwise[.]draft[.][0-9]+[.]new$/.test(key)
+            && JSON.parse(localStorage.getItem(key)).selection.targets.length === 2)"""
+    )
     page.reload()
     expect(page.get_by_text("Your unsaved mission is back.")).to_be_visible()
     expect(page.locator("#target-list .target")).to_have_count(2)

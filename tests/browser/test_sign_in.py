@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.operator_map import stores_mission, wait_for_map
 
 pytestmark = pytest.mark.browser
 
@@ -45,3 +46,24 @@ def test_a_viewer_sees_the_map_but_cannot_plan(visitor: Visitor) -> None:
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
     refused = page.request.post("/api/v1/plans", data={"uavs": [], "targets": []}, headers={"X-CSRFToken": token})
     assert refused.status == 403
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+def test_a_viewer_has_nothing_to_edit_with(visitor: Visitor, size: tuple[int, int]) -> None:
+    address = stores_mission(visitor.signs_in("opal"), "For viewers")
+    page = visitor.signs_in("vera", size=size, touch=size[0] < 720)
+    page.goto(address)
+    wait_for_map(page)
+    expect(page.locator("#target-list .target")).to_have_count(2)
+    expect(page.locator("#options-words")).to_contain_text("Finish soonest")
+    editing = page.locator("#side").locator(
+        "input:not([readonly]), select, #tools, #undo:visible, #redo:visible, #clear-targets:visible, .target .icon-button, .uav button"
+    )
+    expect(editing).to_have_count(0)
+    page.get_by_role("button", name="More for this mission").click()
+    assert page.get_by_role("group", name="This mission").get_by_role("button").all_text_contents() == ["All missions"]
+
+    page.goto("/missions/new")
+    wait_for_map(page)
+    expect(page.locator("#targets-empty")).to_contain_text("No mission is open")
+    expect(page.get_by_text("Nothing picked yet")).to_have_count(0)

@@ -86,7 +86,7 @@ test("the door leads back to where the page was", () => {
 
 test("a UAV says its range or that there is none, its speed and its end", () => {
   const plain = (text) => text.replaceAll("\u00a0", " ");
-  assert.equal(plain(factsOfUav(heron, false)), "range 80.0 km · 12 m/s · hovers at its last target");
+  assert.equal(plain(factsOfUav(heron, false)), "range 80.0 km · 12 m/s · hovers at the end");
   assert.equal(plain(factsOfUav({ ...heron, max_range_m: null }, true)), "range not stated · 12 m/s · returns to start");
 });
 

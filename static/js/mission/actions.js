@@ -364,17 +364,18 @@ export function createActions(store, history, page, drafts) {
     say(`${uav.name} is added and chosen.`);
   }
 
-  function toggleUav(id, isChosen) {
+  function addUavOfFleet(id) {
     const uav = store.state.fleet.find((known) => known.id === id);
-    change(isChosen && uav ? picks.withUav(selection(), uav) : picks.withoutUav(selection(), id));
+    if (uav) change(picks.withUav(selection(), uav));
   }
 
   return {
     plan, stop, save, open, openDraft, startEmpty, settleDraft, deleteMission, failed,
     seeTheirs, putMineOnTop, keepMineAsCopy: KEEP_COPY.act,
-    addTargets, addBox, removeTargets, targetOfFeature, addUav, toggleUav,
+    addTargets, addBox, removeTargets, targetOfFeature, addUav, addUavOfFleet,
     undo: () => history.undo() && say("Undone."),
     redo: () => history.redo() && say("Done again."),
+    removeUav: (sequence) => change(picks.withoutUavAt(selection(), sequence)),
     moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),
     changeUav: (sequence, values) => change(picks.withUavAs(selection(), sequence, values)),
     setOption: (name, value) => change({ ...selection(), [name]: value }),

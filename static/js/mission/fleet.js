@@ -19,9 +19,9 @@ export function inFleetOrder(state) {
   return standingUavs(state).sort((a, b) => place(a) - place(b));
 }
 
-const END_WORDS = { hover: "hovers at its last target", land: "lands at its last target", return: "returns to start" };
+const END_WORDS = { hover: "hovers at the end", land: "lands at the end", return: "returns to start" };
 
-/** "range 80 km · 12 m/s · hovers at its last target": what a UAV can do and how its flight ends. */
+/** "range 80 km · 12 m/s · hovers at the end": what a UAV can do and how its flight ends. */
 export function factsOfUav({ max_range_m, cruise_speed_mps, end_action }, returnsToStart) {
   const facts = [max_range_m ? `range ${lengthText(max_range_m)}` : "range not stated"];
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));

@@ -6,7 +6,7 @@ import { OBJECTIVES } from "../plan_view.js";
 export function mountOptionsRead(store) {
   store.listen(["selection"], ({ selection }) => {
     const best = OBJECTIVES.find(({ value }) => value === selection.objective)?.words ?? "";
-    const end = selection.return_to_start ? "each UAV flies back to where it took off" : "each UAV ends as its row says";
+    const end = selection.return_to_start ? "UAVs fly back to where they took off" : "UAVs do not all fly back";
     byId("options-words").textContent = [best, end].filter(Boolean).join(" · ");
   });
 }

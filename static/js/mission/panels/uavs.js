@@ -7,23 +7,26 @@ import { open } from "../../page/keyboard.js";
 import { factsOfUav, inFleetOrder } from "../fleet.js";
 import { isPlanCurrent } from "../plan_view.js";
 
+/** One that is not of the fleet, as a program may put it into a mission, is known by its place alone. */
+const keyOf = ({ id, sequence }) => (id === null ? `at ${sequence}` : `${id}`);
+
 export function mountUavs(store, actions, canPlan, { mapCentre }) {
   const draw = keyedList(
     byId("uav-list"),
-    (uav) => `${uav.id}`,
+    keyOf,
     (uav) => {
-      const box = canPlan && h("input", { type: "checkbox", class: "check", onchange: () => actions.toggleUav(uav.id, box.checked) });
+      const box = canPlan && h("input", { type: "checkbox", class: "check", onchange: () => (box.checked ? actions.addUavOfFleet(uav.id) : actions.removeUav(sequenceOf(uav))) });
       return h(
         "li",
-        { class: "uav", onpointerenter: () => look(uav.id), onpointerleave: () => store.update({ lookedAt: null }) },
+        { class: "uav", onpointerenter: () => look(uav), onpointerleave: () => store.update({ lookedAt: null }) },
         h(
           canPlan ? "label" : "div",
           { class: "who" },
           box,
           h("span", { class: "letter" }),
-          h("span", { class: "name" }, uav.name, h("small", {}, uav.base_name), h("span", { class: "facts" })),
+          h("span", { class: "name" }, h("span", { class: "called" }), h("small", {}), h("span", { class: "facts" })),
         ),
-        canPlan && h("button", { type: "button", class: "icon-button tight", "aria-label": `Change ${uav.name} in this mission`, title: "Start, range, speed, end", onclick: () => changeUav(uav.id) }, icon("pencil", "small")),
+        canPlan && h("button", { type: "button", class: "icon-button tight", title: "Start, range, speed, end", onclick: () => changeUav(sequenceOf(uav)) }, icon("pencil", "small")),
       );
     },
     (row, uav) => {
@@ -31,23 +34,27 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       const letter = row.querySelector(".letter");
       letter.className = `letter ${uav.sequence === null ? "none" : `route-${routeNumber(uav.sequence)}`}`;
       letter.textContent = uav.letter;
+      row.querySelector(".called").textContent = uav.name;
+      row.querySelector("small").textContent = uav.base_name;
       const facts = row.querySelector(".facts");
       facts.classList.toggle("grounded", Boolean(uav.grounded));
       facts.textContent = uav.grounded || factsOfUav(uav, store.state.selection.return_to_start);
       row.querySelector(".name").title = [uav.name, uav.base_name, facts.textContent].filter(Boolean).join(", ");
-      row.querySelector("button")?.classList.toggle("absent", uav.sequence === null);
+      const change = row.querySelector("button");
+      change?.setAttribute("aria-label", `Change ${uav.name} in this mission`);
+      change?.classList.toggle("absent", uav.sequence === null);
     },
   );
 
-  const sequenceOf = (id) => store.state.selection.uavs.findIndex((uav) => uav.id === id);
+  /** Its place in the mission now, −1 where it does not fly. */
+  const sequenceOf = (uav) => (uav.id === null ? uav.sequence : store.state.selection.uavs.findIndex((chosen) => chosen.id === uav.id));
 
-  function look(id) {
-    const sequence = sequenceOf(id);
+  function look(uav) {
+    const sequence = sequenceOf(uav);
     store.update({ lookedAt: sequence >= 0 && store.state.plan ? sequence : null });
   }
 
-  function changeUav(id) {
-    const sequence = sequenceOf(id);
+  function changeUav(sequence) {
     const uav = store.state.selection.uavs[sequence];
     uavDialog({
       title: uav.name,

@@ -1,0 +1,166 @@
+"""Nothing that was picked is lost without a word: reloads, other people's saves, ended sessions, shared browsers."""
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.operator_map import stores_mission, targets, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+BEHIND = re.compile(r"Your changes are from before rory’s save at \d\d:\d\d\.")
+
+
+def opens_mission(page: Page, address: str) -> Page:
+    page.goto(address)
+    wait_for_map(page)
+    return page
+
+
+def saves_as(page: Page, name: str) -> None:
+    page.get_by_role("textbox", name="Name of the mission").fill(name)
+    page.keyboard.press("Tab")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text(f"“{name}” is saved.")).to_be_visible()
+
+
+def picks_from_the_search(page: Page, text: str) -> None:
+    before = page.locator("#target-list .target").count()
+    page.keyboard.press("/")
+    page.get_by_role("combobox", name="Find an asset or a line").fill(text)
+    page.get_by_role("option", selected=True).click()  # the best match of the text, not what is in view
+    expect(page.locator("#target-list .target")).to_have_count(before + 1)
+    page.locator("#map canvas").focus()
+
+
+def removes_first_target(page: Page) -> None:
+    page.locator("#target-list .what").first.focus()
+    page.keyboard.press("Delete")
+
+
+def forgives(visitor: Visitor, status: int) -> None:
+    """Chromium writes every refused request to its console; this one was meant."""
+    assert visitor.complaints, f"no request was answered with {status}"
+    assert all(f"status of {status}" in complaint for complaint in visitor.complaints), visitor.complaints
+    visitor.complaints.clear()
+
+
+@pytest.mark.parametrize("way", ["top", "copy"])
+def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) -> None:
+    mine = visitor.signs_in("opal")
+    address = stores_mission(mine, "River crossing")
+    theirs = visitor.signs_in("rory")
+    opens_mission(mine, address)
+    opens_mission(theirs, address)
+    removes_first_target(mine)
+    expect(mine.locator("#target-list .target")).to_have_count(1)
+    saves_as(theirs, "River crossing, checked")
+
+    mine.keyboard.press("Control+s")
+    expect(mine.get_by_text(BEHIND)).to_be_visible()
+    forgives(visitor, 412)
+    assert len(targets(mine)) == 1
+    mine.reload()
+    wait_for_map(mine)
+    expect(mine.get_by_text(BEHIND)).to_be_visible()  # also a reload loses nothing
+    assert len(targets(mine)) == 1
+
+    mine.get_by_role("button", name="See theirs").click()
+    expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing, checked")
+    expect(mine.locator("#target-list .target")).to_have_count(2)
+    expect(mine.get_by_text(BEHIND)).to_be_hidden()
+    mine.get_by_role("button", name="Back to mine").click()
+    expect(mine.locator("#target-list .target")).to_have_count(1)
+    expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing")
+
+    if way == "top":
+        mine.get_by_role("button", name="Put mine on top").click()
+        expect(mine.get_by_text("“River crossing” is saved.")).to_be_visible()
+    else:
+        mine.get_by_role("button", name="Keep mine as a copy").click()
+        expect(mine.get_by_text("“River crossing (copy)” is saved.")).to_be_visible()
+        assert address not in mine.url
+    expect(mine.locator("#mission-facts")).not_to_contain_text("not saved")
+    stored = opens_mission(theirs, address)
+    assert len(targets(stored)) == (1 if way == "top" else 2)
+
+
+def test_a_save_in_one_window_leaves_the_changes_of_another(visitor: Visitor) -> None:
+    first = visitor.signs_in("opal")
+    address = stores_mission(first, "Two windows")
+    second = first.context.new_page()
+    opens_mission(first, address)
+    opens_mission(second, address)
+    removes_first_target(second)
+    expect(second.locator("#target-list .target")).to_have_count(1)
+    second.wait_for_function("() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.'))")
+    saves_as(first, "Two windows, renamed")
+    second.reload()
+    wait_for_map(second)
+    expect(second.get_by_text("Your changes are from before your own save at")).to_be_visible()
+    assert len(targets(second)) == 1
+
+
+def test_a_cleared_selection_stays_cleared(visitor: Visitor) -> None:
+    page = opens_mission(visitor.signs_in("opal"), "/missions/new")
+    picks_from_the_search(page, "138 kV")
+    page.reload()
+    expect(page.get_by_text("Your unsaved mission is back.")).to_be_visible()
+    picks_from_the_search(page, "bridge")
+    page.get_by_role("button", name="Clear", exact=True).click()
+    expect(page.get_by_text("Nothing picked yet", exact=True)).to_be_visible()
+    page.reload()
+    wait_for_map(page)
+    expect(page.get_by_text("Nothing picked yet", exact=True)).to_be_visible()
+    expect(page.get_by_text("Your unsaved mission is back.")).to_have_count(0)
+
+
+def test_saving_keeps_what_can_be_undone(visitor: Visitor) -> None:
+    page = opens_mission(visitor.signs_in("opal"), "/missions/new")
+    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, "bridge")
+    saves_as(page, "Undo after saving")
+    page.get_by_role("button", name="Undo", exact=True).click()
+    expect(page.locator("#target-list .target")).to_have_count(1)
+    expect(page.locator("#mission-facts")).to_contain_text("not saved")
+
+
+def test_a_notice_about_an_empty_selection_goes_with_the_first_pick(visitor: Visitor) -> None:
+    page = opens_mission(visitor.signs_in("opal"), "/missions/new")
+    page.keyboard.press("p")
+    expect(page.locator("#notices .critical")).to_contain_text("Nothing picked yet.")
+    picks_from_the_search(page, "138 kV")
+    expect(page.locator("#notices .critical")).to_have_count(0)
+
+
+def test_an_ended_session_leads_to_the_door_and_back_to_the_selection(visitor: Visitor) -> None:
+    page = opens_mission(visitor.signs_in("opal"), "/missions/new")
+    picks_from_the_search(page, "138 kV")
+    picked = targets(page)
+    page.context.clear_cookies(name="sessionid")
+    page.get_by_role("button", name="Save", exact=True).click()
+    notice = page.locator("#notices").get_by_role("alert")
+    expect(notice).to_contain_text("You are signed out. Your selection is kept in this browser.")
+    forgives(visitor, 401)
+    notice.get_by_role("link", name="Sign in").click()
+    page.get_by_label("User name").fill("opal")
+    page.get_by_label("Password").fill(PASSWORD)
+    page.get_by_role("button", name="Sign in").click()
+    expect(page.get_by_text("Your unsaved mission is back.")).to_be_visible()
+    assert targets(page) == picked
+
+
+def test_what_one_picked_is_not_shown_to_the_next_at_the_same_browser(visitor: Visitor) -> None:
+    page = opens_mission(visitor.signs_in("opal"), "/missions/new")
+    picks_from_the_search(page, "138 kV")
+    for name, count in (("rory", 0), ("opal", 1)):
+        page.get_by_role("button", name=re.compile("^Account of")).click()
+        page.get_by_role("button", name="Sign out").click()
+        page.get_by_label("User name").fill(name)
+        page.get_by_label("Password").fill(PASSWORD)
+        page.get_by_role("button", name="Sign in").click()
+        expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
+        opens_mission(page, "/missions/new")
+        expect(page.locator("#target-list .target")).to_have_count(count)
