@@ -60,7 +60,7 @@ class MissionState(models.TextChoices):
 
 class Objective(models.TextChoices):
     TOTAL = "total", "Fly least"
-    MAKESPAN = "makespan", "Finish soonest"
+    MAKESPAN = "makespan", "Even routes"
 
 
 class Mission(models.Model):

@@ -246,7 +246,7 @@ function selectionLayers(palette) {
       type: "line",
       source: "selection",
       filter: ["!=", ["geometry-type"], "Point"],
-      layout: { "line-cap": "round", "line-join": "round" },
+      layout: { "line-join": "round" }, // no caps: the pieces of a line overlap at the edges of tiles
       paint: { "line-color": palette.select, "line-width": 2, "line-gap-width": 6 },
     },
   ];

@@ -2,6 +2,7 @@
 
 import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
+import { detailOf } from "../selection.js";
 
 const WAIT_MS = 180;
 const MOST = 12;
@@ -31,12 +32,12 @@ export function mountFinder({ box, show, add, canPlan }) {
   }
 
   function option(feature, index) {
-    const { kind, label, detail } = feature.properties;
+    const { kind, label } = feature.properties;
     return h(
       "div",
       { role: "option", id: `found-${index}`, "aria-selected": String(index === active), onpointerdown: (event) => event.preventDefault(), onclick: () => take(index), onpointerenter: () => activate(index, false) },
       icon(kind),
-      h("span", { class: "what" }, label, " ", h("span", {}, detail)),
+      h("span", { class: "what" }, label, " ", h("span", {}, detailOf(kind, feature.properties))),
       h("span", { class: "end" }, canPlan ? "Add" : "Show"),
     );
   }
