@@ -1,0 +1,87 @@
+"""Where the map opens, what stands around it, and what it says of targets."""
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks, place_of, stores_mission, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+VIEW = re.compile(r"#map=([\d.]+)/")
+OVERLAPS = """() => {
+    document.getElementById("demo-badge").hidden = false;
+    const shown = ["#legend", "#demo-badge", "#coordinates", "#scale", "#attribution", ".map-controls"]
+        .map((name) => [name, document.querySelector(`.map-frame ${name}`).getBoundingClientRect()])
+        .filter(([, box]) => box.width > 0);
+    const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const frame = document.querySelector(".map-frame").getBoundingClientRect();
+    const found = shown.filter(([, box]) => box.left < frame.left || box.right > frame.right).map(([name]) => `${name} leaves the map`);
+    shown.forEach(([a, first], index) => shown.slice(index + 1).forEach(([b, second]) => meet(first, second) && found.push(`${a} ${b}`)));
+    return { names: shown.map(([name]) => name), found };
+}"""
+
+
+def opens_mission(page: Page, name: str, *, view: str = "") -> dict[str, object]:
+    [mission] = [mission for mission in asks(page, "/missions?limit=100")["results"] if mission["name"] == name]
+    page.goto(f"/missions/{mission['id']}{view}")
+    return asks(page, f"/missions/{mission['id']}")
+
+
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), (1024, 768), (900, 1100), (390, 844)])
+def test_nothing_around_the_map_lies_on_anything_else(visitor: Visitor, width: int, height: int) -> None:
+    page = visitor.signs_in("opal", size=(width, height), touch=width < 721)
+    page.goto("/missions/new")
+    wait_for_map(page)
+    place = page.locator("#map").bounding_box()
+    assert place
+    page.mouse.move(place["x"] + place["width"] / 2, place["y"] + place["height"] / 2)  # the coordinates come with the pointer
+    page.wait_for_function("() => document.getElementById('coordinates').textContent !== ''")
+    around = page.evaluate(OVERLAPS)
+    assert around["found"] == []
+    assert ("#legend" in around["names"]) == (width > 720)
+
+
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+def test_a_mission_opens_at_its_routes_whatever_far_view_its_address_names(visitor: Visitor, size: tuple[int, int]) -> None:
+    page = visitor.signs_in("opal", size=size, touch=size[0] < 721)
+    stores_mission(page, f"Seen at {size[0]}")
+    for view in ("", "#map=3.48/45/14", "#map=3.48/40/-83"):
+        mission = opens_mission(page, f"Seen at {size[0]}", view=view)
+        wait_for_map(page)
+        page.wait_for_url(lambda url: (found := VIEW.search(url)) is not None and float(found[1]) > 9)
+        frame = page.locator("#map").bounding_box()
+        assert frame
+        for route in mission["plan"]["routes"]:  # type: ignore[index]
+            for position in route["geometry"]["coordinates"] if route["geometry"] else []:
+                place = place_of(page, position)
+                assert frame["x"] < place["x"] < frame["x"] + frame["width"]
+                assert frame["y"] < place["y"] < frame["y"] + frame["height"]
+        page.goto("about:blank")
+
+
+def test_a_view_of_the_ground_in_the_address_is_kept_and_moving_adds_nothing_to_the_history(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    page.goto("/missions/new#map=14/39.96/-83")
+    wait_for_map(page)
+    expect(page).to_have_url(re.compile(r"#map=14/39\.96/-83$"))
+    before = page.evaluate("history.length")
+    page.get_by_role("button", name="Zoom in").click()
+    expect(page).to_have_url(re.compile(r"#map=15/39\.96000\d*/-83\.00000\d*$"))
+    assert page.evaluate("history.length") == before
+
+
+def test_routes_say_how_they_end_and_the_switch_what_happens_without_it(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    stores_mission(page, "Ends")
+    opens_mission(page, "Ends")
+    wait_for_map(page)
+    expect(page.get_by_role("list", name="Routes")).to_contain_text("returns to start")
+    expect(page.get_by_text("Each UAV flies back to where it took off")).to_be_visible()
+    page.get_by_role("switch", name="Return to start").uncheck()
+    expect(page.get_by_text("Each UAV ends hovering at its last target")).to_be_visible()
+    page.get_by_role("button", name="Plan again").click()
+    expect(page.locator("#plan-sentence")).to_have_text(re.compile(r"Done in \d+\smin\."))
+    expect(page.get_by_role("list", name="Routes")).to_contain_text(re.compile(r"ends hovering at [AB]\d"))
