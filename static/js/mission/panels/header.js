@@ -45,6 +45,9 @@ export function mountHeader(store, actions, canPlan) {
   store.listen(["problem", "conflict", "plan", "selection", "mission"], (state) => {
     byId("notices").replaceChildren(...noticesOf(state, actions, canPlan));
   });
+  store.listen(["problem", "conflict"], (state) => {
+    if (state.problem || state.conflict) byId("notices").parentElement.scrollTo({ top: 0 }); // it stands above a long list
+  });
 }
 
 function factsOf(state) {

@@ -8,6 +8,9 @@ import { spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
 const NAME_PX = 152; // as in mission.css
 
+/** One whose start lies in a zone; the notice and the row of the UAV say which. */
+const isGrounded = ({ result }, { sequence }) => (result.warnings ?? []).some(({ code, uav }) => code === "uav_inside_zone" && uav === sequence);
+
 export function mountRoutes(store, { onAlong }) {
   const dock = byId("dock");
   const list = byId("route-list");
@@ -28,7 +31,7 @@ export function mountRoutes(store, { onAlong }) {
           "span",
           {},
           h("strong", {}, route.name),
-          h("small", { class: "desk-line" }, isUsed ? countText(route.targets.length, "target") : "not needed"),
+          h("small", { class: "desk-line" }, isUsed ? countText(route.targets.length, "target") : isGrounded(state.plan, route) ? "cannot take off" : "not needed"),
           isUsed && h("small", {}, endingOf(route)),
         ),
       ),
