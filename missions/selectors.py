@@ -102,6 +102,12 @@ def mission_bounds(mission_id: UUID) -> tuple[float, float, float, float] | None
 
 
 def sketch(mission: Mission) -> list[list[list[float]]]:
-    """The routes, simplified for a drawing the size of a stamp."""
-    lines = [route.geometry.simplify(SKETCH_TOLERANCE_DEG).coords for route in mission.routes.all() if route.geometry is not None]
-    return [[[round(lon, 5), round(lat, 5)] for lon, lat in line] for line in lines if len(line) > 1]
+    """The routes, simplified for a drawing the size of a stamp; an empty one for a UAV on the ground, which keeps its letter and colour."""
+    return [_simplified(route) for route in mission.routes.all()]
+
+
+def _simplified(route: Route) -> list[list[float]]:
+    if route.geometry is None:
+        return []
+    line = route.geometry.simplify(SKETCH_TOLERANCE_DEG).coords
+    return [[round(lon, 5), round(lat, 5)] for lon, lat in line] if len(line) > 1 else []

@@ -15,7 +15,7 @@ from inspection.services.supports import number_supports
 from missions import tasks
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan
-from tests.missions.api import mission_body, patch, plan_body, post
+from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, rebuild, world, zone_around
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Job, Organisation, Role
@@ -109,6 +109,14 @@ def test_if_match_protects_what_somebody_else_has_changed(here: World, client: C
     assert post(client, f"{path}/plan", **{"If-Match": etag}).status_code == 412
     assert client.delete(f"/api/v1/{path}", headers={"If-Match": etag}).status_code == 412
     assert client.get(f"/api/v1/{path}").json()["name"] == "Mine"
+
+
+def test_an_idle_uav_keeps_its_place_in_the_sketch(here: World, client: Client) -> None:
+    """Kite stands 80 km off: Tern, the second, does it all and is still drawn as the second."""
+    kite = {"name": "Kite", "position": [11.0, 56.5]}
+    created(client, here, uavs=[kite, TERN])
+    (summary,) = client.get("/api/v1/missions").json()["results"]
+    assert [len(line) > 1 for line in summary["sketch"]] == [False, True]
 
 
 def test_the_list_shows_summaries_with_a_sketch_and_filters(here: World, client: Client) -> None:
