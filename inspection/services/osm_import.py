@@ -134,6 +134,7 @@ def _write(content: OsmContent, data_import: DataImport, sources: Sequence[DataI
         vanished = _vanish(cursor, content, data_import, sources)
         cursor.execute(_INSERT, values)
         new = cursor.rowcount
+        cursor.execute("ANALYZE inspection_asset (id, kind, osm_type, osm_id, line_id, vanished_at)")  # for what numbers the supports next
         cursor.execute("DROP TABLE osm_staging")  # before the end of the transaction: several imports may share one
     return {"new": new, "changed": changed, "unchanged": unchanged, "vanished": vanished, "kept_edited": edited, "kept_newer": newer}
 
