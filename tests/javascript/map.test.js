@@ -5,7 +5,7 @@ import { hashOf, showsAnything, viewOf } from "../../static/js/map/address.js";
 import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
 import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
 import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
-import { plainWords } from "../../static/js/map/furniture.js";
+import { distinct, plainWords } from "../../static/js/map/furniture.js";
 import { mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { placeSketch } from "../../static/js/missions/sketch.js";
 
@@ -128,4 +128,8 @@ test("codes of a zone file are told in words", () => {
   assert.equal(plainWords("AIR_TRAFFIC"), "Air traffic");
   assert.equal(plainWords("AIR_TRAFFIC, NATURE"), "Air traffic, nature");
   assert.equal(plainWords("Breeding season; keep out"), "Breeding season; keep out");
+});
+
+test("a source is named once, with its licence where that is known", () => {
+  assert.deepEqual(distinct(["© A, ODbL 1.0", "© A", "© AB", "© AB"]), ["© A, ODbL 1.0", "© AB"]);
 });

@@ -90,8 +90,14 @@ export function mountCoordinates() {
   return (position) => (place.textContent = position ? coordinateText(position) : "");
 }
 
+/** Each source once; "© X" is left out beside "© X, licence". */
+export function distinct(sources) {
+  const all = [...new Set(sources)];
+  return all.filter((source) => !all.some((other) => other !== source && other.startsWith(`${source},`)));
+}
+
 export function setAttribution(sources) {
-  byId("attribution").textContent = [...new Set(sources.filter(Boolean))].join(" · ");
+  byId("attribution").textContent = distinct(sources.filter(Boolean)).join(" · ");
 }
 
 /** Shows words beside the pointer after 300 ms; null takes them away. */
