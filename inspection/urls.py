@@ -2,13 +2,13 @@
 
 from django.urls import path
 
-from inspection import views
+from inspection.views import assets, ground, zones
 
 urlpatterns = [
-    path("assets", views.AssetList.as_view(), name="api-assets"),
-    path("assets/<int:asset_id>", views.AssetDetail.as_view(), name="api-asset"),
-    path("zones", views.ZoneList.as_view(), name="api-zones"),
-    path("zones/<int:zone_id>", views.ZoneDetail.as_view(), name="api-zone"),
-    path("ground", views.Ground.as_view(), name="api-ground"),
-    path("tiles/<int:zoom>/<int:column>/<int:row>", views.Tile.as_view(), name="api-tile"),
+    path("assets", assets.AssetList.as_view(), name="api-assets"),
+    path("assets/<int:asset_id>", assets.AssetDetail.as_view(), name="api-asset"),
+    path("zones", zones.ZoneList.as_view(), name="api-zones"),
+    path("zones/<int:zone_id>", zones.ZoneDetail.as_view(), name="api-zone"),
+    path("ground", ground.Ground.as_view(), name="api-ground"),
+    path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),
 ]

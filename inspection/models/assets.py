@@ -1,37 +1,12 @@
-"""What exists on the ground, and the graph that connects it."""
+"""Infrastructure: one table for all kinds, and a proxy for each."""
 
-from django.conf import settings
 from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.contrib.postgres.indexes import GinIndex, OpClass
 from django.db.models import Case, F, Func, Q, Value, When
 from django.db.models.functions import Now, Upper
 
-
-class ImportKind(models.TextChoices):
-    OSM = "osm", "OpenStreetMap"
-    ZONES = "zones", "No-fly zones"
-    TERRAIN = "terrain", "Terrain"
-
-
-class DataImport(models.Model):
-    """One file that was read: where the data comes from, under which licence, and what was in it."""
-
-    kind = models.CharField(max_length=20, choices=ImportKind.choices)
-    file_name = models.CharField(max_length=255)
-    sha256 = models.CharField(max_length=64)
-    attribution = models.CharField(max_length=300, blank=True)
-    is_synthetic = models.BooleanField(default=False, help_text="made data, such as the demo region; said wherever it is shown")
-    data_timestamp = models.DateTimeField(null=True, blank=True, help_text="how fresh the file says that its data is")
-    counts = models.JSONField(default=dict)
-    imported_at = models.DateTimeField(db_default=Now(), editable=False)
-    imported_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True)
-
-    class Meta:
-        ordering = ["-imported_at", "-pk"]
-
-    def __str__(self) -> str:
-        return self.file_name
+from inspection.models.imports import DataImport
 
 
 class AssetKind(models.TextChoices):
@@ -73,6 +48,20 @@ def _what_a_bridge_carries() -> Case:
     )
 
 
+class AssetSet(models.Model):
+    """The assets of one file that is not OpenStreetMap's; importing the source's next file under the same name brings them up to date."""
+
+    name = models.CharField(max_length=200, unique=True)
+    data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="asset_sets")
+    mapping = models.JSONField(default=dict, blank=True, help_text="which column says what; kept for the next file")
+
+    class Meta:
+        ordering = ["name"]
+
+    def __str__(self) -> str:
+        return self.name
+
+
 class Asset(models.Model):
     """A piece of infrastructure. One table for all kinds: targets, findings, tiles and imports point at one thing.
 
@@ -83,6 +72,8 @@ class Asset(models.Model):
     subtype = models.CharField(max_length=40, blank=True, help_text="tower, pole, portal; line, minor_line, cable; rail, tram; way, area")
     osm_type = models.CharField(max_length=1, choices=OsmType.choices, blank=True)
     osm_id = models.BigIntegerField(null=True, blank=True)
+    asset_set = models.ForeignKey(AssetSet, on_delete=models.SET_NULL, null=True, blank=True, related_name="assets")
+    source_key = models.CharField(max_length=200, blank=True, default="", db_default="", help_text="the asset's own key in its set")
     geometry = models.GeometryField(srid=4326)
     centre = models.PointField(srid=4326, help_text="where the asset is drawn and targeted as a point")
     name = models.CharField(max_length=255, blank=True)
@@ -109,6 +100,10 @@ class Asset(models.Model):
     data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="assets")
     content_hash = models.CharField(max_length=64, blank=True, editable=False, help_text="of what the last import said")
     is_edited = models.BooleanField(default=False, help_text="changed by a curator; imports leave the row alone")
+    source_facts = models.JSONField(
+        null=True, blank=True, editable=False, help_text="of an edited row: what its source says, brought up to date by imports"
+    )
+    revision = models.PositiveIntegerField(default=1, db_default=1, editable=False, help_text="counts the changes; what If-Match compares")
     vanished_at = models.DateTimeField(null=True, blank=True, help_text="when an import no longer had it")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)
@@ -117,6 +112,7 @@ class Asset(models.Model):
         ordering = ["pk"]
         constraints = [
             models.UniqueConstraint(fields=["kind", "osm_type", "osm_id"], condition=Q(osm_id__isnull=False), name="asset_osm_key"),
+            models.UniqueConstraint(fields=["asset_set", "kind", "source_key"], condition=~Q(source_key=""), name="asset_set_key"),
             models.CheckConstraint(condition=Q(kind__in=AssetKind.values), name="asset_kind_known"),
         ]
         indexes = [
@@ -168,122 +164,3 @@ class Bridge(Asset):
 
     class Meta:
         proxy = True
-
-
-class ZoneSet(models.Model):
-    """The zones of one source; importing the source's next file replaces them."""
-
-    name = models.CharField(max_length=200, unique=True)
-    data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="zone_sets")
-    source_format = models.CharField(max_length=20, blank=True)
-
-    class Meta:
-        ordering = ["name"]
-
-    def __str__(self) -> str:
-        return self.name
-
-
-class HeightReference(models.TextChoices):
-    AGL = "AGL", "above ground"
-    AMSL = "AMSL", "above sea level"
-
-
-class NoFlyZone(models.Model):
-    """One layer of a zone. It states facts as its source gives them; null is "not stated" and is not the same as 0.
-
-    Today every row counts as in force, always and at all heights; height band and schedule are kept whole for later use.
-    """
-
-    zone_set = models.ForeignKey(ZoneSet, on_delete=models.CASCADE, null=True, blank=True, related_name="zones")
-    identifier = models.CharField(max_length=100, help_text="the source's own key")
-    layer = models.PositiveSmallIntegerField(default=0)
-    name = models.CharField(max_length=255)
-    geometry = models.MultiPolygonField(srid=4326)
-    restriction = models.CharField(max_length=100, blank=True)
-    reason = models.CharField(max_length=255, blank=True)
-    lower_limit_m = models.FloatField(null=True, blank=True)
-    lower_reference = models.CharField(max_length=4, choices=HeightReference.choices, blank=True)
-    upper_limit_m = models.FloatField(null=True, blank=True)
-    upper_reference = models.CharField(max_length=4, choices=HeightReference.choices, blank=True)
-    source_heights = models.JSONField(default=dict, blank=True, help_text="limits, unit and references as the file gives them")
-    circle = models.JSONField(null=True, blank=True, help_text='{"centre": [lon, lat], "radius_m": number}; the polygon encloses it')
-    schedule = models.JSONField(null=True, blank=True, help_text="periods of applicability as the file gives them; null = permanent")
-    properties = models.JSONField(default=dict, blank=True, help_text="everything else that the source says")
-    created_at = models.DateTimeField(db_default=Now(), editable=False)
-    updated_at = models.DateTimeField(auto_now=True)
-
-    class Meta:
-        ordering = ["pk"]
-        verbose_name = "no-fly zone"
-        constraints = [
-            models.UniqueConstraint(fields=["zone_set", "identifier", "layer"], name="zone_source_key"),
-            models.CheckConstraint(
-                condition=Q(lower_limit_m=None)
-                | Q(upper_limit_m=None)
-                | ~Q(lower_reference=models.F("upper_reference"))
-                | Q(upper_limit_m__gte=models.F("lower_limit_m")),
-                name="zone_band_upright",
-            ),
-        ]
-
-    def __str__(self) -> str:
-        return self.name
-
-
-class TerrainTile(models.Model):
-    """A block of a terrain model: float32 heights, zlib-compressed, row 0 in the north; NaN is void."""
-
-    data_import = models.ForeignKey(DataImport, on_delete=models.CASCADE, related_name="terrain_tiles")
-    extent = models.PolygonField(srid=4326)
-    west_deg = models.FloatField(help_text="longitude of the centre of the first column")
-    north_deg = models.FloatField(help_text="latitude of the centre of the first row")
-    step_lon_deg = models.FloatField()
-    step_lat_deg = models.FloatField()
-    columns = models.PositiveIntegerField()
-    rows = models.PositiveIntegerField()
-    heights_amsl_m = models.BinaryField()
-    vertical_datum = models.CharField(max_length=50, default="EGM96")
-
-    def __str__(self) -> str:
-        return f"{self.data_import} at {self.west_deg:.3f}, {self.north_deg:.3f}"
-
-
-class Ground(models.Model):
-    """One row: counts the changes to assets and zones, so that a graph can tell whether it is out of date."""
-
-    SINGLE_ID = 1
-
-    id = models.PositiveSmallIntegerField(primary_key=True, default=SINGLE_ID)
-    revision = models.PositiveBigIntegerField(default=0)
-    changed_at = models.DateTimeField(null=True)
-
-    class Meta:
-        verbose_name_plural = "ground"
-        constraints = [models.CheckConstraint(condition=Q(id=1), name="ground_single")]
-
-    def __str__(self) -> str:
-        return f"revision {self.revision}"
-
-
-class GraphSnapshot(models.Model):
-    """An immutable graph, with the zones that it was cleared of. The primary key is the version."""
-
-    version = models.BigAutoField(primary_key=True)
-    ground_revision = models.PositiveBigIntegerField(help_text="the ground that it shows")
-    rules = models.JSONField(help_text="the linking rules that it was built with")
-    nodes = models.PositiveIntegerField()
-    edges = models.PositiveIntegerField()
-    components = models.PositiveIntegerField()
-    excluded_nodes = models.PositiveIntegerField()
-    excluded_edges = models.PositiveIntegerField()
-    arrays = models.BinaryField(help_text="npz, see inspection/graph/snapshot_file.py")
-    arrays_sha256 = models.CharField(max_length=64)
-    build_s = models.FloatField()
-    built_at = models.DateTimeField(db_default=Now(), editable=False)
-
-    class Meta:
-        ordering = ["-version"]
-
-    def __str__(self) -> str:
-        return f"graph {self.version}"

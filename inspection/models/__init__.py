@@ -1,0 +1,49 @@
+"""What exists on the ground, where it comes from, and the graph that connects it."""
+
+from inspection.models.assets import Asset, AssetKind, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
+from inspection.models.gaps import DataGap, GapKind, GapState
+from inspection.models.graph import GraphSnapshot, Ground
+from inspection.models.imports import (
+    ChangeAction,
+    DataImport,
+    ImportKind,
+    ImportProposal,
+    ProposalOrigin,
+    ProposalState,
+    ProposedChange,
+    Upload,
+    UploadPart,
+)
+from inspection.models.terrain import TerrainTile
+from inspection.models.zones import HeightReference, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
+
+__all__ = [
+    "Asset",
+    "AssetKind",
+    "AssetSet",
+    "Bridge",
+    "ChangeAction",
+    "DataGap",
+    "DataImport",
+    "GapKind",
+    "GapState",
+    "GraphSnapshot",
+    "Ground",
+    "HeightReference",
+    "ImportKind",
+    "ImportProposal",
+    "NoFlyZone",
+    "OsmType",
+    "PowerLine",
+    "PowerTower",
+    "ProposalOrigin",
+    "ProposalState",
+    "ProposedChange",
+    "Railway",
+    "TerrainTile",
+    "Upload",
+    "UploadPart",
+    "ZoneSet",
+    "ZoneSetVersion",
+    "ZoneSubscription",
+]

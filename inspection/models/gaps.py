@@ -1,0 +1,53 @@
+"""Where the data of the ground looks wrong, for a curator to mend or to leave."""
+
+from django.conf import settings
+from django.contrib.gis.db import models
+from django.db.models import Q
+from django.db.models.functions import Now
+
+
+class GapKind(models.TextChoices):
+    LONG_SPAN = "long_span", "Span far longer than the line's others"
+    MISSING_SUPPORT = "missing_support", "Line vertex without a tower"
+    TOWER_ON_NO_LINE = "tower_on_no_line", "Tower on no line"
+    LINE_WITHOUT_TOWERS = "line_without_towers", "Line without towers"
+    DEAD_END = "dead_end", "Line that ends in nothing"
+    ENDS_APART = "ends_apart", "Ends that should join"
+    BRIDGE_WITHOUT_WAY = "bridge_without_way", "Bridge without a way"
+    IMPOSSIBLE_VOLTAGE = "impossible_voltage", "Impossible voltage"
+
+
+class GapState(models.TextChoices):
+    OPEN = "open", "Open"
+    REPAIRED = "repaired", "Repaired"  # no longer found, or mended here
+    DISMISSED = "dismissed", "Left as it is"
+
+
+class DataGap(models.Model):
+    """One place where the data looks wrong. Found again under the same key with each new ground, so that a decision stays."""
+
+    kind = models.CharField(max_length=30, choices=GapKind.choices)
+    key = models.CharField(max_length=200, unique=True, help_text="kind and the places that it is about; the same on every run")
+    state = models.CharField(max_length=20, choices=GapState.choices, default=GapState.OPEN)
+    asset = models.ForeignKey("inspection.Asset", on_delete=models.CASCADE, null=True, blank=True, related_name="gaps")
+    other_asset = models.ForeignKey("inspection.Asset", on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    position = models.PointField(srid=4326)
+    geometry = models.GeometryField(srid=4326, null=True, blank=True, help_text="what to draw: the span, the two ends")
+    details = models.JSONField(default=dict, blank=True, help_text="figures with units in their names")
+    cut_off_m = models.FloatField(default=0.0, help_text="length of network that it cuts off")
+    ground_revision = models.PositiveBigIntegerField(help_text="where it was last found")
+    note = models.CharField(max_length=500, blank=True)
+    decided_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    decided_at = models.DateTimeField(null=True, blank=True)
+    found_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["-cut_off_m", "pk"]
+        constraints = [
+            models.CheckConstraint(condition=Q(kind__in=GapKind.values), name="gap_kind_known"),
+            models.CheckConstraint(condition=Q(state__in=GapState.values), name="gap_state_known"),
+        ]
+        indexes = [models.Index(fields=["state", "-cut_off_m", "id"], name="gap_worst_idx")]
+
+    def __str__(self) -> str:
+        return f"{self.get_kind_display()} {self.key}"

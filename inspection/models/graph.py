@@ -1,0 +1,45 @@
+"""The ground's revision, and the graphs built from it."""
+
+from django.contrib.gis.db import models
+from django.db.models import Q
+from django.db.models.functions import Now
+
+
+class Ground(models.Model):
+    """One row: counts the changes to assets and zones, so that a graph can tell whether it is out of date."""
+
+    SINGLE_ID = 1
+
+    id = models.PositiveSmallIntegerField(primary_key=True, default=SINGLE_ID)
+    revision = models.PositiveBigIntegerField(default=0)
+    changed_at = models.DateTimeField(null=True)
+
+    class Meta:
+        verbose_name_plural = "ground"
+        constraints = [models.CheckConstraint(condition=Q(id=1), name="ground_single")]
+
+    def __str__(self) -> str:
+        return f"revision {self.revision}"
+
+
+class GraphSnapshot(models.Model):
+    """An immutable graph, with the zones that it was cleared of. The primary key is the version."""
+
+    version = models.BigAutoField(primary_key=True)
+    ground_revision = models.PositiveBigIntegerField(help_text="the ground that it shows")
+    rules = models.JSONField(help_text="the linking rules that it was built with")
+    nodes = models.PositiveIntegerField()
+    edges = models.PositiveIntegerField()
+    components = models.PositiveIntegerField()
+    excluded_nodes = models.PositiveIntegerField()
+    excluded_edges = models.PositiveIntegerField()
+    arrays = models.BinaryField(help_text="npz, see inspection/graph/snapshot_file.py")
+    arrays_sha256 = models.CharField(max_length=64)
+    build_s = models.FloatField()
+    built_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["-version"]
+
+    def __str__(self) -> str:
+        return f"graph {self.version}"

@@ -1,0 +1,1 @@
+"""Shapes of the ground in the API."""

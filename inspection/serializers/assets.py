@@ -1,0 +1,79 @@
+"""Assets as GeoJSON features."""
+
+import json
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.models import Asset, AssetKind
+from inspection.selectors import asset_detail, asset_label
+from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+
+
+class AssetPropertiesSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=AssetKind.choices)
+    subtype = serializers.CharField()
+    label = serializers.CharField(help_text="what people call it: ref, name, or words made from what is known")
+    detail = serializers.CharField(help_text="a second fact: a support's line, voltage and operator, what a bridge carries; may be empty")
+    name = serializers.CharField()
+    ref = serializers.CharField()
+    operator = serializers.CharField()
+    voltages_v = serializers.ListField(child=serializers.IntegerField(), help_text="highest first")
+    circuits = serializers.IntegerField(allow_null=True)
+    height_m = serializers.FloatField(allow_null=True, help_text="above ground; null when not stated")
+    length_m = serializers.FloatField(allow_null=True)
+    osm = serializers.CharField(allow_null=True, help_text="type and id, such as w123")
+    is_flyable = serializers.BooleanField(help_text="part of the inspection graph")
+    centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
+
+
+class AssetDetailPropertiesSerializer(AssetPropertiesSerializer):
+    tags = serializers.DictField(help_text="as the source has them")
+    is_edited = serializers.BooleanField(help_text="changed by a curator")
+    vanished_at = serializers.DateTimeField(allow_null=True, help_text="when an import no longer had it")
+    updated_at = serializers.DateTimeField()
+    source = SourceSerializer(allow_null=True)
+
+
+AssetFeatureSerializer = feature_serializer("AssetFeature", AssetPropertiesSerializer)
+AssetDetailFeatureSerializer = feature_serializer("AssetDetailFeature", AssetDetailPropertiesSerializer)
+AssetCollectionSerializer = collection_serializer("AssetCollection", AssetFeatureSerializer)
+
+FIELDS_OF_AN_ASSET = (
+    "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m",
+    "length_m", "is_flyable", "carries", "place_on_line", "places_on_line",
+    "line__ref", "line__name", "line__operator", "line__max_voltage_v",
+)  # fmt: skip
+
+
+def asset_feature(asset: Asset) -> dict[str, Any]:
+    """`asset` comes with `geometry_json` from inspection.selectors."""
+    properties = {
+        "kind": asset.kind,
+        "subtype": asset.subtype,
+        "label": asset_label(asset),
+        "detail": asset_detail(asset),
+        "name": asset.name,
+        "ref": asset.ref,
+        "operator": asset.operator,
+        "voltages_v": asset.voltages_v,
+        "circuits": asset.circuits,
+        "height_m": asset.height_m,
+        "length_m": asset.length_m,
+        "osm": f"{asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else None,
+        "is_flyable": asset.is_flyable,
+        "centre": [asset.centre.x, asset.centre.y],
+    }
+    return {"type": "Feature", "id": asset.pk, "geometry": json.loads(asset.geometry_json), "properties": properties}
+
+
+def asset_detail_feature(asset: Asset) -> dict[str, Any]:
+    feature = asset_feature(asset)
+    feature["properties"] |= {
+        "tags": asset.tags,
+        "is_edited": asset.is_edited,
+        "vanished_at": asset.vanished_at,
+        "updated_at": asset.updated_at,
+        "source": source_json(asset.data_import),
+    }
+    return feature

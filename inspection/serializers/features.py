@@ -1,0 +1,59 @@
+"""What all shapes of the ground are made of: GeoJSON features and their collections, and where something came from."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.models import DataImport
+
+
+class GeometrySerializer(serializers.Serializer):
+    """A GeoJSON geometry, WGS84, longitude first."""
+
+    type = serializers.ChoiceField(choices=["Point", "LineString", "MultiLineString", "Polygon", "MultiPolygon"])
+    coordinates = serializers.ListField(child=serializers.JSONField())
+
+
+class SourceSerializer(serializers.Serializer):
+    """The file that something came from."""
+
+    file_name = serializers.CharField()
+    attribution = serializers.CharField(help_text="author and licence")
+    is_synthetic = serializers.BooleanField()
+    imported_at = serializers.DateTimeField()
+
+
+def feature_serializer(name: str, properties: type[serializers.Serializer]) -> type[serializers.Serializer]:
+    return type(
+        f"{name}Serializer",
+        (serializers.Serializer,),
+        {
+            "type": serializers.ChoiceField(choices=["Feature"]),
+            "id": serializers.IntegerField(),
+            "geometry": GeometrySerializer(),
+            "properties": properties(),
+        },
+    )
+
+
+def collection_serializer(name: str, feature: type[serializers.Serializer]) -> type[serializers.Serializer]:
+    return type(
+        f"{name}Serializer",
+        (serializers.Serializer,),
+        {
+            "type": serializers.ChoiceField(choices=["FeatureCollection"]),
+            "features": feature(many=True),
+            "next": serializers.CharField(allow_null=True, help_text="address of the next page"),
+        },
+    )
+
+
+def source_json(data_import: DataImport | None) -> dict[str, Any] | None:
+    if data_import is None:
+        return None
+    return {
+        "file_name": data_import.file_name,
+        "attribution": data_import.attribution,
+        "is_synthetic": data_import.is_synthetic,
+        "imported_at": data_import.imported_at,
+    }

@@ -1,0 +1,72 @@
+"""No-fly zones as GeoJSON features."""
+
+import json
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.models import HeightReference, NoFlyZone
+from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+
+
+class LimitSerializer(serializers.Serializer):
+    value_m = serializers.FloatField()
+    reference = serializers.ChoiceField(choices=HeightReference.choices, allow_blank=True, help_text="empty when not stated")
+
+
+class ZonePropertiesSerializer(serializers.Serializer):
+    """Facts as the source gives them; null is "not stated"."""
+
+    name = serializers.CharField()
+    identifier = serializers.CharField()
+    layer = serializers.IntegerField()
+    zone_set = serializers.CharField(allow_null=True)
+    restriction = serializers.CharField()
+    reason = serializers.CharField()
+    lower_limit = LimitSerializer(allow_null=True)
+    upper_limit = LimitSerializer(allow_null=True)
+    source_heights = serializers.DictField(help_text="limits, unit and references in the source's own words")
+    circle = serializers.DictField(
+        allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it"
+    )
+    schedule = serializers.JSONField(allow_null=True, help_text="when it applies, in the source's own words; null = always")
+    updated_at = serializers.DateTimeField()
+    source = SourceSerializer(allow_null=True)
+
+
+class ZoneDetailPropertiesSerializer(ZonePropertiesSerializer):
+    properties = serializers.DictField(help_text="everything else that the source says")
+
+
+ZoneFeatureSerializer = feature_serializer("ZoneFeature", ZonePropertiesSerializer)
+ZoneDetailFeatureSerializer = feature_serializer("ZoneDetailFeature", ZoneDetailPropertiesSerializer)
+ZoneCollectionSerializer = collection_serializer("ZoneCollection", ZoneFeatureSerializer)
+
+
+def zone_feature(zone: NoFlyZone) -> dict[str, Any]:
+    properties = {
+        "name": zone.name,
+        "identifier": zone.identifier,
+        "layer": zone.layer,
+        "zone_set": zone.zone_set.name if zone.zone_set else None,
+        "restriction": zone.restriction,
+        "reason": zone.reason,
+        "lower_limit": _limit(zone.lower_limit_m, zone.lower_reference),
+        "upper_limit": _limit(zone.upper_limit_m, zone.upper_reference),
+        "source_heights": zone.source_heights,
+        "circle": zone.circle,
+        "schedule": zone.schedule,
+        "updated_at": zone.updated_at,
+        "source": source_json(zone.zone_set.data_import if zone.zone_set else None),
+    }
+    return {"type": "Feature", "id": zone.pk, "geometry": json.loads(zone.geometry_json), "properties": properties}
+
+
+def zone_detail_feature(zone: NoFlyZone) -> dict[str, Any]:
+    feature = zone_feature(zone)
+    feature["properties"]["properties"] = zone.properties
+    return feature
+
+
+def _limit(value_m: float | None, reference: str) -> dict[str, Any] | None:
+    return None if value_m is None else {"value_m": value_m, "reference": reference}

@@ -1,0 +1,77 @@
+"""What reading a file for a proposal gives, the same for every kind of data."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Protocol
+
+from django.contrib.gis.geos import GEOSGeometry
+
+from inspection.models import ChangeAction, DataImport
+from workspace.models import User
+
+Progress = Callable[[str, float], None]
+"""Told the stage in a word or two and the share of the whole, 0 to 1. May raise JobCancelled: then nothing is written."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One line of a difference. before and after hold the facts that differ, geometries as GeoJSON."""
+
+    action: ChangeAction
+    subject: str  # an asset kind, or "zone"
+    label: str
+    subject_id: int | None = None
+    geometry: GEOSGeometry | None = None
+    before: dict[str, Any] | None = None
+    after: dict[str, Any] | None = None
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Why a file is refused, and where. position is lon, lat [deg]."""
+
+    place: str
+    message: str
+    position: tuple[float, float] | None = None
+
+
+class FileRefused(ValueError):
+    """The file has faults; nothing of it counts."""
+
+    def __init__(self, faults: Iterable[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(f"{fault.place}: {fault.message}" if fault.place else fault.message for fault in self.faults))
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a file comes from, as far as it is not in the file."""
+
+    file_name: str
+    source_address: str = ""
+    licence: str = ""
+    attribution: str = ""
+    fetched_at: datetime | None = None
+
+
+@dataclass
+class Reading:
+    """What is in a file and what it would change. changes may be cut after the first few thousand; numbers are of all."""
+
+    summary: dict[str, Any]  # what is in the file, figures with units in their names
+    numbers: dict[str, int]  # by ChangeAction, and "unchanged"
+    changes: Iterable[Change] = field(default_factory=tuple)
+
+
+class FileKind(Protocol):
+    """How one kind of data is read and applied: a module of this package for each ImportKind has these two functions."""
+
+    def read(self, *, path: Path, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
+        """Look at the file and at what it would change; writes nothing that stays. Raises FileRefused."""
+
+    def apply(
+        self, *, path: Path, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
+    ) -> DataImport:
+        """Make the ground what the file says, in the caller's transaction. Raises FileRefused."""

@@ -1,0 +1,60 @@
+"""The ground as a whole, and its tiles."""
+
+from typing import Any, cast
+
+from django.http import Http404, HttpResponse
+from django.utils.cache import get_conditional_response
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.negotiation import BaseContentNegotiation
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection import selectors
+from inspection.selectors import NoSuchTile
+from inspection.serializers.ground import GroundSerializer, ground_json
+
+TILE_TYPE = "application/vnd.mapbox-vector-tile"
+
+
+class Ground(APIView):
+    @extend_schema(operation_id="get_ground", summary="What is known of the ground, and the graph over it", responses=GroundSerializer)
+    def get(self, request: Request) -> Response:
+        return Response(ground_json(selectors.ground_summary()))
+
+
+class _OneAnswer(BaseContentNegotiation):
+    """Tiles are tiles and errors are JSON, whatever the client says that it prefers."""
+
+    def select_parser(self, request: Request, parsers: Any) -> Any:
+        return parsers[0]
+
+    def select_renderer(self, request: Request, renderers: Any, format_suffix: str | None = None) -> Any:
+        return renderers[0], renderers[0].media_type
+
+
+class Tile(APIView):
+    content_negotiation_class = _OneAnswer
+
+    @extend_schema(
+        operation_id="get_tile",
+        summary="A vector tile of assets and zones",
+        description="Layers lines, railways, bridges, bridge_points, towers, zones, zone_labels; empty where there is nothing. "
+        "The ETag changes with the ground.",
+        responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
+    )
+    def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
+        revision, changed_at = selectors.ground_edition()
+        etag = f'"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}"'
+        not_changed = get_conditional_response(request._request, etag=etag)
+        if not_changed is not None:
+            response = cast(HttpResponse, not_changed)
+        else:
+            try:
+                response = HttpResponse(selectors.vector_tile(zoom, column, row), content_type=TILE_TYPE)
+            except NoSuchTile as error:
+                raise Http404 from error
+        response["ETag"] = etag
+        response["Cache-Control"] = "private, no-cache"  # kept, but asked for again: a zone may have come
+        return response

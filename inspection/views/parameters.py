@@ -1,0 +1,46 @@
+"""What several doors take from the query: a box, kinds, a text."""
+
+from math import isfinite
+
+from drf_spectacular.utils import OpenApiParameter
+from rest_framework.request import Request
+
+from inspection.models import AssetKind
+from inspection.selectors import Box
+from workspace.errors import ApiProblem
+
+LONGEST_TEXT = 100
+BOX = OpenApiParameter("bbox", str, description="west,south,east,north in degrees; west > east crosses the 180th meridian")
+
+
+def invalid(parameter: str, message: str) -> ApiProblem:
+    return ApiProblem(400, "invalid", f"{parameter}: {message}", details={parameter: [message]})
+
+
+def box_of(request: Request) -> Box | None:
+    text = request.query_params.get("bbox", "")
+    if not text:
+        return None
+    try:
+        west, south, east, north = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise invalid("bbox", "Four numbers are needed: west,south,east,north.") from error
+    if not all(map(isfinite, (west, south, east, north))):
+        raise invalid("bbox", "Four finite numbers are needed.")
+    if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south <= north <= 90):
+        raise invalid("bbox", "Longitudes go from -180 to 180, latitudes from -90 to 90, and south is not above north.")
+    return west, south, east, north
+
+
+def kinds_of(request: Request) -> list[AssetKind]:
+    try:
+        return [AssetKind(kind.strip()) for kind in request.query_params.get("kind", "").split(",") if kind.strip()]
+    except ValueError as error:
+        raise invalid("kind", f"Known kinds are {', '.join(AssetKind.values)}.") from error
+
+
+def text_of(request: Request) -> str:
+    text = request.query_params.get("text", "").strip()
+    if len(text) > LONGEST_TEXT or not text.isprintable():
+        raise invalid("text", f"At most {LONGEST_TEXT} printable characters.")
+    return text
