@@ -2,18 +2,15 @@
 
 from typing import Any
 
-from django.conf import settings
 from django.contrib.auth.forms import AuthenticationForm
-from django.contrib.auth.mixins import LoginRequiredMixin
 from django.contrib.auth.views import LoginView
 from django.core.exceptions import ValidationError
 from django.http import Http404
-from django.views.generic import TemplateView
 
 from inspection.selectors import ground_extent
 from missions.models import Mission
 from missions.selectors import mission_bounds
-from workspace.models import User
+from workspace.pages import SignedInPage, raster_maps
 from workspace.sign_in_attempts import address_of, count_failure, forget_failures, is_locked
 
 
@@ -48,23 +45,11 @@ class SignInPage(LoginView):
     redirect_authenticated_user = True
 
 
-class _SignedInPage(LoginRequiredMixin, TemplateView):
-    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
-        user = self.request.user
-        assert isinstance(user, User)  # noqa: S101 (LoginRequiredMixin lets nobody else in)
-        page = {"userId": user.pk, "userName": user.username, "role": user.role, "canPlan": user.can_plan} | self.page(**kwargs)
-        return super().get_context_data(**kwargs) | {"page": page}
-
-    def page(self, **kwargs: Any) -> dict[str, Any]:
-        """What the page's script must know before its first request."""
-        return {}
-
-
-class MissionsPage(_SignedInPage):
+class MissionsPage(SignedInPage):
     template_name = "missions.html"
 
 
-class MissionPage(_SignedInPage):
+class MissionPage(SignedInPage):
     """The operator's map, for a new mission or a stored one of the user's organisation."""
 
     template_name = "mission.html"
@@ -78,6 +63,4 @@ class MissionPage(_SignedInPage):
             "mission": str(mission_id) if mission_id else None,
             "extent": ground_extent(),
             "bounds": mission_bounds(mission_id) if mission_id else None,
-            "baseMap": {"tiles": settings.BASE_MAP_TILES, "attribution": settings.BASE_MAP_ATTRIBUTION},
-            "satellite": {"tiles": settings.SATELLITE_TILES, "attribution": settings.SATELLITE_ATTRIBUTION},
-        }
+        } | raster_maps()

@@ -1,11 +1,12 @@
 /** The operator's map: composes the page and loads what it shows. */
 
 import { ApiError, get } from "../api.js";
+import { byId } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { mountWorkbench } from "../page/workbench.js";
 import { createHistory, createStore } from "../store.js";
 import { createActions } from "./actions.js";
 import { createDrafts } from "./draft.js";
-import { mountLayout } from "./layout.js";
 import { mountMap } from "./map_panel.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFoot } from "./panels/foot.js";
@@ -29,7 +30,7 @@ const drafts = createDrafts({ user: page.userId, editor: crypto.randomUUID?.() ?
 const actions = createActions(store, history, page, drafts);
 
 let uavPanel = null;
-const layout = mountLayout();
+const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
 const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
 mountHeader(store, actions, page.canPlan);

@@ -9,6 +9,7 @@ import * as selectionLayer from "../map/layers/selection.js";
 import { createTargets } from "../map/layers/targets.js";
 import { createUavs } from "../map/layers/uavs.js";
 import { boxAround, createMap } from "../map/map_view.js";
+import { rememberedUnder, rememberUnder, underChoices } from "../map/under.js";
 import { toggleMenu } from "../page/chrome.js";
 import { onTheme } from "../page/theme.js";
 import { toast } from "../page/toast.js";
@@ -17,19 +18,6 @@ import { standingUavs } from "./fleet.js";
 import { extentOf, isWhole, nameOf, targetOf } from "./selection.js";
 
 const sentence = (words) => words[0].toUpperCase() + words.slice(1);
-const UNDER_KEY = "spanwise.base-map";
-
-function rememberedUnder(page) {
-  const offered = ["base-map", "satellite"].filter((name) => (name === "base-map" ? page.baseMap : page.satellite).tiles);
-  let remembered = null;
-  try {
-    remembered = localStorage.getItem(UNDER_KEY);
-  } catch {
-    /* storage is closed: the first one offered */
-  }
-  return remembered === "" || offered.includes(remembered) ? remembered : (offered[0] ?? "");
-}
-
 const cornersOf = (...boxes) => boxes.flatMap(([west, south, east, north]) => [[west, south], [east, north]]);
 
 export function mountMap(store, actions, page, { askForUav }) {
@@ -71,17 +59,13 @@ export function mountMap(store, actions, page, { askForUav }) {
     toggleMenu(layers, () =>
       layersMenu({
         under: {
-          choices: [{ value: "", words: "None" }, ...(page.baseMap.tiles ? [{ value: "base-map", words: "Map" }] : []), ...(page.satellite.tiles ? [{ value: "satellite", words: "Satellite" }] : [])],
+          choices: underChoices(page),
           chosen: () => under,
           choose(name) {
             under = name;
             view.putUnder(name);
             attribute();
-            try {
-              localStorage.setItem(UNDER_KEY, name);
-            } catch {
-              /* storage is closed: the choice lasts as long as the page */
-            }
+            rememberUnder(name);
           },
         },
         isShown: (group) => !hidden.has(group.name),

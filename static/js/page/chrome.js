@@ -15,6 +15,8 @@ export function startChrome({ bindings = [] } = {}) {
     ...bindings,
     { keys: ["n"], words: readPage().canPlan ? "New mission" : "Go to the map", act: go("/missions/new") },
     { keys: ["g m"], words: "Go to the missions", act: go("/") },
+    { keys: ["g a"], words: "Go to the assets", act: go("/assets") },
+    { keys: ["g z"], words: "Go to the zones", act: go("/zones") },
     { keys: ["?"], words: "Show the keys", act: () => showKeys(all) },
   ];
   listenToKeys(all);

@@ -5,14 +5,15 @@ import { byId } from "../dom.js";
 const HEIGHTS = ["low", "half", "full"];
 const phone = matchMedia("(max-width: 720px)");
 
-export function mountLayout() {
+/** dockOnPhone: the element that takes the dock on a phone, first in the sheet. */
+export function mountWorkbench({ dockOnPhone }) {
   const workbench = byId("workbench");
   const dock = byId("dock");
   const stage = byId("main");
 
-  /** One place for the routes: under the map, or first in the sheet. */
+  /** One place for the dock: under the map, or first in the sheet. */
   const place = () => {
-    if (phone.matches) byId("routes-on-phone").append(dock);
+    if (phone.matches) dockOnPhone.append(dock);
     else stage.append(dock);
   };
   phone.addEventListener("change", place);

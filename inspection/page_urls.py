@@ -1,0 +1,14 @@
+"""Addresses of the pages about the ground."""
+
+from django.urls import path
+
+from inspection.pages import AssetsPage, GapsPage, ImportsPage, TerrainPage, ZonesPage
+
+urlpatterns = [
+    path("assets", AssetsPage.as_view(), name="assets"),
+    path("assets/gaps", GapsPage.as_view(), name="gaps"),
+    path("imports", ImportsPage.as_view(), name="imports"),
+    path("imports/<uuid:proposal_id>", ImportsPage.as_view(), name="import"),
+    path("terrain", TerrainPage.as_view(), name="terrain"),
+    path("zones", ZonesPage.as_view(), name="zones"),
+]

@@ -1,0 +1,50 @@
+"""The pages about the ground: HTML shells round a map."""
+
+from typing import Any
+
+from inspection.selectors import ground_extent
+from workspace.pages import SignedInPage, raster_maps
+
+
+class GroundPage(SignedInPage):
+    """A page of this app. `section` is the place in the bar, `tab` the one among the pages of that section."""
+
+    section = "assets"
+    tab = ""
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"section": self.section, "tab": self.tab}
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"extent": ground_extent()} | raster_maps()
+
+
+class AssetsPage(GroundPage):
+    template_name = "assets.html"
+    tab = "assets"
+
+
+class GapsPage(GroundPage):
+    template_name = "gaps.html"
+    tab = "gaps"
+
+
+class ImportsPage(GroundPage):
+    """What has come in; with a proposal's id, that one is open."""
+
+    template_name = "imports.html"
+    tab = "imports"
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        proposal = kwargs.get("proposal_id")
+        return super().page(**kwargs) | {"proposal": str(proposal) if proposal else None}
+
+
+class TerrainPage(GroundPage):
+    template_name = "terrain.html"
+    tab = "terrain"
+
+
+class ZonesPage(GroundPage):
+    template_name = "zones.html"
+    section = "zones"

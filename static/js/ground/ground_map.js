@@ -1,0 +1,137 @@
+/** The map of a page about the ground: made, furnished, and told what the pointer means. */
+
+import { byId } from "../dom.js";
+import { piecesOf, routeClicks } from "../map/click_router.js";
+import { createTip, layersMenu, mountCoordinates, mountLegend, mountScale, setAttribution, tipOf } from "../map/furniture.js";
+import * as selectionLayer from "../map/layers/selection.js";
+import { createMap } from "../map/map_view.js";
+import { rememberedUnder, rememberUnder, underChoices } from "../map/under.js";
+import { toggleMenu } from "../page/chrome.js";
+import { onTheme } from "../page/theme.js";
+
+const SETTLED_MS = 350;
+const NEAR_ZOOM = 14;
+
+/**
+ * on: { click(thing, position, point), hover(thing, point, position), box([W, S, E, N]), tool() , kinds() }, each optional. A page that
+ * draws returns true from `isBusy()` while the pointer belongs to the drawing: then nothing is picked and no tip comes up.
+ * Returns { map, view, ready, fit(box), show(position or box), setGround(ground), box(), ring(geometries), onRecolour(act) }.
+ */
+export function mountGroundMap(page, on = {}) {
+  const container = byId("map");
+  const frame = container.parentElement;
+  let under = rememberedUnder(page);
+  let ground = null;
+  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: "Map", bounds: page.extent, extent: page.extent });
+  const { map } = view;
+  const hidden = new Set();
+  const repainted = new Set();
+  const tip = createTip(frame);
+  const showCoordinates = mountCoordinates();
+  const isBusy = () => on.isBusy?.() ?? false;
+  let pointed = null;
+
+  // The focus ring is for the keyboard: a click into the map gives it the focus too, and a key pressed later would show the ring.
+  container.addEventListener("pointerdown", () => (container.dataset.pointed = "true"));
+  container.addEventListener("focusout", () => delete container.dataset.pointed);
+  container.project = (position) => map.project(position); // screen place of a position, for tests
+  map.on("idle", () => (container.dataset.idle = "true"));
+  map.on("movestart", () => delete container.dataset.idle);
+  mountScale(map);
+  mountLegend(map);
+  byId("zoom-in").addEventListener("click", () => map.zoomIn());
+  byId("zoom-out").addEventListener("click", () => map.zoomOut());
+  byId("fit").addEventListener("click", () => fit(extent()));
+  onTheme(() =>
+    requestAnimationFrame(() => {
+      view.recolour();
+      repainted.forEach((act) => act(view.palette()));
+    }),
+  );
+
+  const attribute = () => setAttribution([...(ground?.attribution ?? []), under === "base-map" && page.baseMap.attribution, under === "satellite" && page.satellite.attribution]);
+  const layers = byId("open-layers");
+  layers.addEventListener("click", () =>
+    toggleMenu(layers, () =>
+      layersMenu({
+        under: {
+          choices: underChoices(page),
+          chosen: () => under,
+          choose(name) {
+            under = name;
+            view.putUnder(name);
+            attribute();
+            rememberUnder(name);
+          },
+        },
+        isShown: (group) => !hidden.has(group.name),
+        show(group, visible) {
+          if (visible) hidden.delete(group.name);
+          else hidden.add(group.name);
+          view.show(group.layers, visible);
+        },
+      }),
+    ),
+  );
+
+  routeClicks(map, {
+    tool: () => on.tool?.() ?? "point",
+    kinds: () => on.kinds?.() ?? null,
+    click(thing, position, point) {
+      tip(null);
+      if (!isBusy()) on.click?.(thing, position, point);
+    },
+    hover(thing, point, position) {
+      showCoordinates(position);
+      const met = isBusy() ? null : thing;
+      tip(met ? `${met.kind} ${met.id}` : null, point, () => tipOf(met));
+      on.hover?.(met, point, position);
+      if (met?.id === pointed?.id && met?.kind === pointed?.kind) return;
+      pointed = met;
+      if (!on.ringsItself) ring(pointed ? piecesOf(map, pointed) : []);
+    },
+    box: (box) => on.box?.(box),
+  });
+
+  const extent = () => ground?.extent ?? page.extent;
+  const calm = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+  function fit(box, options) {
+    map.resize(); // the dock may just have come: fit into what is left
+    view.fit(box, options);
+  }
+  function ring(geometries) {
+    if (map.getSource("selection")) selectionLayer.showHovered(map, geometries);
+  }
+
+  return {
+    map,
+    view,
+    ready: view.ready,
+    opensAtPlace: view.opensAtPlace,
+    fit,
+    fitAll: (options) => fit(extent(), options),
+    zoom: (steps) => map.zoomTo(map.getZoom() + steps),
+    box: () => map.getBounds().toArray().flat(),
+    centre: () => map.getCenter().toArray(),
+    /** Rings geometries: what a list row is at. */
+    ring,
+    /** Brings a position [lon, lat] or a box [W, S, E, N] into view, near enough to see what stands there. */
+    show(place) {
+      if (place.length === 4) fit(place);
+      else map.easeTo({ center: place, zoom: Math.max(map.getZoom(), NEAR_ZOOM), duration: calm() ? 0 : SETTLED_MS });
+    },
+    /** `act(palette)` paints a page's own layers again after a change of theme. */
+    onRecolour: (act) => repainted.add(act),
+    /** New tiles, after the ground has changed. */
+    refreshTiles() {
+      const source = map.getSource("ground-tiles");
+      if (source) source.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${Date.now()}`]);
+    },
+    setGround(next) {
+      ground = next;
+      attribute();
+      byId("demo-badge").hidden = !ground?.is_synthetic;
+      byId("map-empty").hidden = !ground || ground.extent !== null;
+    },
+  };
+}

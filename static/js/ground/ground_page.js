@@ -1,0 +1,36 @@
+/** What every page about the ground has: its map, the sheet and folds, the keys, and the ground's own facts. */
+
+import { get } from "../api.js";
+import { byId } from "../dom.js";
+import { readPage, startChrome } from "../page/chrome.js";
+import { mountWorkbench } from "../page/workbench.js";
+import { mountGroundMap } from "./ground_map.js";
+
+/**
+ * Returns { page, map, layout, open({ bindings, load }) }. `on` is what the map tells the page: see ground_map.js. `open` starts the keys,
+ * loads the ground and what the page loads besides, and marks the document as loaded (for tests, `html[data-loaded]`).
+ */
+export function mountGroundPage(on = {}) {
+  const page = readPage();
+  const map = mountGroundMap(page, on);
+  const layout = mountWorkbench({ dockOnPhone: byId("dock-on-phone") });
+
+  async function open({ bindings = [], load = async () => {} } = {}) {
+    startChrome({
+      bindings: [
+        ...bindings,
+        { keys: ["f"], words: "Fit everything", act: () => map.fitAll() },
+        { keys: ["+", "="], words: "Zoom in", act: () => map.zoom(1) },
+        { keys: ["-"], words: "Zoom out", act: () => map.zoom(-1) },
+        { keys: ["["], words: "Fold the side", act: layout.foldSide },
+        { keys: ["]"], words: "Fold the dock", act: layout.foldDock },
+      ],
+    });
+    map.setGround((await get("/ground")).data);
+    await map.ready;
+    await load();
+    document.documentElement.dataset.loaded = "true";
+  }
+
+  return { page, map, layout, open };
+}

@@ -1,0 +1,5 @@
+/** The page "Imports": composes its panel and the map. */
+
+import { mountGroundPage } from "../ground/ground_page.js";
+
+mountGroundPage().open();
