@@ -2,13 +2,21 @@
 
 from django.urls import path
 
-from inspection.views import assets, ground, zones
+from inspection.views import assets, geometry_checks, ground, history, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
     path("assets/<int:asset_id>", assets.AssetDetail.as_view(), name="api-asset"),
+    path("assets/<int:asset_id>/history", history.AssetHistory.as_view(), name="api-asset-history"),
+    path("assets/<int:asset_id>/revert", history.AssetRevert.as_view(), name="api-asset-revert"),
+    path("assets/<int:asset_id>/follow-source", history.AssetFollowSource.as_view(), name="api-asset-follow-source"),
     path("zones", zones.ZoneList.as_view(), name="api-zones"),
     path("zones/<int:zone_id>", zones.ZoneDetail.as_view(), name="api-zone"),
+    path("zones/<int:zone_id>/history", history.ZoneHistory.as_view(), name="api-zone-history"),
+    path("zones/<int:zone_id>/revert", history.ZoneRevert.as_view(), name="api-zone-revert"),
+    path("history", history.HistoryList.as_view(), name="api-history"),
+    path("history/<int:entry_id>/undo", history.HistoryUndo.as_view(), name="api-undo"),
+    path("geometry-checks", geometry_checks.GeometryCheck.as_view(), name="api-geometry-checks"),
     path("ground", ground.Ground.as_view(), name="api-ground"),
     path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),
 ]

@@ -40,7 +40,7 @@ def assets_on_the_ground(
 def asset_with_geometry(asset_id: int) -> Asset:
     """One asset, also when it has vanished: missions may still point at it. Raises Asset.DoesNotExist."""
     return (
-        Asset.objects.select_related("data_import", "line")
+        Asset.objects.select_related("data_import", "asset_set", "line")
         .defer(*UNREAD_OF_A_LINE)
         .annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
         .get(pk=asset_id)

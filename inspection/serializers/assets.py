@@ -29,7 +29,10 @@ class AssetPropertiesSerializer(serializers.Serializer):
 
 class AssetDetailPropertiesSerializer(AssetPropertiesSerializer):
     tags = serializers.DictField(help_text="as the source has them")
+    revision = serializers.IntegerField(help_text="the ETag")
     is_edited = serializers.BooleanField(help_text="changed by a curator")
+    follows = serializers.BooleanField(help_text="there is a source whose facts can be taken again")
+    asset_set = serializers.CharField(allow_null=True, help_text="the set of a file other than OpenStreetMap's")
     vanished_at = serializers.DateTimeField(allow_null=True, help_text="when an import no longer had it")
     updated_at = serializers.DateTimeField()
     source = SourceSerializer(allow_null=True)
@@ -71,7 +74,10 @@ def asset_detail_feature(asset: Asset) -> dict[str, Any]:
     feature = asset_feature(asset)
     feature["properties"] |= {
         "tags": asset.tags,
+        "revision": asset.revision,
         "is_edited": asset.is_edited,
+        "follows": asset.source_facts is not None,
+        "asset_set": asset.asset_set and asset.asset_set.name,
         "vanished_at": asset.vanished_at,
         "updated_at": asset.updated_at,
         "source": source_json(asset.data_import),

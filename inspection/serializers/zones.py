@@ -35,6 +35,8 @@ class ZonePropertiesSerializer(serializers.Serializer):
 
 
 class ZoneDetailPropertiesSerializer(ZonePropertiesSerializer):
+    revision = serializers.IntegerField(help_text="the ETag")
+    is_edited = serializers.BooleanField(help_text="changed by a curator")
     properties = serializers.DictField(help_text="everything else that the source says")
 
 
@@ -64,7 +66,7 @@ def zone_feature(zone: NoFlyZone) -> dict[str, Any]:
 
 def zone_detail_feature(zone: NoFlyZone) -> dict[str, Any]:
     feature = zone_feature(zone)
-    feature["properties"]["properties"] = zone.properties
+    feature["properties"] |= {"properties": zone.properties, "revision": zone.revision, "is_edited": zone.is_edited}
     return feature
 
 

@@ -1,6 +1,6 @@
 """Writes of the ground: what the other apps, commands and tasks call."""
 
-from inspection.services.curation import WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
+from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
 from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
 from inspection.services.osm_import import import_osm
@@ -10,6 +10,7 @@ from inspection.terrain.errors import TerrainFileError
 from inspection.zones.zone_file import ZoneFileError
 
 __all__ = [
+    "StaleRevision",
     "TerrainFileError",
     "WrongGeometry",
     "ZoneFileError",

@@ -11,6 +11,7 @@ from django.utils import timezone
 from inspection.geodesy.wgs84 import path_length_m
 from inspection.graph.ground_data import NO_OSM_NODE
 from inspection.models import Asset, AssetKind, NoFlyZone
+from inspection.services.facts import asset_facts, says_the_same, take_asset_facts, zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.supports import number_supports
 from workspace.models import User
@@ -28,6 +29,14 @@ class WrongGeometry(ValueError):
     """The geometry is of another type than the asset's kind has."""
 
 
+class StaleRevision(Exception):
+    """Somebody else has changed or deleted the row since it was read; nothing was written."""
+
+    def __init__(self, subject: str, key: int | None) -> None:
+        super().__init__(f"{subject} {key} has changed in the meantime")
+        self.subject, self.key = subject, key
+
+
 def geometry_fault(*, kind: AssetKind, geometry: GEOSGeometry) -> str | None:
     """A sentence, if assets of this kind have another type of geometry."""
     types = GEOMETRY_TYPES[kind]
@@ -36,69 +45,105 @@ def geometry_fault(*, kind: AssetKind, geometry: GEOSGeometry) -> str | None:
     return f"A {kind.label.lower()} is drawn as {' or '.join(sorted(types))}, not as {geometry.geom_type}."
 
 
-def save_asset(*, asset: Asset, actor: User) -> Asset:
-    """Store a new or changed asset with all that follows from its geometry and voltages. Raises WrongGeometry."""
+def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = None, action: str = "") -> Asset:
+    """Store a new or changed asset with all that follows from its geometry and voltages. Raises WrongGeometry, StaleRevision.
+
+    A row that says again what its source says counts as not edited: imports keep it up to date from then on.
+    """
     kind = AssetKind(asset.kind)
-    if asset.geometry.geom_type not in GEOMETRY_TYPES[kind]:
-        raise WrongGeometry(
-            f"A {kind.label.lower()} is drawn as {' or '.join(sorted(GEOMETRY_TYPES[kind]))}, not as {asset.geometry.geom_type}."
-        )
+    if fault := geometry_fault(kind=kind, geometry=asset.geometry):
+        raise WrongGeometry(fault)
     with transaction.atomic():
         hold_ground()
-        before = Asset.objects.select_for_update().filter(pk=asset.pk).first()
-        asset.is_edited = True
+        before = Asset.objects.select_for_update(of=["self"]).filter(pk=asset.pk).first()
+        _check_revision(before, expected_revision, "asset", asset.pk)
         asset.voltages_v = sorted(set(asset.voltages_v), reverse=True)
         asset.max_voltage_v = max(asset.voltages_v, default=None)
         asset.centre = _centre(asset.geometry)
         if isinstance(asset.geometry, LineString):
             asset.length_m = path_length_m(np.array(asset.geometry.coords))
-            asset.node_osm_ids = _osm_nodes(asset.geometry, before)
-        asset.save()
-        _record(actor, before, asset, asset_facts)
+            asset.node_osm_ids = _osm_nodes(asset, before)
+        if before is not None and not before.is_edited and is_sourced(before):
+            asset.source_facts = asset_facts(before)
+        follows_source = asset.source_facts is not None and says_the_same(asset, asset.source_facts)
+        if asset.source_facts is not None and follows_source:
+            take_asset_facts(asset, asset.source_facts)  # with the OSM nodes of its vertices
+            asset.source_facts = None
+        asset.is_edited = not follows_source
+        asset.revision = before.revision + 1 if before else max(asset.revision, 1)
+        asset.save(force_insert=before is None)
+        _record(actor, before and asset_facts(before), asset_facts(asset), asset, action)
         _number_supports_after(kind)
         mark_ground_changed()
     return asset
 
 
-def delete_asset(*, asset: Asset, actor: User) -> None:
-    """Remove an asset. One from a file comes back with the file's next import; clear `is_flyable` to keep it out of the graph.
+def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = None) -> None:
+    """Take an asset off the ground. Raises StaleRevision.
 
-    One that a mission's target points at is marked as vanished instead: the target keeps its place.
+    One that came from a file, or that a mission's target points at, is marked as vanished by hand: the target keeps its place, and the
+    file's next import does not bring the asset back. One that was drawn here is deleted.
     """
     with transaction.atomic():
         hold_ground()
-        kept = Asset.objects.select_for_update().get(pk=asset.pk)
-        if _is_pointed_at(kept):
-            before = Asset.objects.get(pk=asset.pk)
+        kept = Asset.objects.select_for_update(of=["self"]).filter(pk=asset.pk).first()
+        _check_revision(kept, expected_revision, "asset", asset.pk)
+        if kept is None:
+            return
+        before = asset_facts(kept)
+        if is_sourced(kept) or _is_pointed_at(kept):
+            if not kept.is_edited and is_sourced(kept):
+                kept.source_facts = before
             kept.is_edited = True
             kept.vanished_at = kept.vanished_at or timezone.now()
-            kept.save(update_fields=["is_edited", "vanished_at", "updated_at"])
-            _record(actor, before, kept, asset_facts)
+            kept.revision += 1
+            kept.save(update_fields=["is_edited", "vanished_at", "source_facts", "revision", "updated_at"])
+            _record(actor, before, asset_facts(kept), kept, "deleted")
         else:
-            _record(actor, asset, None, asset_facts)
-            asset.delete()
+            _record(actor, before, None, kept)
+            kept.delete()
         _number_supports_after(AssetKind(kept.kind))
         mark_ground_changed()
 
 
-def save_zone(*, zone: NoFlyZone, actor: User) -> NoFlyZone:
-    """Store a new or changed zone. Its geometry has passed the gate (zones/geometry_gate.py)."""
+def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = None, action: str = "") -> NoFlyZone:
+    """Store a new or changed zone. Its geometry has passed the gate (zones/geometry_gate.py). Raises StaleRevision."""
     with transaction.atomic():
+        hold_ground()
         before = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
+        _check_revision(before, expected_revision, "zone", zone.pk)
         zone.identifier = zone.identifier or f"drawn-{uuid.uuid4()}"
-        if before is not None and before.geometry != zone.geometry:
+        if before is not None and before.geometry != zone.geometry and before.circle == zone.circle:
             zone.circle = None  # what was drawn anew is no longer the circle that the source stated
-        zone.save()
-        _record(actor, before, zone, zone_facts)
+        zone.is_edited = zone.zone_set_id is not None
+        zone.revision = before.revision + 1 if before else max(zone.revision, 1)
+        zone.save(force_insert=before is None)
+        _record(actor, before and zone_facts(before), zone_facts(zone), zone, action)
         mark_ground_changed()
     return zone
 
 
-def delete_zone(*, zone: NoFlyZone, actor: User) -> None:
+def delete_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = None) -> None:
+    """Remove a zone; its source's next file brings it back, as a new one in the difference. Raises StaleRevision."""
     with transaction.atomic():
-        _record(actor, zone, None, zone_facts)
-        zone.delete()
+        hold_ground()
+        kept = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
+        _check_revision(kept, expected_revision, "zone", zone.pk)
+        if kept is None:
+            return
+        _record(actor, zone_facts(kept), None, kept)
+        kept.delete()
         mark_ground_changed()
+
+
+def is_sourced(asset: Asset) -> bool:
+    """It came from a file, which may come again."""
+    return asset.osm_id is not None or asset.asset_set_id is not None
+
+
+def _check_revision(row: Asset | NoFlyZone | None, expected: int | None, subject: str, key: int | None) -> None:
+    if expected is not None and (row is None or row.revision != expected):
+        raise StaleRevision(subject, key)
 
 
 def _number_supports_after(kind: AssetKind) -> None:
@@ -117,35 +162,16 @@ def _is_pointed_at(asset: Asset) -> bool:
     return any(model._base_manager.filter(**{field: asset.pk}).exists() for model, field in pointing)
 
 
-def asset_facts(asset: Asset) -> dict[str, Any]:
-    names = ("kind", "subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable", "tags")
-    return {name: getattr(asset, name) for name in names} | {
-        "geometry": _geojson(asset.geometry),
-        "vanished": asset.vanished_at is not None,
-    }
-
-
-def zone_facts(zone: NoFlyZone) -> dict[str, Any]:
-    names = ("identifier", "layer", "name", "restriction", "reason", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference")
-    return {name: getattr(zone, name) for name in names} | {"geometry": _geojson(zone.geometry), "schedule": zone.schedule}
-
-
-def _record(actor: User, before: Any, after: Any, facts: Any) -> None:
-    action = "changed" if before and after else "created" if after else "deleted"
-    row = after or before
+def _record(actor: User, before: dict[str, Any] | None, after: dict[str, Any] | None, row: Asset | NoFlyZone, action: str = "") -> None:
     record_change(
         organisation=actor.organisation,
         actor=actor,
-        action=action,
+        action=action or ("changed" if before and after else "created" if after else "deleted"),
         subject_type="zone" if isinstance(row, NoFlyZone) else "asset",
         subject_id=row.pk,
-        before=before and facts(before),
-        after=after and facts(after),
+        before=before,
+        after=after,
     )
-
-
-def _geojson(geometry: GEOSGeometry) -> dict[str, Any]:
-    return {"type": geometry.geom_type, "coordinates": geometry.coords}
 
 
 def _centre(geometry: GEOSGeometry) -> Point:
@@ -156,9 +182,12 @@ def _centre(geometry: GEOSGeometry) -> Point:
     return geometry.centroid if geometry.contains(geometry.centroid) else geometry.point_on_surface
 
 
-def _osm_nodes(line: LineString, before: Asset | None) -> list[int]:
+def _osm_nodes(asset: Asset, before: Asset | None) -> list[int]:
     """The OSM node of each vertex that was not moved; the others are drawn by hand."""
+    vertices = asset.geometry.coords
+    if before is None:
+        return asset.node_osm_ids if len(asset.node_osm_ids) == len(vertices) else [NO_OSM_NODE] * len(vertices)
     known: dict[tuple[float, ...], int] = {}
-    if before is not None and len(before.node_osm_ids) == len(before.geometry.coords):
+    if len(before.node_osm_ids) == len(before.geometry.coords):
         known = dict(zip(before.geometry.coords, before.node_osm_ids, strict=True))
-    return [known.get(vertex, NO_OSM_NODE) for vertex in line.coords]
+    return [known.get(vertex, NO_OSM_NODE) for vertex in vertices]

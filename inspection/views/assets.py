@@ -13,15 +13,22 @@ from inspection.serializers.assets import (
     FIELDS_OF_AN_ASSET,
     AssetCollectionSerializer,
     AssetDetailFeatureSerializer,
-    asset_detail_feature,
     asset_feature,
 )
+from inspection.serializers.edits import AssetInputSerializer
+from inspection.services import delete_asset, save_asset
+from inspection.views.edits import edits
+from inspection.views.history import answer, asset_now
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
 from workspace.paging import page_of
+from workspace.permissions import CURATORS
+from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 
 
 class AssetList(APIView):
+    write_roles = CURATORS
+
     @extend_schema(
         operation_id="list_assets",
         summary="Assets: towers, lines, railways, bridges",
@@ -44,7 +51,42 @@ class AssetList(APIView):
 class AssetDetail(APIView):
     @extend_schema(operation_id="get_asset", summary="One asset with its tags and source", responses=AssetDetailFeatureSerializer)
     def get(self, request: Request, asset_id: int) -> Response:
+        return answer(asset_now(asset_id))
+
+    @extend_schema(
+        operation_id="change_asset",
+        summary="Correct an asset",
+        description="Imports leave what was corrected by hand alone.",
+        parameters=[IF_MATCH_REQUIRED],
+        request=AssetInputSerializer(partial=True),
+        responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS,
+    )
+    def patch(self, request: Request, asset_id: int) -> Response:
+        revision = expected_revision(request)
+        asset = self._asset(asset_id)
+        body = AssetInputSerializer(asset, data=request.data, partial=True)
+        body.is_valid(raise_exception=True)
+        for name, value in body.validated_data.items():
+            setattr(asset, name, value)
+        with edits(lambda: asset_now(asset_id)):
+            save_asset(asset=asset, actor=request.user, expected_revision=revision)
+        return answer(asset_now(asset_id))
+
+    @extend_schema(
+        operation_id="delete_asset",
+        summary="Take an asset off the ground",
+        description="Its history can bring it back. What came from a file is kept as vanished, so that the next import leaves it away.",
+        parameters=[IF_MATCH_REQUIRED],
+        responses={204: None} | PRECONDITION_ANSWERS,
+    )
+    def delete(self, request: Request, asset_id: int) -> Response:
+        revision = expected_revision(request)
+        with edits(lambda: asset_now(asset_id)):
+            delete_asset(asset=self._asset(asset_id), actor=request.user, expected_revision=revision)
+        return Response(status=204)
+
+    def _asset(self, asset_id: int) -> Asset:
         try:
-            return Response(asset_detail_feature(selectors.asset_with_geometry(asset_id)))
+            return Asset.objects.get(pk=asset_id)
         except Asset.DoesNotExist as error:
             raise Http404 from error

@@ -1,6 +1,7 @@
 """No-fly zones: the list and one of them."""
 
 from django.http import Http404
+from django.urls import reverse
 from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -8,13 +9,22 @@ from rest_framework.views import APIView
 
 from inspection import selectors
 from inspection.models import NoFlyZone
-from inspection.serializers.zones import ZoneCollectionSerializer, ZoneDetailFeatureSerializer, zone_detail_feature, zone_feature
+from inspection.serializers.edits import ZoneInputSerializer
+from inspection.serializers.zones import ZoneCollectionSerializer, ZoneDetailFeatureSerializer, zone_feature
+from inspection.services import delete_zone, save_zone
+from inspection.views.edits import edits
+from inspection.views.history import answer, zone_now
 from inspection.views.parameters import BOX, box_of
+from workspace.idempotency import idempotent
 from workspace.paging import page_of
+from workspace.permissions import CURATORS
+from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 
 
 class ZoneList(APIView):
+    write_roles = CURATORS
+
     @extend_schema(
         operation_id="list_zones",
         summary="No-fly zones",
@@ -26,11 +36,62 @@ class ZoneList(APIView):
         features = [zone_feature(zone) for zone in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 
+    @extend_schema(
+        operation_id="create_zone", summary="Draw a no-fly zone", request=ZoneInputSerializer, responses={201: ZoneDetailFeatureSerializer}
+    )
+    @idempotent
+    def post(self, request: Request) -> Response:
+        body = ZoneInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        with edits(lambda: None):
+            zone = save_zone(zone=NoFlyZone(**body.validated_data), actor=request.user)
+        response = answer(zone_now(zone.pk))
+        response.status_code = 201
+        response["Location"] = reverse("api-zone", args=[zone.pk])
+        return response
+
 
 class ZoneDetail(APIView):
+    write_roles = CURATORS
+
     @extend_schema(operation_id="get_zone", summary="One no-fly zone with all its source says", responses=ZoneDetailFeatureSerializer)
     def get(self, request: Request, zone_id: int) -> Response:
+        return answer(zone_now(zone_id))
+
+    @extend_schema(
+        operation_id="change_zone",
+        summary="Correct a no-fly zone",
+        description="Imports leave what was corrected by hand alone, unless whoever applies one says otherwise.",
+        parameters=[IF_MATCH_REQUIRED],
+        request=ZoneInputSerializer(partial=True),
+        responses={200: ZoneDetailFeatureSerializer} | PRECONDITION_ANSWERS,
+    )
+    def patch(self, request: Request, zone_id: int) -> Response:
+        revision = expected_revision(request)
+        zone = self._zone(zone_id)
+        body = ZoneInputSerializer(zone, data=request.data, partial=True)
+        body.is_valid(raise_exception=True)
+        for name, value in body.validated_data.items():
+            setattr(zone, name, value)
+        with edits(lambda: zone_now(zone_id)):
+            save_zone(zone=zone, actor=request.user, expected_revision=revision)
+        return answer(zone_now(zone_id))
+
+    @extend_schema(
+        operation_id="delete_zone",
+        summary="Remove a no-fly zone",
+        description="Its history can bring it back, and so does its source's next file.",
+        parameters=[IF_MATCH_REQUIRED],
+        responses={204: None} | PRECONDITION_ANSWERS,
+    )
+    def delete(self, request: Request, zone_id: int) -> Response:
+        revision = expected_revision(request)
+        with edits(lambda: zone_now(zone_id)):
+            delete_zone(zone=self._zone(zone_id), actor=request.user, expected_revision=revision)
+        return Response(status=204)
+
+    def _zone(self, zone_id: int) -> NoFlyZone:
         try:
-            return Response(zone_detail_feature(selectors.zones().get(pk=zone_id)))
+            return NoFlyZone.objects.get(pk=zone_id)
         except NoFlyZone.DoesNotExist as error:
             raise Http404 from error

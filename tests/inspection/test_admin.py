@@ -168,8 +168,8 @@ def test_the_service_too_refuses_a_geometry_of_another_kind(curator: User) -> No
         save_asset(asset=asset, actor=curator)
 
 
-def test_an_asset_that_is_removed_is_recorded(client: Client) -> None:
-    asset = tower(ref="18")
+def test_an_asset_that_was_drawn_here_and_is_removed_is_recorded(client: Client) -> None:
+    asset = tower(ref="18", osm_type="", osm_id=None)
     revision = ground_revision()
     client.post(reverse("admin:inspection_asset_delete", args=[asset.pk]), {"post": "yes"})
     assert not Asset.objects.exists()

@@ -1,0 +1,91 @@
+"""What the history says of an asset or a zone: enough to tell two states apart, and to bring one back."""
+
+import json
+from typing import Any
+
+from django.contrib.gis.geos import GEOSGeometry
+
+from inspection.models import Asset, AssetKind, AssetSet, NoFlyZone, ZoneSet
+
+# What people read and edit; the rest of the facts says how the row hangs together with its source.
+ASSET_FACTS = ("kind", "subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable", "tags")
+_ASSET_SOURCE = ("osm_type", "osm_id", "node_osm_ids", "parts", "asset_set_id", "source_key", "data_import_id", "content_hash", "is_edited")
+ZONE_FACTS = (
+    "name", "restriction", "reason", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference", "schedule", "circle",
+)  # fmt: skip
+_ZONE_SOURCE = ("identifier", "layer", "zone_set_id", "source_heights", "properties", "is_edited")
+
+
+def asset_facts(asset: Asset) -> dict[str, Any]:
+    return _values(asset, ASSET_FACTS + _ASSET_SOURCE) | {"geometry": geojson(asset.geometry), "vanished": asset.vanished_at is not None}
+
+
+def zone_facts(zone: NoFlyZone) -> dict[str, Any]:
+    return _values(zone, ZONE_FACTS + _ZONE_SOURCE) | {"geometry": geojson(zone.geometry)}
+
+
+def says_the_same(asset: Asset, facts: dict[str, Any]) -> bool:
+    """Whether what people read of the asset is what the facts say."""
+    own = asset_facts(asset)
+    return all(own[name] == facts.get(name, own[name]) for name in (*ASSET_FACTS, "geometry"))
+
+
+def take_asset_facts(asset: Asset, facts: dict[str, Any]) -> None:
+    """Make the row what the facts say, as far as they say it; nothing is saved."""
+    for name in ("subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable", "tags", "parts"):
+        if name in facts:
+            setattr(asset, name, facts[name])
+    if "geometry" in facts:
+        asset.geometry = geometry_of(facts["geometry"])
+    if len(facts.get("node_osm_ids") or []) == len(asset.geometry.coords) and asset.kind in {AssetKind.LINE, AssetKind.RAILWAY}:
+        asset.node_osm_ids = facts["node_osm_ids"]
+
+
+def asset_from_facts(facts: dict[str, Any], *, key: int) -> Asset:
+    """The row that was deleted, under the key that it had; what it came from may be gone."""
+    asset = Asset(pk=key, kind=facts["kind"], osm_type=facts.get("osm_type") or "", osm_id=facts.get("osm_id"))
+    asset.asset_set = AssetSet.objects.filter(pk=facts.get("asset_set_id")).first()
+    asset.source_key = facts.get("source_key") or ""
+    asset.content_hash = facts.get("content_hash") or ""
+    take_asset_facts(asset, facts)
+    return asset
+
+
+def take_zone_facts(zone: NoFlyZone, facts: dict[str, Any]) -> None:
+    for name in (*ZONE_FACTS, "source_heights", "properties"):
+        if name in facts:
+            setattr(zone, name, facts[name])
+    if "geometry" in facts:
+        zone.geometry = geometry_of(facts["geometry"])
+
+
+def zone_from_facts(facts: dict[str, Any], *, key: int) -> NoFlyZone:
+    zone = NoFlyZone(pk=key, identifier=facts["identifier"], layer=facts.get("layer") or 0)
+    zone.zone_set = ZoneSet.objects.filter(pk=facts.get("zone_set_id")).first()
+    take_zone_facts(zone, facts)
+    return zone
+
+
+def differing(before: dict[str, Any] | None, after: dict[str, Any] | None) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+    """Both sides with the facts that differ alone; a side that is not there stays None and leaves the other one whole."""
+    if before is None or after is None:
+        return before, after
+    names = [name for name in {**before, **after} if name in before and name in after and before[name] != after[name]]
+    return {name: before[name] for name in names}, {name: after[name] for name in names}
+
+
+def geojson(geometry: GEOSGeometry) -> dict[str, Any]:
+    return {"type": geometry.geom_type, "coordinates": _as_lists(geometry.coords)}
+
+
+def geometry_of(value: dict[str, Any]) -> GEOSGeometry:
+    return GEOSGeometry(json.dumps(value), srid=4326)
+
+
+def _values(row: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: getattr(row, name) for name in names}
+
+
+def _as_lists(coordinates: Any) -> Any:
+    """As JSON has them, so that stored facts and fresh ones compare."""
+    return [_as_lists(part) for part in coordinates] if isinstance(coordinates, tuple) else coordinates

@@ -1,0 +1,79 @@
+"""Bringing back how an asset or a zone was: one change undone, an earlier state, or what the source says."""
+
+from django.db import IntegrityError, transaction
+
+from inspection.models import Asset, NoFlyZone
+from inspection.services.curation import delete_asset, delete_zone, save_asset, save_zone
+from inspection.services.facts import asset_from_facts, take_asset_facts, take_zone_facts, zone_from_facts
+from inspection.services.ground import hold_ground
+from workspace.models import AuditEntry, User
+
+SUBJECTS = ("asset", "zone")
+
+
+class CannotUndo(ValueError):
+    """The change cannot be undone; the message says why and what to do."""
+
+
+def revert_asset(*, asset: Asset, entry: AuditEntry, actor: User, expected_revision: int | None) -> Asset:
+    """Make the asset what it was before the entry's change. Raises CannotUndo, StaleRevision."""
+    if entry.before is None:
+        raise CannotUndo("Before this there was nothing: delete the asset instead.")
+    take_asset_facts(asset, entry.before)
+    if not entry.before.get("vanished"):
+        asset.vanished_at = None
+    return save_asset(asset=asset, actor=actor, expected_revision=expected_revision, action="reverted")
+
+
+def revert_zone(*, zone: NoFlyZone, entry: AuditEntry, actor: User, expected_revision: int | None) -> NoFlyZone:
+    if entry.before is None:
+        raise CannotUndo("Before this there was nothing: delete the zone instead.")
+    take_zone_facts(zone, entry.before)
+    return save_zone(zone=zone, actor=actor, expected_revision=expected_revision, action="reverted")
+
+
+def follow_source(*, asset: Asset, actor: User, expected_revision: int | None) -> Asset:
+    """Forget what was edited by hand: the row says what its source says, and imports keep it so. Raises CannotUndo, StaleRevision."""
+    if asset.source_facts is None:
+        raise CannotUndo("This asset has no other source than what was drawn here.")
+    take_asset_facts(asset, asset.source_facts)
+    asset.vanished_at = None
+    return save_asset(asset=asset, actor=actor, expected_revision=expected_revision, action="followed source")
+
+
+def undo(*, entry: AuditEntry, actor: User) -> Asset | NoFlyZone | None:
+    """Take the newest change of an asset or zone back: what was deleted is there again, what was created is gone. Raises CannotUndo."""
+    with transaction.atomic():
+        hold_ground()
+        newer = AuditEntry.objects.filter(subject_type=entry.subject_type, subject_id=entry.subject_id, pk__gt=entry.pk)
+        if newer.exists():
+            raise CannotUndo("It was changed again after this. Undo the newer change first, or revert to an earlier state.")
+        try:
+            with transaction.atomic():
+                return _undo_asset(entry, actor) if entry.subject_type == "asset" else _undo_zone(entry, actor)
+        except IntegrityError as error:
+            raise CannotUndo("An import has brought it back already.") from error
+
+
+def _undo_asset(entry: AuditEntry, actor: User) -> Asset | None:
+    asset = Asset.objects.filter(pk=entry.subject_id).first()
+    if entry.before is None:
+        if asset is not None:
+            delete_asset(asset=asset, actor=actor)
+        return None
+    if asset is None:
+        asset = asset_from_facts(entry.before, key=int(entry.subject_id))
+        return save_asset(asset=asset, actor=actor, action="restored")
+    return revert_asset(asset=asset, entry=entry, actor=actor, expected_revision=None)
+
+
+def _undo_zone(entry: AuditEntry, actor: User) -> NoFlyZone | None:
+    zone = NoFlyZone.objects.filter(pk=entry.subject_id).first()
+    if entry.before is None:
+        if zone is not None:
+            delete_zone(zone=zone, actor=actor)
+        return None
+    if zone is None:
+        zone = zone_from_facts(entry.before, key=int(entry.subject_id))
+        return save_zone(zone=zone, actor=actor, action="restored")
+    return revert_zone(zone=zone, entry=entry, actor=actor, expected_revision=None)

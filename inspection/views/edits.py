@@ -1,0 +1,26 @@
+"""What the doors of assets and zones have in common when somebody writes: who may, and the answer to those who come second."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from inspection.selectors.history import NEWEST_FIRST, changes_of
+from inspection.services import StaleRevision, WrongGeometry
+from inspection.services.history import CannotUndo
+from workspace.errors import ApiProblem
+
+
+@contextmanager
+def edits(current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
+    """Turns the errors of the curation services into answers; `current` gives the feature as it is now, for whoever was too late."""
+    try:
+        yield
+    except StaleRevision as error:
+        last = changes_of(error.subject, error.key or 0).order_by(*NEWEST_FIRST).first()
+        who = (last.actor.get_full_name() or last.actor.username) if last and last.actor else "an import"
+        details = {"current": current(), "changed_by": who, "changed_at": last and last.recorded_at}
+        raise ApiProblem(412, "changed", f"Changed by {who} in the meantime; nothing of yours was stored.", details=details) from error
+    except WrongGeometry as error:
+        raise ApiProblem(400, "invalid_geometry", str(error)) from error
+    except CannotUndo as error:
+        raise ApiProblem(409, "cannot_undo", str(error)) from error

@@ -1,0 +1,196 @@
+"""The history of the ground: reading it, and taking changes back."""
+
+from typing import Any
+
+from django.http import Http404
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.models import Asset, NoFlyZone
+from inspection.selectors import asset_with_geometry, zones
+from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_of, changes_of_the_ground
+from inspection.serializers.assets import AssetDetailFeatureSerializer, asset_detail_feature
+from inspection.serializers.history import HistoryPageSerializer, RevertSerializer, entry_json
+from inspection.serializers.zones import ZoneDetailFeatureSerializer, zone_detail_feature
+from inspection.services.history import follow_source, revert_asset, revert_zone, undo
+from inspection.views.edits import edits
+from inspection.views.parameters import invalid
+from workspace.models import AuditEntry
+from workspace.paging import page_of
+from workspace.permissions import CURATORS
+from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.schema import PAGE_PARAMETERS
+
+CANNOT = {409: OpenApiResponse(description="It was changed again since, or there is nothing to go back to.")}
+
+
+def asset_now(asset_id: int) -> dict[str, Any] | None:
+    try:
+        return asset_detail_feature(asset_with_geometry(asset_id))
+    except Asset.DoesNotExist:
+        return None
+
+
+def zone_now(zone_id: int) -> dict[str, Any] | None:
+    try:
+        return zone_detail_feature(zones().get(pk=zone_id))
+    except NoFlyZone.DoesNotExist:
+        return None
+
+
+def answer(feature: dict[str, Any] | None) -> Response:
+    if feature is None:
+        raise Http404
+    return Response(feature, headers=etag_of(feature["properties"]["revision"]))
+
+
+def _entry(subject_type: str, subject_id: int, request: Request) -> AuditEntry:
+    body = RevertSerializer(data=request.data)
+    body.is_valid(raise_exception=True)
+    entry = changes_of(subject_type, subject_id).filter(pk=body.validated_data["entry"]).first()
+    if entry is None:
+        raise invalid("entry", "This is no entry of its history.")
+    return entry
+
+
+def _page(request: Request, entries: Any) -> dict[str, Any]:
+    page = page_of(request, entries, order=NEWEST_FIRST, default_limit=50)
+    return {"results": [entry_json(entry) for entry in page.rows], "next": page.next}
+
+
+class HistoryList(APIView):
+    @extend_schema(
+        operation_id="list_history",
+        summary="What was changed on the ground, newest first",
+        parameters=[
+            OpenApiParameter("subject_type", str, enum=SUBJECTS),
+            OpenApiParameter("actor", str, description="a user name"),
+            *PAGE_PARAMETERS,
+        ],
+        responses=HistoryPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        subject_type = request.query_params.get("subject_type", "")
+        if subject_type and subject_type not in SUBJECTS:
+            raise invalid("subject_type", f"Known are {', '.join(SUBJECTS)}.")
+        actor = request.query_params.get("actor", "")
+        if not actor.isprintable():
+            raise invalid("actor", "A user name is printable.")
+        return Response(_page(request, changes_of_the_ground(subject_type=subject_type, actor=actor)))
+
+
+class HistoryUndo(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="undo_change",
+        summary="Take the newest change of an asset or zone back",
+        description="What was deleted is there again under its old id, what was created is gone. The taking back is a change too.",
+        request=None,
+        responses={200: AssetDetailFeatureSerializer, 204: OpenApiResponse(description="What was created is gone.")} | CANNOT,
+    )
+    def post(self, request: Request, entry_id: int) -> Response:
+        entry = changes_of_the_ground().filter(pk=entry_id).first()
+        if entry is None:
+            raise Http404
+        now = asset_now if entry.subject_type == "asset" else zone_now
+        with edits(lambda: now(int(entry.subject_id))):
+            row = undo(entry=entry, actor=request.user)
+        return Response(status=204) if row is None else answer(now(row.pk))
+
+
+class AssetHistory(APIView):
+    @extend_schema(
+        operation_id="list_asset_history", summary="The history of an asset", parameters=PAGE_PARAMETERS, responses=HistoryPageSerializer
+    )
+    def get(self, request: Request, asset_id: int) -> Response:
+        page = _page(request, changes_of("asset", asset_id))
+        asset = Asset.objects.select_related("data_import").filter(pk=asset_id).first()
+        if asset is None and not page["results"]:
+            raise Http404
+        if asset is not None and page["next"] is None and not any(entry["action"] == "created" for entry in page["results"]):
+            page["results"].append(_first_import(asset))
+        return Response(page)
+
+
+def _first_import(asset: Asset) -> dict[str, Any]:
+    return {
+        "id": None, "action": "imported", "actor": None, "recorded_at": asset.created_at, "subject_type": "asset",
+        "subject_id": str(asset.pk), "before": None, "after": None, "file_name": asset.data_import and asset.data_import.file_name,
+    }  # fmt: skip
+
+
+class AssetRevert(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="revert_asset",
+        summary="Bring an asset back to what it was before a change",
+        parameters=[IF_MATCH_REQUIRED],
+        request=RevertSerializer,
+        responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS | CANNOT,
+    )
+    def post(self, request: Request, asset_id: int) -> Response:
+        entry, revision = _entry("asset", asset_id, request), expected_revision(request)
+        asset = _asset(asset_id)
+        with edits(lambda: asset_now(asset_id)):
+            revert_asset(asset=asset, entry=entry, actor=request.user, expected_revision=revision)
+        return answer(asset_now(asset_id))
+
+
+class AssetFollowSource(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="follow_source",
+        summary="Forget what was edited by hand and follow the source again",
+        parameters=[IF_MATCH_REQUIRED],
+        request=None,
+        responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS | CANNOT,
+    )
+    def post(self, request: Request, asset_id: int) -> Response:
+        revision = expected_revision(request)
+        asset = _asset(asset_id)
+        with edits(lambda: asset_now(asset_id)):
+            follow_source(asset=asset, actor=request.user, expected_revision=revision)
+        return answer(asset_now(asset_id))
+
+
+class ZoneHistory(APIView):
+    @extend_schema(
+        operation_id="list_zone_history", summary="The history of a zone", parameters=PAGE_PARAMETERS, responses=HistoryPageSerializer
+    )
+    def get(self, request: Request, zone_id: int) -> Response:
+        page = _page(request, changes_of("zone", zone_id))
+        if not page["results"] and not NoFlyZone.objects.filter(pk=zone_id).exists():
+            raise Http404
+        return Response(page)
+
+
+class ZoneRevert(APIView):
+    write_roles = CURATORS
+
+    @extend_schema(
+        operation_id="revert_zone",
+        summary="Bring a zone back to what it was before a change",
+        parameters=[IF_MATCH_REQUIRED],
+        request=RevertSerializer,
+        responses={200: ZoneDetailFeatureSerializer} | PRECONDITION_ANSWERS | CANNOT,
+    )
+    def post(self, request: Request, zone_id: int) -> Response:
+        entry, revision = _entry("zone", zone_id, request), expected_revision(request)
+        zone = NoFlyZone.objects.filter(pk=zone_id).first()
+        if zone is None:
+            raise Http404
+        with edits(lambda: zone_now(zone_id)):
+            revert_zone(zone=zone, entry=entry, actor=request.user, expected_revision=revision)
+        return answer(zone_now(zone_id))
+
+
+def _asset(asset_id: int) -> Asset:
+    asset = Asset.objects.filter(pk=asset_id).first()
+    if asset is None:
+        raise Http404
+    return asset
