@@ -78,7 +78,7 @@ class ZoneInputSerializer(serializers.Serializer):
     """A zone that somebody draws or corrects. A limit that is null is not stated, which is not 0."""
 
     name = serializers.CharField(max_length=255)
-    geometry = serializers.JSONField(required=False, help_text="GeoJSON Polygon or MultiPolygon")
+    geometry = serializers.JSONField(required=False, allow_null=True, help_text="GeoJSON Polygon or MultiPolygon")
     circle = serializers.JSONField(required=False, allow_null=True, help_text="instead of geometry: centre [lon, lat] and radius_m")
     restriction = serializers.CharField(max_length=100, allow_blank=True, required=False)
     reason = serializers.CharField(max_length=255, allow_blank=True, required=False)
@@ -87,13 +87,14 @@ class ZoneInputSerializer(serializers.Serializer):
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
         try:
-            if values.get("circle") is not None or "geometry" in values:
+            if values.get("circle") is not None or values.get("geometry") is not None:
                 shape, values["circle"] = zone_shape(values.get("geometry"), values.get("circle"))
                 values["geometry"] = stored(shape)
             elif self.instance is None:
                 raise serializers.ValidationError({"geometry": ["A zone needs an area or a circle."]})
             else:
                 values.pop("circle", None)
+                values.pop("geometry", None)
         except GeometryFault as fault:
             raise geometry_problem(fault) from fault
         for side in ("lower", "upper"):

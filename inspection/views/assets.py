@@ -1,6 +1,7 @@
 """Assets: the list and one of them."""
 
 from django.http import Http404
+from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -20,6 +21,7 @@ from inspection.services import delete_asset, save_asset
 from inspection.views.edits import edits
 from inspection.views.history import answer, asset_now
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
+from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
@@ -47,8 +49,24 @@ class AssetList(APIView):
         features = [asset_feature(asset) for asset in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 
+    @extend_schema(
+        operation_id="create_asset", summary="Draw an asset", request=AssetInputSerializer, responses={201: AssetDetailFeatureSerializer}
+    )
+    @idempotent
+    def post(self, request: Request) -> Response:
+        body = AssetInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        with edits(lambda: None):
+            asset = save_asset(asset=Asset(**body.validated_data), actor=request.user)
+        response = answer(asset_now(asset.pk))
+        response.status_code = 201
+        response["Location"] = reverse("api-asset", args=[asset.pk])
+        return response
+
 
 class AssetDetail(APIView):
+    write_roles = CURATORS
+
     @extend_schema(operation_id="get_asset", summary="One asset with its tags and source", responses=AssetDetailFeatureSerializer)
     def get(self, request: Request, asset_id: int) -> Response:
         return answer(asset_now(asset_id))
