@@ -2,16 +2,43 @@
 
 from django.db import connection
 
+from inspection.graph.ground_data import NO_OSM_NODE
+from inspection.graph.joining import TOUCH_M
+
+REACH_DEG = 1e-4  # more than TOUCH_M is anywhere between the polar circles
+
 # A line that comes by the same support twice counts it once, where it comes first. A support that has vanished keeps what it was:
 # missions still name it.
-_NUMBER = """
-WITH carried AS (
-    SELECT l.id AS line_id, l.max_voltage_v, s.id AS support_id, min(node.vertex) AS vertex
+#
+# What has no OSM node, because it was drawn, moved by hand or came from another file, is joined where it stands: a support to a vertex
+# within TOUCH_M of it, as in graph/joining.py. The first condition on the distance, in degrees, is the one that the index knows.
+_NUMBER = f"""
+WITH met AS (
+    SELECT l.id AS line_id, s.id AS support_id, node.vertex
     FROM inspection_asset l
     CROSS JOIN LATERAL unnest(l.node_osm_ids) WITH ORDINALITY AS node(osm_id, vertex)
     JOIN inspection_asset s ON s.kind = 'tower' AND s.osm_type = 'n' AND s.osm_id = node.osm_id AND s.vanished_at IS NULL
     WHERE l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL
-    GROUP BY l.id, s.id
+  UNION ALL
+    SELECT l.id, s.id, (point).path[1]
+    FROM inspection_asset s
+    JOIN inspection_asset l ON l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL
+      AND ST_DWithin(l.geometry, s.geometry, {REACH_DEG})
+    CROSS JOIN LATERAL ST_DumpPoints(l.geometry) AS point
+    WHERE s.kind = 'tower' AND s.vanished_at IS NULL AND (s.osm_id IS NULL OR s.is_edited)
+      AND ST_DistanceSphere((point).geom, s.geometry) <= {TOUCH_M}
+  UNION ALL
+    SELECT l.id, s.id, (point).path[1]
+    FROM inspection_asset l
+    CROSS JOIN LATERAL ST_DumpPoints(l.geometry) AS point
+    JOIN inspection_asset s ON s.kind = 'tower' AND s.vanished_at IS NULL AND ST_DWithin(s.geometry, (point).geom, {REACH_DEG})
+    WHERE l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL AND (l.osm_id IS NULL OR l.is_edited)
+      AND COALESCE(l.node_osm_ids[(point).path[1]], {NO_OSM_NODE}) = {NO_OSM_NODE}
+      AND ST_DistanceSphere((point).geom, s.geometry) <= {TOUCH_M}
+), carried AS (
+    SELECT met.line_id, l.max_voltage_v, met.support_id, min(met.vertex) AS vertex
+    FROM met JOIN inspection_asset l ON l.id = met.line_id
+    GROUP BY met.line_id, l.max_voltage_v, met.support_id
 ), numbered AS (
     SELECT line_id, max_voltage_v, support_id, row_number() OVER (PARTITION BY line_id ORDER BY vertex) AS place,
            count(*) OVER (PARTITION BY line_id) AS places
@@ -28,7 +55,7 @@ FROM (
     WHERE s.kind = 'tower' AND s.vanished_at IS NULL
 ) found
 WHERE a.id = found.id AND (a.line_id, a.place_on_line, a.places_on_line) IS DISTINCT FROM (found.line_id, found.place, found.places)
-"""
+"""  # noqa: S608 -- put together from constants
 
 
 def number_supports() -> int:

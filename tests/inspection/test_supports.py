@@ -105,7 +105,7 @@ def test_a_curators_change_of_a_line_or_support_numbers_again():
     save_asset(asset=low, actor=curator)
     assert places() == {1: (21, 1, 3), 2: (21, 2, 3), 3: (21, 3, 3)}
     delete_asset(asset=low, actor=curator)
-    assert not Asset.objects.filter(pk=low.pk).exists()  # supports that name it do not hold it
+    assert not Asset.objects.filter(pk=low.pk, vanished_at=None).exists()  # supports that name it do not hold it
     assert places() == {1: (20, 1, 2), 2: None, 3: (20, 2, 2)}
     delete_asset(asset=first, actor=curator)
     assert places() == {2: None, 3: (20, 1, 1)}
@@ -126,3 +126,26 @@ def test_real_supports_have_a_place_on_a_line_that_runs_over_them(shared_data):
         in_order = sorted(rows, key=lambda row: row.place_on_line)
         assert [of.node_osm_ids.index(row.osm_id) for row in in_order] == sorted(of.node_osm_ids.index(row.osm_id) for row in rows)
         assert all(1 <= row.place_on_line <= row.places_on_line == rows[0].places_on_line for row in rows)
+
+
+def test_a_drawn_support_counts_at_the_vertex_where_it_stands():
+    """1 -- (drawn) -- 2, and a drawn one 20 m off the line's vertex that is none of its supports."""
+    supports(1, 2)
+    line((10.001, 56.0), (10.0015, 56.0), (10.002, 56.0), osm_id=20, node_osm_ids=[1, 5, 2])
+    drawn = tower((10.0015, 56.0000001), osm_id=None, osm_type="")
+    beside = tower((10.0015, 56.00018), osm_id=None, osm_type="")
+    number_supports()
+    assert places()[2] == (20, 3, 3)
+    drawn.refresh_from_db()
+    beside.refresh_from_db()
+    assert (drawn.line.osm_id, drawn.place_on_line, beside.line) == (20, 2, None)
+
+
+def test_a_drawn_line_carries_the_supports_at_its_vertices():
+    supports(1, 2)
+    line((10.001, 56.0), (10.0015, 56.0), (10.002, 56.0), osm_id=None, osm_type="")
+    number_supports()
+    assert {row.osm_id: (row.place_on_line, row.places_on_line) for row in Asset.objects.filter(kind=AssetKind.TOWER)} == {
+        1: (1, 2),
+        2: (2, 2),
+    }
