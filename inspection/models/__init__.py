@@ -1,7 +1,7 @@
 """What exists on the ground, where it comes from, and the graph that connects it."""
 
 from inspection.models.assets import Asset, AssetKind, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
-from inspection.models.gaps import DataGap, GapKind, GapState
+from inspection.models.gaps import DataGap, GapKind, GapSearch, GapState
 from inspection.models.graph import GraphSnapshot, Ground
 from inspection.models.imports import (
     ChangeAction,
@@ -26,6 +26,7 @@ __all__ = [
     "DataGap",
     "DataImport",
     "GapKind",
+    "GapSearch",
     "GapState",
     "GraphSnapshot",
     "Ground",

@@ -51,3 +51,24 @@ class DataGap(models.Model):
 
     def __str__(self) -> str:
         return f"{self.get_kind_display()} {self.key}"
+
+
+class GapSearch(models.Model):
+    """One row: which ground was looked at last, by which rules, and how long that took."""
+
+    SINGLE_ID = 1
+
+    id = models.PositiveSmallIntegerField(primary_key=True, default=SINGLE_ID)
+    ground_revision = models.PositiveBigIntegerField()
+    ground_changed_at = models.DateTimeField(null=True, help_text="two grounds may have the same revision")
+    recipe = models.PositiveSmallIntegerField(help_text="of data_gaps/search.py")
+    found = models.PositiveIntegerField()
+    search_s = models.FloatField()
+    searched_at = models.DateTimeField()
+
+    class Meta:
+        verbose_name_plural = "gap searches"
+        constraints = [models.CheckConstraint(condition=Q(id=1), name="gap_search_single")]
+
+    def __str__(self) -> str:
+        return f"revision {self.ground_revision}: {self.found} gaps"

@@ -1,6 +1,9 @@
 """What curators write by hand: each change marks the row as edited, is recorded, and counts as a change of the ground."""
 
 import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
@@ -23,6 +26,11 @@ GEOMETRY_TYPES = {
     AssetKind.RAILWAY: {"LineString"},
     AssetKind.BRIDGE: {"Polygon", "MultiPolygon"},
 }
+
+
+PLACED = "spanwise:placed"  # the tag of a support that stands at an OSM node which OSM does not call one
+
+_numbers_later: ContextVar[bool] = ContextVar("numbers_later", default=False)
 
 
 class WrongGeometry(ValueError):
@@ -138,7 +146,21 @@ def delete_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None =
 
 def is_sourced(asset: Asset) -> bool:
     """It came from a file, which may come again."""
-    return asset.osm_id is not None or asset.asset_set_id is not None
+    was_placed = PLACED in asset.tags and asset.source_facts is None
+    return (asset.osm_id is not None and not was_placed) or asset.asset_set_id is not None
+
+
+@contextmanager
+def many_edits() -> Iterator[None]:
+    """One transaction for several edits of assets; the supports are numbered once, at its end."""
+    with transaction.atomic():
+        hold_ground()
+        token = _numbers_later.set(True)
+        try:
+            yield
+        finally:
+            _numbers_later.reset(token)
+        number_supports()
 
 
 def _check_revision(row: Asset | NoFlyZone | None, expected: int | None, subject: str, key: int | None) -> None:
@@ -148,7 +170,7 @@ def _check_revision(row: Asset | NoFlyZone | None, expected: int | None, subject
 
 def _number_supports_after(kind: AssetKind) -> None:
     """A changed line or support may change which place others have."""
-    if kind in {AssetKind.LINE, AssetKind.TOWER}:
+    if kind in {AssetKind.LINE, AssetKind.TOWER} and not _numbers_later.get():
         number_supports()
 
 
