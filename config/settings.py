@@ -160,8 +160,9 @@ STATIC_URL = "/static/"
 STATIC_ROOT = STATE_DIR / "static"
 STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".spanwise")]
 
-# What users may send in one request; files come in through commands until uploads have their own door.
+# What users may send in one request. Files come in as uploads, part by part.
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
+LARGEST_UPLOAD_BYTES = int(_float("SPANWISE_LARGEST_UPLOAD_MIB", 512) * 1024 * 1024)
 
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
@@ -232,6 +233,8 @@ CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 10.0, "options": {"expires": 10}},
+    "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
+    "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")

@@ -1,11 +1,74 @@
-"""Doors to the data queue: keeping the graph up to date."""
+"""Doors to the data queue: reading and applying what came in, and keeping the graph up to date."""
+
+from collections.abc import Callable
 
 from celery import shared_task
+from celery.exceptions import SoftTimeLimitExceeded
 
 from inspection import services
+from inspection.services.proposals import pipeline
+from inspection.services.proposals.reading import Progress
+from inspection.services.uploads import forget_old_uploads as forget_uploads
+from workspace.job_watch import JobWatch
+from workspace.models import Job
+from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
+
+SOFT_LIMIT_S = 870
+HARD_LIMIT_S = 900
 
 
 @shared_task(time_limit=900, soft_time_limit=870)
 def refresh_graph() -> None:
     """Build a graph if the ground has changed since the newest one; several changes make one build."""
     services.refresh_graph()
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def read_proposal(job_id: str) -> None:
+    """Read a file that came in and store what it would change. Safe to run twice: a job is held by one worker, and finished once."""
+    _work(job_id, pipeline.read_proposal)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def apply_proposal(job_id: str) -> None:
+    """Make the ground what a file says, all of it or nothing."""
+    _work(job_id, pipeline.apply_proposal)
+
+
+@shared_task(time_limit=60, soft_time_limit=50)
+def settle_proposals() -> None:
+    """Proposals whose worker was lost for good wait no longer."""
+    for proposal in pipeline.unsettled_proposals():
+        pipeline.settle_proposal_of(job=proposal.job)
+
+
+@shared_task(time_limit=300, soft_time_limit=280)
+def forget_old_uploads() -> None:
+    forget_uploads()
+
+
+def _work(job_id: str, do: Callable[..., None]) -> None:
+    job = start_job(job_id=job_id)
+    if job is None:
+        return
+    try:
+        with JobWatch(job) as watch:
+            progress: Progress = watch.progress
+            do(job=job, progress=progress)
+    except JobCancelled:
+        confirm_cancelled(job=job)
+        pipeline.settle_proposal_of(job=job)
+    except pipeline.LostJob:
+        return
+    except SoftTimeLimitExceeded:
+        _fail(job, "took_too_long", f"Not done within {SOFT_LIMIT_S // 60} min. Cut the file into parts.")
+    except MemoryError:
+        _fail(job, "too_large", "The file needs more memory than there is. Cut it into parts.")
+    except Exception:
+        _fail(job, "internal", "Reading the file failed inside Spanwise; the error is in the log.")
+        raise
+
+
+def _fail(job: Job, code: str, message: str) -> None:
+    fail_job(job=job, code=code, message=message)
+    pipeline.settle_proposal_of(job=job)

@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, geometry_checks, ground, history, zones
+from inspection.views import assets, geometry_checks, ground, history, imports, uploads, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -16,6 +16,14 @@ urlpatterns = [
     path("zones/<int:zone_id>/revert", history.ZoneRevert.as_view(), name="api-zone-revert"),
     path("history", history.HistoryList.as_view(), name="api-history"),
     path("history/<int:entry_id>/undo", history.HistoryUndo.as_view(), name="api-undo"),
+    path("uploads", uploads.UploadList.as_view(), name="api-uploads"),
+    path("uploads/<uuid:upload_id>", uploads.UploadDetail.as_view(), name="api-upload"),
+    path("uploads/<uuid:upload_id>/bytes/<int:first_byte>", uploads.UploadBytes.as_view(), name="api-upload-bytes"),
+    path("imports", imports.ImportList.as_view(), name="api-imports"),
+    path("imports/<uuid:proposal_id>", imports.ImportDetail.as_view(), name="api-import"),
+    path("imports/<uuid:proposal_id>/changes", imports.ImportChanges.as_view(), name="api-import-changes"),
+    path("imports/<uuid:proposal_id>/apply", imports.ImportApply.as_view(), name="api-import-apply"),
+    path("imports/<uuid:proposal_id>/discard", imports.ImportDiscard.as_view(), name="api-import-discard"),
     path("geometry-checks", geometry_checks.GeometryCheck.as_view(), name="api-geometry-checks"),
     path("ground", ground.Ground.as_view(), name="api-ground"),
     path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),

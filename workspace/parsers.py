@@ -35,6 +35,19 @@ class StrictJSONParser(BaseParser):
         return value
 
 
+class OctetParser(BaseParser):
+    """The raw bytes of a part of a file, never more than one request may have."""
+
+    media_type = "application/octet-stream"
+
+    def parse(self, stream: IO[bytes], media_type: str | None = None, parser_context: dict[str, Any] | None = None) -> bytes:
+        limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
+        body = stream.read(limit + 1)
+        if len(body) > limit:
+            raise ApiProblem(413, "too_large", f"The request body is larger than {limit // 1024} kB.")
+        return body
+
+
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is not a number")
 

@@ -66,12 +66,15 @@ class Reading:
 
 
 class FileKind(Protocol):
-    """How one kind of data is read and applied: a module of this package for each ImportKind has these two functions."""
+    """How one kind of data is read and applied: a module of this package for each ImportKind has these two functions.
 
-    def read(self, *, path: Path, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
+    path is None for what comes from no file, such as the roll-back of a zone set.
+    """
+
+    def read(self, *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
         """Look at the file and at what it would change; writes nothing that stays. Raises FileRefused."""
 
     def apply(
-        self, *, path: Path, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
+        self, *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
     ) -> DataImport:
         """Make the ground what the file says, in the caller's transaction. Raises FileRefused."""

@@ -1,0 +1,33 @@
+"""What has come in: uploads, proposals and their changes."""
+
+from uuid import UUID
+
+from django.contrib.gis.db.models.functions import AsGeoJSON
+from django.db.models import QuerySet
+
+from inspection.models import ImportProposal, ProposedChange, Upload
+
+COORDINATE_DIGITS = 7
+NEWEST_FIRST = ("-created_at", "-pk")
+
+
+def proposals(*, kind: str = "", states: list[str] | None = None) -> QuerySet[ImportProposal]:
+    found = ImportProposal.objects.select_related("job", "created_by", "decided_by", "upload")
+    if kind:
+        found = found.filter(kind=kind)
+    return found.filter(state__in=states) if states else found
+
+
+def proposal_of_id(proposal_id: UUID) -> ImportProposal:
+    """Raises ImportProposal.DoesNotExist."""
+    return proposals().get(pk=proposal_id)
+
+
+def changes_of_proposal(proposal: ImportProposal, *, action: str = "") -> QuerySet[ProposedChange]:
+    changes = proposal.changes.defer("geometry").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+    return changes.filter(action=action) if action else changes
+
+
+def upload_of_id(upload_id: UUID) -> Upload:
+    """Raises Upload.DoesNotExist."""
+    return Upload.objects.get(pk=upload_id)

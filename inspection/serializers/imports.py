@@ -1,0 +1,160 @@
+"""What comes in: uploads, proposals, and the lines of their differences."""
+
+import json
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, ProposedChange, Upload
+from inspection.serializers.features import GeometrySerializer
+from inspection.services.uploads import PART_BYTES
+from workspace.models import JobState, User
+
+
+class UploadInputSerializer(serializers.Serializer):
+    file_name = serializers.CharField(max_length=255)
+    size_bytes = serializers.IntegerField(min_value=1)
+
+
+class UploadSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    file_name = serializers.CharField()
+    size_bytes = serializers.IntegerField()
+    received_bytes = serializers.IntegerField(help_text="without a gap from the start: go on from here")
+    part_bytes = serializers.IntegerField(help_text="the most that one part may have")
+    is_complete = serializers.BooleanField()
+
+
+class ProvenanceInputSerializer(serializers.Serializer):
+    """Where a file comes from, as far as it does not say so itself."""
+
+    source_address = serializers.URLField(max_length=500, required=False, allow_blank=True)
+    licence = serializers.CharField(max_length=200, required=False, allow_blank=True)
+    attribution = serializers.CharField(max_length=300, required=False, allow_blank=True)
+
+
+class ImportInputSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=ImportKind.choices)
+    upload = serializers.UUIDField(required=False, help_text="a complete upload; not for what is fetched")
+    parameters = serializers.DictField(required=False, help_text="by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]")
+    provenance = ProvenanceInputSerializer(required=False)
+
+
+class ParametersSerializer(serializers.Serializer):
+    parameters = serializers.DictField(required=False)
+
+
+class ProposalFaultSerializer(serializers.Serializer):
+    place = serializers.CharField()
+    message = serializers.CharField()
+    position = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="lon, lat")
+
+
+class ProposalJobSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    state = serializers.ChoiceField(choices=JobState.choices)
+    progress = serializers.FloatField()
+    message = serializers.CharField()
+
+
+class ProposalSerializer(serializers.Serializer):
+    """What a file would change. Nothing of it counts before somebody applies it."""
+
+    id = serializers.UUIDField()
+    kind = serializers.ChoiceField(choices=ImportKind.choices)
+    origin = serializers.ChoiceField(choices=ProposalOrigin.choices)
+    state = serializers.ChoiceField(choices=ProposalState.choices)
+    file_name = serializers.CharField()
+    size_bytes = serializers.IntegerField(allow_null=True)
+    parameters = serializers.DictField()
+    provenance = serializers.DictField()
+    faults = ProposalFaultSerializer(many=True)
+    summary = serializers.DictField(help_text="what is in the file")
+    difference = serializers.DictField(child=serializers.IntegerField(), help_text="numbers by action, and unchanged")
+    job = ProposalJobSerializer(allow_null=True)
+    created_by = serializers.CharField(allow_null=True)
+    created_at = serializers.DateTimeField()
+    decided_by = serializers.CharField(allow_null=True)
+    decided_at = serializers.DateTimeField(allow_null=True)
+    data_import = serializers.IntegerField(allow_null=True)
+
+
+class ProposalPageSerializer(serializers.Serializer):
+    results = ProposalSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+class ChangePropertiesSerializer(serializers.Serializer):
+    action = serializers.ChoiceField(choices=ChangeAction.choices)
+    subject = serializers.CharField(help_text="asset kind, or zone")
+    subject_id = serializers.IntegerField(allow_null=True, help_text="of the row that it changes")
+    label = serializers.CharField()
+    before = serializers.DictField(allow_null=True)
+    after = serializers.DictField(allow_null=True)
+
+
+class ChangeFeatureSerializer(serializers.Serializer):
+    type = serializers.ChoiceField(choices=["Feature"])
+    id = serializers.IntegerField()
+    geometry = GeometrySerializer(allow_null=True)
+    properties = ChangePropertiesSerializer()
+
+
+class ChangeCollectionSerializer(serializers.Serializer):
+    type = serializers.ChoiceField(choices=["FeatureCollection"])
+    features = ChangeFeatureSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+def upload_json(upload: Upload) -> dict[str, Any]:
+    return {
+        "id": str(upload.pk),
+        "file_name": upload.file_name,
+        "size_bytes": upload.size_bytes,
+        "received_bytes": upload.received_bytes,
+        "part_bytes": PART_BYTES,
+        "is_complete": upload.is_complete,
+    }
+
+
+def proposal_json(proposal: ImportProposal) -> dict[str, Any]:
+    job = proposal.job
+    return {
+        "id": str(proposal.pk),
+        "kind": proposal.kind,
+        "origin": proposal.origin,
+        "state": proposal.state,
+        "file_name": proposal.file_name,
+        "size_bytes": proposal.upload and proposal.upload.size_bytes,
+        "parameters": proposal.parameters,
+        "provenance": proposal.provenance,
+        "faults": proposal.faults,
+        "summary": proposal.summary,
+        "difference": proposal.difference,
+        "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": job.message},
+        "created_by": _name(proposal.created_by),
+        "created_at": proposal.created_at,
+        "decided_by": _name(proposal.decided_by),
+        "decided_at": proposal.decided_at,
+        "data_import": proposal.data_import_id,
+    }
+
+
+def change_feature(change: ProposedChange) -> dict[str, Any]:
+    return {
+        "type": "Feature",
+        "id": change.pk,
+        "geometry": json.loads(change.geometry_json) if change.geometry_json else None,
+        "properties": {
+            "action": change.action,
+            "subject": change.subject,
+            "subject_id": change.subject_id,
+            "label": change.label,
+            "before": change.before,
+            "after": change.after,
+        },
+    }
+
+
+def _name(user: User | None) -> str | None:
+    return user and (user.get_full_name() or user.username)

@@ -1,0 +1,285 @@
+"""The way of a file from upload to ground: proposed, read, looked at, applied or discarded. What a kind of data needs is in its module."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from datetime import datetime
+from functools import partial
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.utils import timezone
+from django.utils.dateparse import parse_datetime
+
+from inspection.models import DataImport, ImportProposal, ProposalOrigin, ProposalState, ProposedChange, Upload
+from inspection.selectors import ground_revision
+from inspection.services.ground import hold_ground
+from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading
+from inspection.services.uploads import UploadRefused, upload_as_file
+from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
+from workspace.services import cancel_job, create_job, finish_job
+
+FILE_KINDS: dict[str, FileKind] = {}
+READ_TASK = "inspection.tasks.read_proposal"
+APPLY_TASK = "inspection.tasks.apply_proposal"
+MOST_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all
+MOST_FAULTS_KEPT = 50
+_BATCH = 500
+
+
+class WrongState(Exception):
+    """The proposal is not in a state in which this can be done; somebody else may have been faster."""
+
+    def __init__(self, proposal: ImportProposal) -> None:
+        super().__init__(f"The proposal is {proposal.get_state_display().lower()}.")
+        self.proposal = proposal
+
+
+def start_proposal(
+    *,
+    kind: str,
+    upload: Upload | None,
+    file_name: str,
+    parameters: dict[str, Any],
+    provenance: dict[str, Any],
+    created_by: User | None,
+    origin: str = ProposalOrigin.UPLOAD,
+) -> ImportProposal:
+    """A proposal and the job that reads it; the caller sends the job to its queue after the commit."""
+    with transaction.atomic():
+        proposal = ImportProposal.objects.create(
+            kind=kind,
+            origin=origin,
+            upload=upload,
+            file_name=file_name[:255],
+            parameters=parameters,
+            provenance=provenance,
+            created_by=created_by,
+        )
+        _give_job(proposal, READ_TASK, created_by, "Waiting to be read")
+    return proposal
+
+
+def read_again(*, proposal: ImportProposal, parameters: dict[str, Any], actor: User) -> ImportProposal:
+    """Read the file with other parameters. Raises WrongState."""
+    with _held(proposal, {ProposalState.READY, ProposalState.REFUSED}) as held:
+        held.parameters = held.parameters | parameters
+        held.state = ProposalState.READING
+        held.faults, held.summary, held.difference = [], {}, {}
+        held.changes.all().delete()
+        _give_job(held, READ_TASK, actor, "Waiting to be read")
+    return held
+
+
+def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor: User) -> ImportProposal:
+    """Somebody has looked at the difference and wants it. Raises WrongState."""
+    with _held(proposal, {ProposalState.READY}) as held:
+        held.parameters = held.parameters | parameters
+        held.state = ProposalState.APPLYING
+        held.decided_by, held.decided_at = actor, timezone.now()
+        _give_job(held, APPLY_TASK, actor, "Waiting to be applied")
+    return held
+
+
+def discard_proposal(*, proposal: ImportProposal, actor: User | None) -> ImportProposal:
+    """Nobody wants it. One that is being read is stopped. Raises WrongState."""
+    with _held(proposal, {ProposalState.READING, ProposalState.READY, ProposalState.REFUSED}) as held:
+        if held.job is not None and held.job.is_open:
+            cancel_job(job=held.job)
+        held.state = ProposalState.DISCARDED
+        held.decided_by, held.decided_at = actor, timezone.now()
+        held.save()
+        held.changes.all().delete()
+    return held
+
+
+def read_proposal(*, job: Job, progress: Progress) -> None:
+    """Look at the file and store what it would change. A file with faults is a refused proposal, not a failed job."""
+    proposal = ImportProposal.objects.select_related("upload").get(pk=job.parameters["proposal"])
+    if proposal.job_id != job.pk or proposal.state != ProposalState.READING:
+        return
+    revision = ground_revision()
+    try:
+        reading = _with_file(proposal, lambda path, provenance: _module(proposal).read(
+            path=path, parameters=proposal.parameters, provenance=provenance, progress=progress
+        ))  # fmt: skip
+        _store_reading(proposal, job, reading, revision)
+    except FileRefused as error:
+        refuse_proposal(proposal=proposal, faults=error.faults, job=job)
+
+
+def apply_proposal(*, job: Job, progress: Progress) -> None:
+    """Make the ground what the file says: the rows, the import, the proposal's state and the job's end in one transaction.
+
+    If the ground has changed since somebody looked, and with it the difference, nothing is applied: the new difference waits to be
+    looked at.
+    """
+    proposal = ImportProposal.objects.select_related("upload", "decided_by").get(pk=job.parameters["proposal"])
+    if proposal.job_id != job.pk or proposal.state != ProposalState.APPLYING:
+        return
+    try:
+        seen = proposal.ground_revision
+        while True:
+            revision = ground_revision()
+            if revision != seen and _differs_now(proposal, job, revision, progress):
+                return
+            seen = revision
+            try:
+                _with_file(proposal, partial(_apply, proposal, job, seen, progress))
+                return
+            except _GroundMoved:
+                continue
+    except FileRefused as error:
+        refuse_proposal(proposal=proposal, faults=error.faults, job=job)
+
+
+def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job: Job | None = None) -> None:
+    """The file has faults, or could not be read: nothing of it counts."""
+    listed = [
+        {"place": fault.place, "message": fault.message, "position": list(fault.position) if fault.position else None}
+        for fault in faults[:MOST_FAULTS_KEPT]
+    ]
+    with transaction.atomic():
+        if job is not None:
+            finish_job(job=job, message="Refused")
+        open_states = (ProposalState.READING, ProposalState.APPLYING)
+        ImportProposal.objects.filter(pk=proposal.pk, state__in=open_states).update(state=ProposalState.REFUSED, faults=listed)
+
+
+def settle_proposal_of(*, job: Job) -> None:
+    """After a job that was cancelled or failed: reading ends discarded or refused, applying goes back to be decided again."""
+    proposal = ImportProposal.objects.filter(job=job).first()
+    if proposal is None:
+        return
+    job.refresh_from_db()
+    if proposal.state == ProposalState.APPLYING:
+        ImportProposal.objects.filter(pk=proposal.pk, state=ProposalState.APPLYING).update(
+            state=ProposalState.READY, decided_by=None, decided_at=None
+        )
+    elif proposal.state == ProposalState.READING and job.state == "failed":
+        refuse_proposal(proposal=proposal, faults=(Fault("", (job.error or {}).get("message", "The file could not be read.")),))
+    elif proposal.state == ProposalState.READING and job.state == "cancelled":
+        ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.DISCARDED, decided_at=timezone.now())
+
+
+def unsettled_proposals() -> list[ImportProposal]:
+    """Proposals whose job has ended without them, because its worker was lost for good."""
+    ended = ("failed", "cancelled")
+    return list(
+        ImportProposal.objects.select_related("job").filter(state__in=(ProposalState.READING, ProposalState.APPLYING), job__state__in=ended)
+    )
+
+
+class LostJob(Exception):
+    """Another worker has taken the job over; what this one wrote is rolled back."""
+
+
+class _GroundMoved(Exception):
+    """Somebody changed the ground between the look and the lock."""
+
+
+def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: Progress, path: Path | None, provenance: Provenance) -> None:
+    with transaction.atomic():
+        hold_ground()
+        if ground_revision() != revision:
+            raise _GroundMoved
+        data_import: DataImport = _module(proposal).apply(
+            path=path, parameters=proposal.parameters, provenance=provenance, applied_by=proposal.decided_by, progress=progress
+        )
+        if not finish_job(job=job, result={"data_import": data_import.pk}, message="Applied"):
+            raise LostJob
+        ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.APPLIED, data_import=data_import)
+
+
+def _differs_now(proposal: ImportProposal, job: Job, revision: int, progress: Progress) -> bool:
+    """Whether the file would change something else than what was looked at; the new difference is then stored."""
+    reading: Reading = _with_file(proposal, lambda path, provenance: _module(proposal).read(
+        path=path, parameters=proposal.parameters, provenance=provenance, progress=progress
+    ))  # fmt: skip
+    reading.changes = tuple(reading.changes)
+    if reading.numbers == proposal.difference and _fingerprints(reading.changes) == _stored_fingerprints(proposal):
+        return False
+    _store_reading(proposal, job, reading, revision, message="The ground has changed since: look at the difference again.")
+    return True
+
+
+def _fingerprints(changes: tuple[Change, ...]) -> list[tuple[Any, ...]]:
+    return sorted(
+        (change.action, change.subject, change.subject_id or 0, change.label, str(change.before)) for change in _first_of_each(changes)
+    )
+
+
+def _stored_fingerprints(proposal: ImportProposal) -> list[tuple[Any, ...]]:
+    rows = proposal.changes.values_list("action", "subject", "subject_id", "label", "before")
+    return sorted((action, subject, subject_id or 0, label, str(before)) for action, subject, subject_id, label, before in rows)
+
+
+def _store_reading(proposal: ImportProposal, job: Job, reading: Reading, revision: int, message: str = "Read") -> None:
+    with transaction.atomic():
+        proposal.changes.all().delete()
+        rows = [_row(proposal, change) for change in _first_of_each(tuple(reading.changes))]
+        ProposedChange.objects.bulk_create(rows, batch_size=_BATCH)
+        if not finish_job(job=job, result={"proposal": str(proposal.pk)}, message=message):
+            raise LostJob
+        ImportProposal.objects.filter(pk=proposal.pk, state__in=(ProposalState.READING, ProposalState.APPLYING)).update(
+            state=ProposalState.READY, summary=reading.summary, difference=reading.numbers, ground_revision=revision, faults=[],
+            decided_by=None, decided_at=None,
+        )  # fmt: skip
+
+
+def _first_of_each(changes: tuple[Change, ...]) -> list[Change]:
+    ordered = sorted(changes, key=lambda change: change.action)
+    return [change for _, group in groupby(ordered, key=lambda change: change.action) for change in list(group)[:MOST_CHANGES_KEPT]]
+
+
+def _row(proposal: ImportProposal, change: Change) -> ProposedChange:
+    return ProposedChange(
+        proposal=proposal, action=change.action, subject=change.subject, subject_id=change.subject_id, label=change.label[:300],
+        geometry=change.geometry, before=change.before, after=change.after,
+    )  # fmt: skip
+
+
+def _with_file(proposal: ImportProposal, do: Callable[[Path | None, Provenance], Any]) -> Any:
+    provenance = _provenance(proposal)
+    if proposal.upload is None:
+        if proposal.origin != ProposalOrigin.ROLL_BACK:
+            raise FileRefused([Fault("", "The file is no longer kept. Send it again.")])
+        return do(None, provenance)
+    try:
+        with upload_as_file(proposal.upload) as path:
+            return do(path, replace(provenance, file_name=proposal.file_name))
+    except UploadRefused as error:
+        raise FileRefused([Fault("", str(error))]) from error
+
+
+def _provenance(proposal: ImportProposal) -> Provenance:
+    stated = proposal.provenance
+    fetched: datetime | None = parse_datetime(stated["fetched_at"]) if stated.get("fetched_at") else None
+    return Provenance(
+        file_name=proposal.file_name, source_address=stated.get("source_address", ""), licence=stated.get("licence", ""),
+        attribution=stated.get("attribution", ""), fetched_at=fetched,
+    )  # fmt: skip
+
+
+def _module(proposal: ImportProposal) -> FileKind:
+    return FILE_KINDS[proposal.kind]
+
+
+def _give_job(proposal: ImportProposal, task: str, actor: User | None, message: str) -> None:
+    organisation = actor.organisation if actor else Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID)
+    key: UUID = proposal.pk
+    proposal.job = create_job(organisation=organisation, created_by=actor, task=task, parameters={"proposal": str(key)}, message=message)
+    proposal.save()
+
+
+@contextmanager
+def _held(proposal: ImportProposal, states: set[ProposalState]) -> Iterator[ImportProposal]:
+    """The proposal under lock in a transaction, if it is in one of the states. Raises WrongState."""
+    with transaction.atomic():
+        held = ImportProposal.objects.select_for_update(of=["self"]).select_related("job", "decided_by").get(pk=proposal.pk)
+        if held.state not in states:
+            raise WrongState(held)
+        yield held

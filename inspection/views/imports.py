@@ -1,0 +1,193 @@
+"""What came in and what it would change: looked at, applied or thrown away."""
+
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.http import Http404
+from django.urls import reverse
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalState, Upload
+from inspection.selectors.imports import NEWEST_FIRST, changes_of_proposal, proposal_of_id, proposals, upload_of_id
+from inspection.serializers.imports import (
+    ChangeCollectionSerializer,
+    ImportInputSerializer,
+    ParametersSerializer,
+    ProposalPageSerializer,
+    ProposalSerializer,
+    change_feature,
+    proposal_json,
+)
+from inspection.services.proposals import pipeline
+from inspection.views.parameters import invalid
+from inspection.views.uploads import CuratorsAlone
+from workspace.errors import ApiProblem
+from workspace.idempotency import idempotent
+from workspace.paging import page_of
+from workspace.schema import PAGE_PARAMETERS
+from workspace.tasks import send_job_on_commit
+
+IN_ANOTHER_STATE = {409: OpenApiResponse(description="It is in another state; somebody else may have been faster.")}
+
+
+def _proposal(proposal_id: UUID) -> ImportProposal:
+    try:
+        return proposal_of_id(proposal_id)
+    except ImportProposal.DoesNotExist as error:
+        raise Http404 from error
+
+
+def _one_of(request: Request, name: str, known: list[str]) -> str:
+    value = request.query_params.get(name, "")
+    if value and value not in known:
+        raise invalid(name, f"Known are {', '.join(known)}.")
+    return value
+
+
+def _answer(proposal_id: UUID, status: int = 200) -> Response:
+    return Response(proposal_json(_proposal(proposal_id)), status=status)
+
+
+def _too_late(error: pipeline.WrongState) -> ApiProblem:
+    proposal = error.proposal
+    who = proposal.decided_by and (proposal.decided_by.get_full_name() or proposal.decided_by.username)
+    words = f"{error} {who} decided it." if who else str(error)
+    return ApiProblem(409, "wrong_state", words, details={"state": proposal.state, "decided_by": who, "decided_at": proposal.decided_at})
+
+
+class ImportList(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(
+        operation_id="list_imports",
+        summary="What came in, newest first",
+        parameters=[
+            OpenApiParameter("kind", str, enum=ImportKind.values),
+            OpenApiParameter("state", str, enum=ProposalState.values),
+            *PAGE_PARAMETERS,
+        ],
+        responses=ProposalPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        kind, state = _one_of(request, "kind", ImportKind.values), _one_of(request, "state", ProposalState.values)
+        page = page_of(request, proposals(kind=kind, states=[state] if state else None), order=NEWEST_FIRST, default_limit=50)
+        return Response({"results": [proposal_json(proposal) for proposal in page.rows], "next": page.next})
+
+    @extend_schema(
+        operation_id="propose_import",
+        summary="Have a file read: what would it change?",
+        description="Nothing changes before the proposal is applied.",
+        request=ImportInputSerializer,
+        responses={202: ProposalSerializer},
+    )
+    @idempotent
+    def post(self, request: Request) -> Response:
+        body = ImportInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        values = body.validated_data
+        if values["kind"] not in pipeline.FILE_KINDS:
+            raise invalid("kind", "Files of this kind cannot be read.")
+        with transaction.atomic():
+            proposal = pipeline.start_proposal(
+                kind=values["kind"], created_by=request.user, parameters=values.get("parameters", {}),
+                provenance=dict(values.get("provenance", {})), **self._where_from(values),
+            )  # fmt: skip
+            send_job_on_commit(proposal.job)
+        response = _answer(proposal.pk, 202)
+        response["Location"] = reverse("api-import", args=[proposal.pk])
+        return response
+
+    def _where_from(self, values: dict[str, Any]) -> dict[str, Any]:
+        if "upload" not in values:
+            raise invalid("upload", "Send the file first, then name its upload.")
+        try:
+            upload = upload_of_id(values["upload"])
+        except Upload.DoesNotExist as error:
+            raise invalid("upload", "There is no such upload.") from error
+        if not upload.is_complete:
+            raise invalid("upload", f"Only {upload.received_bytes} of {upload.size_bytes} bytes have arrived.")
+        return {"upload": upload, "file_name": upload.file_name}
+
+
+class ImportDetail(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(operation_id="get_import", summary="One proposal", responses=ProposalSerializer)
+    def get(self, request: Request, proposal_id: UUID) -> Response:
+        return _answer(proposal_id)
+
+    @extend_schema(
+        operation_id="read_import_again",
+        summary="Read the file with other parameters",
+        request=ParametersSerializer,
+        responses={202: ProposalSerializer} | IN_ANOTHER_STATE,
+    )
+    def patch(self, request: Request, proposal_id: UUID) -> Response:
+        parameters = _parameters(request)
+        try:
+            with transaction.atomic():
+                send_job_on_commit(pipeline.read_again(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user).job)
+        except pipeline.WrongState as error:
+            raise _too_late(error) from error
+        return _answer(proposal_id, 202)
+
+
+class ImportChanges(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(
+        operation_id="list_changes",
+        summary="The lines of a difference",
+        description="Of a large difference the first of each action are kept; the proposal has the numbers of all.",
+        parameters=[OpenApiParameter("action", str, enum=ChangeAction.values), *PAGE_PARAMETERS],
+        responses=ChangeCollectionSerializer,
+    )
+    def get(self, request: Request, proposal_id: UUID) -> Response:
+        action = _one_of(request, "action", ChangeAction.values)
+        page = page_of(request, changes_of_proposal(_proposal(proposal_id), action=action))
+        return Response({"type": "FeatureCollection", "features": [change_feature(change) for change in page.rows], "next": page.next})
+
+
+class ImportApply(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(
+        operation_id="apply_import",
+        summary="Make the ground what the file says",
+        description="If the ground has changed since the difference was taken, and the difference with it, nothing is applied: the "
+        "proposal is `ready` again with the new difference.",
+        request=ParametersSerializer,
+        responses={202: ProposalSerializer} | IN_ANOTHER_STATE,
+    )
+    def post(self, request: Request, proposal_id: UUID) -> Response:
+        parameters = _parameters(request)
+        try:
+            with transaction.atomic():
+                send_job_on_commit(pipeline.ask_to_apply(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user).job)
+        except pipeline.WrongState as error:
+            raise _too_late(error) from error
+        return _answer(proposal_id, 202)
+
+
+class ImportDiscard(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(
+        operation_id="discard_import", summary="Throw a proposal away", request=None, responses={200: ProposalSerializer} | IN_ANOTHER_STATE
+    )
+    def post(self, request: Request, proposal_id: UUID) -> Response:
+        try:
+            pipeline.discard_proposal(proposal=_proposal(proposal_id), actor=request.user)
+        except pipeline.WrongState as error:
+            raise _too_late(error) from error
+        return _answer(proposal_id)
+
+
+def _parameters(request: Request) -> dict[str, Any]:
+    body = ParametersSerializer(data=request.data)
+    body.is_valid(raise_exception=True)
+    return body.validated_data.get("parameters", {})

@@ -1,0 +1,82 @@
+"""The door for files: announced with name and size, received part by part, gone on with after a cut."""
+
+from uuid import UUID
+
+from django.http import Http404
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.models import Upload
+from inspection.selectors.imports import upload_of_id
+from inspection.serializers.imports import UploadInputSerializer, UploadSerializer, upload_json
+from inspection.services.uploads import UploadGap, UploadRefused, UploadTooLarge, begin_upload, receive_part
+from workspace.errors import ApiProblem
+from workspace.parsers import OctetParser
+from workspace.permissions import CURATORS, RolePermission
+
+
+class CuratorsAlone(RolePermission):
+    """What comes in is for curators to see, too."""
+
+    def has_permission(self, request: Request, view: object) -> bool:
+        self.message = "Only curators bring data in. Ask an administrator for the curator role."
+        return request.user.is_authenticated and request.user.role in CURATORS
+
+
+def _upload(upload_id: UUID) -> Upload:
+    try:
+        return upload_of_id(upload_id)
+    except Upload.DoesNotExist as error:
+        raise Http404 from error
+
+
+class UploadList(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(operation_id="begin_upload", summary="Announce a file", request=UploadInputSerializer, responses={201: UploadSerializer})
+    def post(self, request: Request) -> Response:
+        body = UploadInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        try:
+            upload = begin_upload(**body.validated_data, created_by=request.user)
+        except UploadTooLarge as error:
+            raise ApiProblem(413, "too_large", str(error)) from error
+        return Response(upload_json(upload), status=201)
+
+
+class UploadDetail(APIView):
+    permission_classes = [CuratorsAlone]
+
+    @extend_schema(operation_id="get_upload", summary="How much of a file is here", responses=UploadSerializer)
+    def get(self, request: Request, upload_id: UUID) -> Response:
+        return Response(upload_json(_upload(upload_id)))
+
+    @extend_schema(operation_id="delete_upload", summary="Forget a file", responses={204: None})
+    def delete(self, request: Request, upload_id: UUID) -> Response:
+        _upload(upload_id).delete()
+        return Response(status=204)
+
+
+class UploadBytes(APIView):
+    permission_classes = [CuratorsAlone]
+    parser_classes = [OctetParser]
+
+    @extend_schema(
+        operation_id="send_bytes",
+        summary="Send the part of a file that begins at a byte",
+        description="A part that is here already does no harm. After a cut, ask how much is here and go on from there.",
+        request={"application/octet-stream": OpenApiTypes.BINARY},
+        responses={200: UploadSerializer, 409: OpenApiResponse(description="Bytes before these are missing.")},
+    )
+    def put(self, request: Request, upload_id: UUID, first_byte: int) -> Response:
+        upload = _upload(upload_id)
+        try:
+            upload = receive_part(upload=upload, first_byte=first_byte, content=request.data)
+        except UploadGap as error:
+            raise ApiProblem(409, "gap", str(error), details={"received_bytes": upload.received_bytes}) from error
+        except UploadRefused as error:
+            raise ApiProblem(400, "invalid", str(error)) from error
+        return Response(upload_json(upload))

@@ -1,0 +1,67 @@
+"""Carries a job's progress out of a long transaction, renews its lease, and brings the wish to stop back in.
+
+Inside a transaction nothing of a job's row may be written: nobody would see it before the end, and whoever wants to cancel would wait
+for it. So a thread of its own, with its own connection, does that once a second; also while the database works on one long statement.
+"""
+
+import logging
+import threading
+from types import TracebackType
+
+from django.db import DatabaseError, connection, connections
+
+from workspace.models import Job
+from workspace.services import JobCancelled, report_progress
+
+logger = logging.getLogger(__name__)
+
+INTERVAL_S = 1.0
+
+
+class JobWatch:
+    """`with JobWatch(job) as watch: work(progress=watch.progress)`. progress raises JobCancelled once somebody has asked to stop."""
+
+    def __init__(self, job: Job, *, interval_s: float = INTERVAL_S) -> None:
+        self.job = job
+        self._interval_s = interval_s
+        self._share, self._message = job.progress, job.message
+        self._stopped = threading.Event()
+        self._is_cancelled = threading.Event()
+        self._thread = threading.Thread(target=self._run, name=f"watch of job {job.pk}", daemon=True)
+
+    def __enter__(self) -> "JobWatch":
+        if connection.in_atomic_block:  # a caller's own transaction, as in tests: the thread could see nothing of it
+            self._stopped.set()
+        else:
+            self._thread.start()
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._stopped.set()
+        if self._thread.ident is not None:
+            self._thread.join()
+
+    def progress(self, message: str, share: float) -> None:
+        self._message, self._share = message, share
+        self.check()
+
+    def check(self) -> None:
+        if self._is_cancelled.is_set():
+            raise JobCancelled
+
+    def _run(self) -> None:
+        try:
+            while not self._stopped.wait(self._interval_s):
+                self._report()
+        finally:
+            connections.close_all()  # this thread's alone
+
+    def _report(self) -> None:
+        try:
+            report_progress(job=self.job, progress=self._share, message=self._message)
+        except JobCancelled:
+            self._is_cancelled.set()
+            self._stopped.set()
+        except DatabaseError as error:
+            logger.warning("progress of job %s is not stored: %s", self.job.pk, error)
+            connection.close_if_unusable_or_obsolete()
