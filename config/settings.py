@@ -232,6 +232,7 @@ CELERY_TASK_DEFAULT_QUEUE = "data"
 CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
+    "look for gaps in a changed ground": {"task": "inspection.tasks.find_gaps", "schedule": 10.0, "options": {"expires": 10}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 10.0, "options": {"expires": 10}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},

@@ -23,6 +23,12 @@ def refresh_graph() -> None:
     services.refresh_graph()
 
 
+@shared_task(time_limit=900, soft_time_limit=870)
+def find_gaps() -> None:
+    """Look for gaps if the ground has changed since the last search; several changes make one search, and one runs at a time."""
+    services.find_gaps()
+
+
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def read_proposal(job_id: str) -> None:
     """Read a file that came in and store what it would change. Safe to run twice: a job is held by one worker, and finished once."""

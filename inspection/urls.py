@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, geometry_checks, ground, history, imports, uploads, zones
+from inspection.views import assets, gaps, geometry_checks, ground, history, imports, uploads, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -25,6 +25,13 @@ urlpatterns = [
     path("imports/<uuid:proposal_id>/apply", imports.ImportApply.as_view(), name="api-import-apply"),
     path("imports/<uuid:proposal_id>/discard", imports.ImportDiscard.as_view(), name="api-import-discard"),
     path("geometry-checks", geometry_checks.GeometryCheck.as_view(), name="api-geometry-checks"),
+    path("gaps", gaps.GapList.as_view(), name="api-gaps"),
+    path("gaps/summary", gaps.GapCounts.as_view(), name="api-gap-summary"),
+    path("gaps/<int:gap_id>", gaps.GapDetail.as_view(), name="api-gap"),
+    path("gaps/<int:gap_id>/repair", gaps.GapRepair.as_view(), name="api-gap-repair"),
+    path("gaps/<int:gap_id>/undo", gaps.GapUndo.as_view(), name="api-gap-undo"),
+    path("gaps/<int:gap_id>/dismiss", gaps.GapDismiss.as_view(), name="api-gap-dismiss"),
+    path("gaps/<int:gap_id>/reopen", gaps.GapReopen.as_view(), name="api-gap-reopen"),
     path("ground", ground.Ground.as_view(), name="api-ground"),
     path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),
 ]

@@ -110,6 +110,7 @@ def _dead_ends(network: Network, vertex: IntArray) -> list[Gap]:
                 position=(float(place[0]), float(place[1])),
                 geometry=Point(place),
                 details={
+                    "end": lines.position[end].tolist(),
                     "has_tower": bool(node[index] < network.support_count),
                     "nearest_m": round(float(metres[index]), 1) if partner[index] >= 0 else None,
                     "nearest": network.node_position[partner[index]].tolist() if partner[index] >= 0 else None,

@@ -10,7 +10,7 @@ from inspection.models import DataImport
 class GeometrySerializer(serializers.Serializer):
     """A GeoJSON geometry, WGS84, longitude first."""
 
-    type = serializers.ChoiceField(choices=["Point", "LineString", "MultiLineString", "Polygon", "MultiPolygon"])
+    type = serializers.ChoiceField(choices=["Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"])
     coordinates = serializers.ListField(child=serializers.JSONField())
 
 

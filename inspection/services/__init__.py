@@ -1,6 +1,7 @@
 """Writes of the ground: what the other apps, commands and tasks call."""
 
 from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
+from inspection.services.gaps import find_gaps
 from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
 from inspection.services.osm_import import import_osm
@@ -17,6 +18,7 @@ __all__ = [
     "build_graph",
     "delete_asset",
     "delete_zone",
+    "find_gaps",
     "geometry_fault",
     "import_osm",
     "import_terrain",

@@ -1,0 +1,94 @@
+"""New courses of lines: an end that moves, vertices that are added, places for towers that are missing."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from inspection.geodesy import distance_m
+from inspection.geodesy.wgs84 import FloatArray
+
+Position = tuple[float, float]  # lon, lat [deg]
+
+SAME_DEG = 2e-9  # less than a millimetre: the same vertex, whatever way its figures went
+MERGE_M = 30.0  # a vertex that a tower stands so near to is meant to be at the tower
+
+
+class NoSuchVertex(ValueError):
+    """The line has no vertex there any more."""
+
+
+def vertex_at(course: Sequence[Position], place: Sequence[float]) -> int:
+    """The number of the vertex at the place; raises NoSuchVertex."""
+    away = np.abs(np.asarray(course, dtype=np.float64) - np.asarray(place, dtype=np.float64)).max(axis=1)
+    nearest = int(away.argmin())
+    if away[nearest] > SAME_DEG:
+        raise NoSuchVertex
+    return nearest
+
+
+def leg_between(course: Sequence[Position], start: Sequence[float], end: Sequence[float]) -> int:
+    """The number of the vertex that begins the leg from start to end; raises NoSuchVertex."""
+    points = np.asarray(course, dtype=np.float64)
+    away = np.abs(points[:-1] - np.asarray(start)).max(axis=1) + np.abs(points[1:] - np.asarray(end)).max(axis=1)
+    if not len(away) or away.min() > 2 * SAME_DEG:
+        raise NoSuchVertex
+    return int(away.argmin())
+
+
+def evenly_between(start: Sequence[float], end: Sequence[float], count: int) -> list[Position]:
+    """`count` positions that part the way from start to end evenly."""
+    first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    return [_position(first + (last - first) * (number / (count + 1))) for number in range(1, count + 1)]
+
+
+def in_order(start: Sequence[float], end: Sequence[float], places: Sequence[Sequence[float]]) -> list[Position]:
+    """The places by how far along the way from start to end they are."""
+    first, step = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64) - np.asarray(start, dtype=np.float64)
+    scale = np.array([np.cos(np.radians(first[1])), 1.0])
+    along = [float(((np.asarray(place) - first) * scale * step * scale).sum()) for place in places]
+    return [_position(np.asarray(places[index], dtype=np.float64)) for index in np.argsort(along, kind="stable")]
+
+
+def with_vertices(course: Sequence[Position], after: int, places: Sequence[Position]) -> list[Position]:
+    """The course with the places put in behind vertex `after`."""
+    return [*course[: after + 1], *places, *course[after + 1 :]]
+
+
+def end_moved_to(course: Sequence[Position], end: int, place: Position, *, keeps_end: bool) -> list[Position]:
+    """The course with its first or last vertex moved to the place, or led on to it where the vertex itself must stay."""
+    if end == 0:
+        return [place, *course] if keeps_end else [place, *course[1:]]
+    return [*course, place] if keeps_end else [*course[:-1], place]
+
+
+def nearest_leg(course: Sequence[Position], place: Position) -> tuple[int, float, float]:
+    """The leg that comes nearest to the place: its first vertex, where on it (0 to 1), and how near [m]."""
+    points = np.asarray(course, dtype=np.float64)
+    scale = np.array([np.cos(np.radians(place[1])), 1.0])
+    step = (points[1:] - points[:-1]) * scale
+    to_place = (np.asarray(place) - points[:-1]) * scale
+    square = np.maximum((step**2).sum(axis=1), 1e-30)
+    fraction = np.clip((step * to_place).sum(axis=1) / square, 0.0, 1.0)
+    leg = int(np.hypot(*(to_place - step * fraction[:, None]).T).argmin())
+    foot = points[leg] + (points[leg + 1] - points[leg]) * fraction[leg]
+    return leg, float(fraction[leg]), float(distance_m(foot[None], np.asarray(place, dtype=np.float64)[None])[0])
+
+
+def through(course: Sequence[Position], place: Position, taken: FloatArray) -> list[Position]:
+    """The course led through the place: its nearest vertex moved there if that is near and no tower's (`taken`), else one more vertex."""
+    points = np.asarray(course, dtype=np.float64)
+    metres = distance_m(points, np.broadcast_to(np.asarray(place, dtype=np.float64), points.shape))
+    nearest = int(metres.argmin())
+    is_taken = bool(len(taken)) and bool((np.abs(taken - points[nearest]).max(axis=1) <= SAME_DEG).any())
+    if metres[nearest] <= MERGE_M and not is_taken:
+        return [*course[:nearest], place, *course[nearest + 1 :]]
+    leg, fraction, _ = nearest_leg(course, place)
+    if fraction == 0.0 and leg == 0:
+        return [place, *course]
+    if fraction == 1.0 and leg == len(course) - 2:
+        return [*course, place]
+    return with_vertices(course, leg, [place])
+
+
+def _position(point: FloatArray) -> Position:
+    return (round(float(point[0]), 7), round(float(point[1]), 7))

@@ -1,0 +1,46 @@
+"""Gaps as a list, worst first, and how many of each kind there are."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from django.contrib.gis.db.models.functions import AsGeoJSON
+from django.db.models import Count, QuerySet
+
+from inspection.models import DataGap, GapKind, GapSearch, GapState
+from inspection.selectors.assets import COORDINATE_DIGITS, Box, area_of, assets_on_the_ground
+
+WORST_FIRST = ("-cut_off_m", "pk")
+_UNREAD = [
+    f"{path}__{name}"
+    for path in ("asset", "other_asset", "asset__line", "other_asset__line")
+    for name in ("geometry", "node_osm_ids", "tags", "parts", "source_facts")
+]
+
+
+@dataclass(frozen=True)
+class GapSummary:
+    counts: dict[str, dict[str, int]]  # by kind, then by state
+    searched_at: datetime | None
+    found: int
+
+
+def gaps(*, kinds: list[GapKind] | None = None, state: GapState | None = None, box: Box | None = None, text: str = "") -> QuerySet[DataGap]:
+    """Gaps with what they are about, and their geometry as GeoJSON text in `geometry_json`."""
+    found = DataGap.objects.select_related("asset__line", "other_asset__line", "decided_by")
+    if kinds:
+        found = found.filter(kind__in=kinds)
+    if state is not None:
+        found = found.filter(state=state)
+    if box is not None:
+        found = found.filter(geometry__intersects=area_of(box))
+    if text:
+        found = found.filter(asset__in=assets_on_the_ground(text=text).order_by().values("pk"))
+    return found.defer(*_UNREAD).annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+
+
+def gap_summary() -> GapSummary:
+    counts = {kind.value: dict.fromkeys(GapState.values, 0) for kind in GapKind}
+    for kind, state, number in DataGap.objects.order_by().values_list("kind", "state").annotate(Count("pk")):
+        counts[kind][state] = number
+    last = GapSearch.objects.filter(pk=GapSearch.SINGLE_ID).first()
+    return GapSummary(counts, last and last.searched_at, last.found if last else 0)

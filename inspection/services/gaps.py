@@ -1,0 +1,153 @@
+"""Looking for gaps after each change of the ground, and what a curator decides about one."""
+
+import logging
+from collections.abc import Sequence
+from time import perf_counter
+
+from django.contrib.gis.geos import GEOSGeometry, Point
+from django.db import connection, transaction
+from django.utils import timezone
+
+from inspection.data_gaps.gap import Gap
+from inspection.data_gaps.search import RECIPE, search
+from inspection.models import Asset, DataGap, GapSearch, GapState
+from inspection.selectors.gap_ground import gap_ground
+from inspection.selectors.ground import ground_edition
+from workspace.models import User
+from workspace.services import record_change
+
+logger = logging.getLogger(__name__)
+
+SEARCH_LOCK = 5_372_002  # any number that nothing else locks
+BATCH = 2_000
+AT_ONCE_S = 2.0  # a search that took no longer is done while the curator waits
+_FOUND = ("asset", "other_asset", "position", "geometry", "details", "cut_off_m", "ground_revision")
+
+
+def gaps_are_current() -> bool:
+    """Whether the last search saw the ground as it is now, with today's rules."""
+    revision, changed_at = ground_edition()
+    last = GapSearch.objects.filter(pk=GapSearch.SINGLE_ID).first()
+    if last is None:
+        return revision == 0
+    return (last.ground_revision, last.ground_changed_at, last.recipe) == (revision, changed_at, RECIPE)
+
+
+def find_gaps(*, force: bool = False) -> GapSearch | None:
+    """Search the ground if it has changed since the last search; None when there is nothing to do or another one searches.
+
+    A gap that is found again keeps its state and note, one that was repaired and is back opens again, one that is no longer found counts
+    as repaired.
+    """
+    if gaps_are_current() and not force:
+        return None
+    with transaction.atomic():
+        with connection.cursor() as cursor:
+            cursor.execute("SELECT pg_try_advisory_xact_lock(%s)", [SEARCH_LOCK])
+            (is_ours,) = cursor.fetchone()
+        if not is_ours or (gaps_are_current() and not force):
+            return None
+        return _search_and_store()
+
+
+def find_gaps_at_once() -> bool:
+    """Search while somebody waits for it, if the last search says that it will not take long; whether the gaps are current then."""
+    last = GapSearch.objects.filter(pk=GapSearch.SINGLE_ID).first()
+    if last is not None and last.search_s <= AT_ONCE_S:
+        find_gaps()
+    return gaps_are_current()
+
+
+def dismiss_gap(*, gap: DataGap, note: str, actor: User) -> DataGap:
+    """Leave it as it is: it stays out of the open list, however often it is found."""
+    return _decide(gap, GapState.DISMISSED, note, actor)
+
+
+def reopen_gap(*, gap: DataGap, actor: User) -> DataGap:
+    return _decide(gap, GapState.OPEN, "", actor)
+
+
+def mark_repaired(*, gap: DataGap, actor: User) -> DataGap:
+    return _decide(gap, GapState.REPAIRED, "", actor)
+
+
+def _decide(gap: DataGap, state: GapState, note: str, actor: User) -> DataGap:
+    with transaction.atomic():
+        kept = DataGap.objects.select_for_update(of=["self"]).get(pk=gap.pk)
+        before = {"state": kept.state, "note": kept.note}
+        kept.state, kept.note = state, note
+        kept.decided_by, kept.decided_at = actor, timezone.now()
+        kept.save(update_fields=["state", "note", "decided_by", "decided_at"])
+        record_change(
+            organisation=actor.organisation,
+            actor=actor,
+            action="changed",
+            subject_type="gap",
+            subject_id=kept.pk,
+            before=before,
+            after={"state": state.value, "note": note},
+        )
+    return kept
+
+
+def _search_and_store() -> GapSearch:
+    started_s, started_at = perf_counter(), timezone.now()
+    _, changed_at = ground_edition()
+    ground = gap_ground()
+    found = search(ground)
+    there = _still_there(found)
+    found = [gap for gap in found if gap.asset in there]
+    keys = {gap.key for gap in found}
+    states = {key: (pk, state, decided_at) for key, pk, state, decided_at in _known()}
+    for first in range(0, len(found), BATCH):
+        rows = [_row(gap, ground.revision, there) for gap in found[first : first + BATCH]]
+        DataGap.objects.bulk_create(rows, update_conflicts=True, unique_fields=["key"], update_fields=list(_FOUND))
+    # What was repaired while this search was under way is not there any more: the next one decides.
+    back = [
+        pk
+        for key, (pk, state, decided_at) in states.items()
+        if state == GapState.REPAIRED and key in keys and (decided_at is None or decided_at < started_at)
+    ]
+    gone = [pk for key, (pk, state, _) in states.items() if state == GapState.OPEN and key not in keys]
+    for first in range(0, len(back), BATCH):
+        rows_back = DataGap.objects.filter(pk__in=back[first : first + BATCH])
+        rows_back.update(state=GapState.OPEN, decided_by=None, decided_at=None, note="")
+    for first in range(0, len(gone), BATCH):
+        DataGap.objects.filter(pk__in=gone[first : first + BATCH]).update(state=GapState.REPAIRED, decided_by=None, decided_at=started_at)
+    last, _ = GapSearch.objects.update_or_create(
+        pk=GapSearch.SINGLE_ID,
+        defaults={
+            "ground_revision": ground.revision,
+            "ground_changed_at": changed_at,
+            "recipe": RECIPE,
+            "found": len(found),
+            "search_s": perf_counter() - started_s,
+            "searched_at": timezone.now(),
+        },
+    )
+    logger.info("gaps of ground %d: %d found, %d new or back, %d gone", ground.revision, len(found), len(keys - states.keys()), len(gone))
+    return last
+
+
+def _known() -> Sequence[tuple[str, int, str, object]]:
+    return list(DataGap.objects.order_by().values_list("key", "pk", "state", "decided_at"))
+
+
+def _still_there(found: Sequence[Gap]) -> set[int]:
+    """The assets of the gaps that have not been deleted while they were looked for."""
+    wanted = {gap.asset for gap in found} | {gap.other_asset for gap in found if gap.other_asset is not None}
+    return set(Asset.objects.filter(pk__in=wanted).order_by().values_list("pk", flat=True))
+
+
+def _row(gap: Gap, revision: int, there: set[int]) -> DataGap:
+    return DataGap(
+        kind=gap.kind,
+        key=gap.key[:200],
+        asset_id=gap.asset,
+        other_asset_id=gap.other_asset if gap.other_asset in there else None,
+        position=Point(gap.position, srid=4326),
+        geometry=GEOSGeometry(memoryview(gap.geometry.wkb), srid=4326),
+        details=gap.details,
+        cut_off_m=gap.cut_off_m,
+        ground_revision=revision,
+    )

@@ -1,0 +1,232 @@
+"""The assets as each repair would leave them; nothing here is saved."""
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from django.contrib.gis.geos import LineString, Point, Polygon
+from django.db.models import QuerySet
+
+from inspection.data_gaps.mending import (
+    NoSuchVertex,
+    end_moved_to,
+    evenly_between,
+    in_order,
+    leg_between,
+    nearest_leg,
+    through,
+    vertex_at,
+    with_vertices,
+)
+from inspection.data_gaps.voltages import HIGHEST_V, MOST_VALUES
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.graph.ground_data import NO_OSM_NODE
+from inspection.models import Asset, AssetKind, DataGap, OsmType
+from inspection.services.curation import PLACED
+
+MOST_TOWERS = 500  # along one span
+REACH_M = 200.0  # of places clicked along a span, from the straight way
+ATTACH_M = 500.0  # a tower farther from its line is not its
+
+# What makes the bridge's `carries` say it; highway=road is OSM's "a road of whatever kind".
+_CARRIED = {
+    "road": {"highway": "road"}, "railway": {"railway": "rail"}, "path": {"highway": "path"}, "water": {"waterway": "canal"},
+    "pipeline": {"man_made": "pipeline"},
+}  # fmt: skip
+
+
+class CannotRepair(ValueError):
+    """The message says why, and what to do."""
+
+
+@dataclass(frozen=True)
+class Change:
+    asset: Asset
+    is_new: bool = False
+
+
+def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """New vertices in the span and a tower at each: at the places given, else evenly, as many as are thought to be missing."""
+    line = _line(gap.asset_id)
+    course, details = list(line.geometry.coords), gap.details
+    start, end = details["start"], details["end"]
+    leg = _found(lambda: leg_between(course, start, end))
+    if "positions" in parameters:
+        given = _positions(parameters["positions"])
+        if any(nearest_leg([tuple(start), tuple(end)], place)[2] > REACH_M for place in given):
+            raise CannotRepair(f"A tower along the span stands within {REACH_M:.0f} m of it.")
+        places = in_order(start, end, given)
+    else:
+        places = evenly_between(start, end, min(details["missing_towers"], MOST_TOWERS))
+    line.geometry = LineString(with_vertices(course, leg, places), srid=4326)
+    return [Change(line), *(_new_tower(line, place, NO_OSM_NODE) for place in places)]
+
+
+def towers_at_vertices(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """A tower at each vertex of the line that has none; where OSM has a node there, the tower is known by it."""
+    line = _line(gap.asset_id)
+    course = line.geometry.coords
+    nodes = line.node_osm_ids if len(line.node_osm_ids) == len(course) else [NO_OSM_NODE] * len(course)
+    wanted = gap.geometry.coords if gap.geometry.geom_type == "MultiPoint" else [gap.geometry.coords]
+    numbers = sorted({_found(lambda place=place: vertex_at(course, place)) for place in wanted})  # type: ignore[misc]
+    return [_new_tower(line, course[number], nodes[number]) for number in numbers]
+
+
+def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """The nearest line led through the tower; of a row of towers through the one that is nearest to it."""
+    line = _line(gap.other_asset_id)
+    course = list(line.geometry.coords)
+    towers = list(Asset.objects.filter(pk__in=gap.details["assets"], vanished_at=None, kind=AssetKind.TOWER))
+    if not towers:
+        raise CannotRepair("The tower is gone. The ground is being searched again.")
+    tower = min(towers, key=lambda row: (nearest_leg(course, row.geometry.coords)[2], row.pk))
+    place = tower.geometry.coords
+    if nearest_leg(course, place)[2] > ATTACH_M:
+        raise CannotRepair("No line is near to the tower any more.")
+    line.geometry = LineString(through(course, place, _taken_places(line, course)), srid=4326)
+    return [Change(line)]
+
+
+def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """What the gap is about, marked as no part of the inspection graph."""
+    keys = gap.details.get("assets", [gap.asset_id])
+    rows = list(Asset.objects.filter(pk__in=keys, vanished_at=None, is_flyable=True).order_by("pk"))
+    if not rows:
+        raise CannotRepair("It is not part of the graph any more.")
+    for row in rows:
+        row.is_flyable = False
+    return [Change(row) for row in rows]
+
+
+def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """The end moved onto the other line, which gets a vertex there if it has none; an end with a tower stays and is led on."""
+    line, other = _line(gap.asset_id), _line(gap.other_asset_id)
+    course, there = list(line.geometry.coords), tuple(gap.details["there"])
+    end = _end(course, gap.details["end"])
+    changes = []
+    try:
+        target = other.geometry.coords[vertex_at(other.geometry.coords, there)]
+    except NoSuchVertex:
+        leg, _, metres = nearest_leg(other.geometry.coords, there)
+        if metres > 1.0:
+            raise CannotRepair("The other line runs elsewhere by now. The ground is being searched again.") from None
+        target = there
+        other.geometry = LineString(with_vertices(list(other.geometry.coords), leg, [there]), srid=4326)
+        changes.append(Change(other))
+    line.geometry = LineString(end_moved_to(course, end, target, keeps_end=_has_support(course[end])), srid=4326)
+    return [*changes, Change(line)]
+
+
+def join_to_network(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """The dead end led on, straight, to the nearest place of the network that it does not hang together with."""
+    line = _line(gap.asset_id)
+    course = list(line.geometry.coords)
+    end = _end(course, gap.details["end"])
+    line.geometry = LineString(end_moved_to(course, end, tuple(gap.details["nearest"]), keeps_end=True), srid=4326)
+    return [Change(line)]
+
+
+def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    carried = _CARRIED.get(str(parameters.get("way", "")))
+    if carried is None:
+        raise CannotRepair(f"Say what it carries: {', '.join(_CARRIED)}.")
+    bridge = _asset(gap.asset_id)
+    bridge.tags = bridge.tags | carried
+    return [Change(bridge)]
+
+
+def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    given = parameters.get("voltages_v", gap.details["offered_v"])
+    if not isinstance(given, list) or not 1 <= len(given) <= MOST_VALUES:
+        raise CannotRepair(f"Give 1 to {MOST_VALUES} voltages in volts.")
+    if any(isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= HIGHEST_V for value in given):
+        raise CannotRepair(f"A voltage is a whole number of volts, at most {HIGHEST_V:,}.")
+    asset = _asset(gap.asset_id)
+    asset.voltages_v = sorted(set(given), reverse=True)
+    return [Change(asset)]
+
+
+def _asset(key: int | None) -> Asset:
+    asset = Asset.objects.filter(pk=key, vanished_at=None).first()
+    if asset is None:
+        raise CannotRepair("What the gap is about is gone. The ground is being searched again.")
+    return asset
+
+
+def _line(key: int | None) -> Asset:
+    line = _asset(key)
+    if line.kind != AssetKind.LINE:
+        raise CannotRepair("This is no line any more. The ground is being searched again.")
+    return line
+
+
+def _found(search: Any) -> int:
+    try:
+        return int(search())
+    except NoSuchVertex:
+        raise CannotRepair("The line has changed since the gap was found. The ground is being searched again.") from None
+
+
+def _end(course: list[tuple[float, float]], place: Any) -> int:
+    number = _found(lambda: vertex_at(course, place))
+    if number not in (0, len(course) - 1):
+        raise CannotRepair("The line does not end there any more. The ground is being searched again.")
+    return number
+
+
+def _has_support(place: tuple[float, float]) -> bool:
+    return _supports_within(_box_round([place])).exists()
+
+
+def _taken_places(line: Asset, course: list[tuple[float, float]]) -> FloatArray:
+    """Where supports stand and other lines have vertices: a vertex there must not move."""
+    box = _box_round(course)
+    places = [place.coords for place in _supports_within(box).values_list("geometry", flat=True)]
+    others = Asset.objects.filter(kind=AssetKind.LINE, vanished_at=None, is_flyable=True, geometry__intersects=box).exclude(pk=line.pk)
+    for other in others.values_list("geometry", flat=True):
+        places.extend(other.coords)
+    return np.array(places, dtype=np.float64).reshape(-1, 2)
+
+
+def _supports_within(box: Polygon) -> QuerySet[Asset]:
+    return Asset.objects.filter(kind=AssetKind.TOWER, vanished_at=None, is_flyable=True, geometry__intersects=box)
+
+
+def _box_round(course: list[tuple[float, float]]) -> Polygon:
+    """The course's box and a metre round it."""
+    margin_deg = 1e-5
+    (west, south), (east, north) = np.min(course, axis=0) - margin_deg, np.max(course, axis=0) + margin_deg
+    box = Polygon.from_bbox((float(west), float(south), float(east), float(north)))
+    box.srid = 4326
+    return box
+
+
+def _positions(given: Any) -> list[tuple[float, float]]:
+    fault = CannotRepair(f"Give 1 to {MOST_TOWERS} positions, each as [longitude, latitude].")
+    if not isinstance(given, list) or not 1 <= len(given) <= MOST_TOWERS:
+        raise fault
+    places = []
+    for place in given:
+        if not isinstance(place, list) or len(place) != 2:
+            raise fault
+        if any(isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) for value in place):
+            raise fault
+        if abs(place[0]) > 180 or abs(place[1]) > 90:
+            raise fault
+        places.append((float(place[0]), float(place[1])))
+    return places
+
+
+def _new_tower(line: Asset, place: tuple[float, float], osm_node: int) -> Change:
+    """A support of the line's kind. One at an OSM node that had stood here before is the same row again."""
+    subtype = "pole" if line.subtype == "minor_line" else "tower"
+    tags = {PLACED: "by hand"}
+    at = Point(place, srid=4326)
+    if osm_node == NO_OSM_NODE:
+        return Change(Asset(kind=AssetKind.TOWER, subtype=subtype, geometry=at, tags=tags), is_new=True)
+    tower = Asset.objects.filter(kind=AssetKind.TOWER, osm_type=OsmType.NODE, osm_id=osm_node).first()
+    if tower is None:
+        tower = Asset(kind=AssetKind.TOWER, osm_type=OsmType.NODE, osm_id=osm_node, subtype=subtype, tags=tags)
+    tower.geometry, tower.vanished_at, tower.is_flyable = at, None, True
+    return Change(tower, is_new=tower.pk is None)

@@ -1,0 +1,166 @@
+"""Repairs of gaps: what each one would change, and changing it through curation, so that imports keep it and the history has it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from inspection.models import DataGap, GapKind, GapState
+from inspection.services.curation import many_edits, save_asset
+from inspection.services.facts import geojson
+from inspection.services.gaps import mark_repaired, reopen_gap
+from inspection.services.history import undo
+from inspection.services.repair_edits import (
+    CannotRepair,
+    Change,
+    attach_towers,
+    bridge_carries,
+    join_to_network,
+    joined_ends,
+    leave_out,
+    towers_along_span,
+    towers_at_vertices,
+    with_voltages,
+)
+from workspace.models import AuditEntry, User
+
+
+@dataclass(frozen=True)
+class Offer:
+    """A repair that may be chosen. `words` names the act on its button; `choices` are values for the parameter that it needs."""
+
+    action: str
+    words: str
+    parameter: str = ""
+    choices: tuple[tuple[Any, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class Repaired:
+    gap: DataGap
+    entries: list[int] = field(default_factory=list)  # of the history, oldest first: undo them from the end
+    said: str = ""
+
+
+def offers_of(gap: DataGap) -> list[Offer]:
+    """What can be done about an open gap; the best first."""
+    if gap.state != GapState.OPEN:
+        return []
+    return _OFFERS[GapKind(gap.kind)](gap.details)
+
+
+def changes_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> list[Change]:
+    """The assets as the repair would leave them, in order; nothing is saved. Raises CannotRepair."""
+    if all(offer.action != action for offer in offers_of(gap)):
+        raise CannotRepair("This repair does not fit the gap as it is now.")
+    return _BUILDERS[action](gap, parameters)
+
+
+def preview_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> dict[str, Any]:
+    """A FeatureCollection of what the repair would draw: `role` is line, tower or asset."""
+    features = [
+        {
+            "type": "Feature",
+            "geometry": geojson(change.asset.geometry),
+            "properties": {"role": change.asset.kind, "is_new": change.asset.pk is None},
+        }
+        for change in changes_of(gap=gap, action=action, parameters=parameters)
+    ]
+    return {"type": "FeatureCollection", "features": features}
+
+
+def repair_gap(*, gap: DataGap, action: str, parameters: dict[str, Any], actor: User) -> Repaired:
+    """Make the changes, each in the history, and count the gap as repaired until the next search says otherwise. Raises CannotRepair."""
+    with many_edits():
+        kept = DataGap.objects.select_for_update(of=["self"]).get(pk=gap.pk)
+        if kept.state != GapState.OPEN:
+            raise CannotRepair("Somebody has decided about this gap already.")
+        changes = changes_of(gap=kept, action=action, parameters=parameters)
+        last = AuditEntry.objects.order_by("-pk").values_list("pk", flat=True).first() or 0
+        for change in changes:
+            save_asset(asset=change.asset, actor=actor)
+        subjects = {str(change.asset.pk) for change in changes}
+        entries = AuditEntry.objects.filter(pk__gt=last, subject_type="asset", subject_id__in=subjects, actor=actor)
+        numbers = list(entries.order_by("pk").values_list("pk", flat=True))
+        kept = mark_repaired(gap=kept, actor=actor)
+    return Repaired(kept, numbers, _said(changes))
+
+
+def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap:
+    """Take a repair back, its last change first, all of it or nothing. Raises history.CannotUndo, CannotRepair."""
+    with many_edits():
+        rows = AuditEntry.objects.filter(pk__in=entries, subject_type="asset", organisation=actor.organisation)
+        if len(rows) != len(set(entries)) or not rows:
+            raise CannotRepair("These are no changes of a repair.")
+        for entry in sorted(rows, key=lambda row: -row.pk):
+            undo(entry=entry, actor=actor)
+        return reopen_gap(gap=gap, actor=actor)
+
+
+def _said(changes: Sequence[Change]) -> str:
+    """What was done, for the toast: "9 towers placed, 1 line changed." """
+    new = sum(change.asset.kind == "tower" and change.is_new for change in changes)
+    parts = [f"{new:,} tower{'' if new == 1 else 's'} placed"] if new else []
+    for kind, word in (("line", "line"), ("tower", "tower"), ("bridge", "bridge"), ("railway", "railway")):
+        number = sum(change.asset.kind == kind and not change.is_new for change in changes)
+        if number:
+            parts.append(f"{number:,} {word}{'' if number == 1 else 's'} changed")
+    return ", ".join(parts).capitalize() + "."
+
+
+def _offers_of_long_span(details: dict[str, Any]) -> list[Offer]:
+    count = details["missing_towers"]
+    return [Offer("place_towers", f"Place {count} towers evenly" if count > 1 else "Place one tower", parameter="positions")]
+
+
+def _offers_of_missing_supports(details: dict[str, Any]) -> list[Offer]:
+    count = details["missing_towers"]
+    return [Offer("make_towers", f"Make {count} towers of the vertices" if count > 1 else "Make a tower of the vertex")]
+
+
+def _offers_of_lone_tower(details: dict[str, Any]) -> list[Offer]:
+    many = details["towers"] > 1
+    offers = [Offer("leave_out", "Leave them out of the graph" if many else "Leave it out of the graph")]
+    if details["nearest_line_m"] is not None:
+        offers.insert(0, Offer("attach", "Join the nearest tower to the line" if many else "Join it to the nearest line"))
+    return offers
+
+
+def _offers_of_dead_end(details: dict[str, Any]) -> list[Offer]:
+    return [Offer("join_to_network", "Lead it on to the network")] if details["nearest"] is not None else []
+
+
+def _offers_of_bridge(details: dict[str, Any]) -> list[Offer]:
+    ways = (("road", "A road"), ("railway", "A railway"), ("path", "A path"), ("water", "Water"), ("pipeline", "A pipeline"))
+    return [Offer("carries", "It carries", parameter="way", choices=ways), Offer("leave_out", "Leave it out of the graph")]
+
+
+def _offers_of_voltage(details: dict[str, Any]) -> list[Offer]:
+    offered = details["offered_v"]
+    words = f"Correct it to {', '.join(f'{value / 1_000:g} kV' for value in offered)}" if offered else "Correct the voltage"
+    choices = ((offered, words),) if offered else ()
+    return [Offer("set_voltages", words, parameter="voltages_v", choices=choices)]
+
+
+_OFFERS: dict[GapKind, Callable[[dict[str, Any]], list[Offer]]] = {
+    GapKind.LONG_SPAN: _offers_of_long_span,
+    GapKind.MISSING_SUPPORT: _offers_of_missing_supports,
+    GapKind.LINE_WITHOUT_TOWERS: lambda details: [
+        *_offers_of_missing_supports(details),
+        Offer("leave_out", "Leave the line out of the graph"),
+    ],
+    GapKind.TOWER_ON_NO_LINE: _offers_of_lone_tower,
+    GapKind.DEAD_END: _offers_of_dead_end,
+    GapKind.ENDS_APART: lambda details: [Offer("join", "Join the ends" if details["is_at_end"] else "Join the end to the line")],
+    GapKind.BRIDGE_WITHOUT_WAY: _offers_of_bridge,
+    GapKind.IMPOSSIBLE_VOLTAGE: _offers_of_voltage,
+}
+_BUILDERS: dict[str, Callable[[DataGap, dict[str, Any]], list[Change]]] = {
+    "place_towers": towers_along_span,
+    "make_towers": towers_at_vertices,
+    "attach": attach_towers,
+    "leave_out": leave_out,
+    "join": joined_ends,
+    "join_to_network": join_to_network,
+    "carries": bridge_carries,
+    "set_voltages": with_voltages,
+}
