@@ -1,0 +1,137 @@
+"""Zone files and roll-backs of zone sets as proposals."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from django.contrib.gis.geos import GEOSGeometry
+
+from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, ZoneSet, ZoneSetVersion
+from inspection.services.facts import differing, zone_facts
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from inspection.services.zone_import import (
+    import_zones,
+    make_so,
+    read_zone_file,
+    refuse_if_elsewhere,
+    set_name_of,
+    zone_counts,
+)
+from inspection.services.zone_sets import ZoneDifference, difference_of, record_facts, records_of_version
+from inspection.zones.records import ZoneRecord
+from inspection.zones.zone_file import ZoneFileError
+from workspace.models import User
+
+
+def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
+    """What the file, or the version that parameters name, would change in its set. Raises FileRefused."""
+    replace_edited = bool(parameters.get("replace_edited"))
+    if path is None:
+        version = _version(parameters)
+        records, _ = records_of_version(version)
+        found = difference_of(version.zone_set, records, replace_edited=True)
+        summary = {"set": version.zone_set.name, "version": version.number, "layers": len(records)}
+        return Reading(summary, found.numbers, tuple(_changes(found)))
+    progress("reading the zones", 0.1)
+    with _faults_as_refusal():
+        content, _ = read_zone_file(path)
+        name = set_name_of(path, _set_name(parameters))
+        zone_set = ZoneSet.objects.filter(name=name).first()
+        if not parameters.get("replace_all"):
+            refuse_if_elsewhere(zone_set, content)
+    progress("comparing", 0.6)
+    found = difference_of(zone_set, content.zones, replace_edited=replace_edited)
+    summary = zone_counts(content) | {"set": name, "is_new_set": zone_set is None or not zone_set.zones.exists()}
+    return Reading(summary, found.numbers, tuple(_changes(found)))
+
+
+def apply(
+    *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
+) -> DataImport:
+    """Make the set what the file or the version says. Raises FileRefused."""
+    progress("writing the zones", 0.5)
+    if path is None:
+        return _roll_back(_version(parameters), applied_by)
+    with _faults_as_refusal():
+        return import_zones(
+            path=path, set_name=set_name_of(path, _set_name(parameters)), imported_by=applied_by,
+            replace_edited=bool(parameters.get("replace_edited")), replace_all=bool(parameters.get("replace_all")), provenance=provenance,
+        )  # fmt: skip
+
+
+def _roll_back(version: ZoneSetVersion, actor: User | None) -> DataImport:
+    zone_set = version.zone_set
+    records, edited = records_of_version(version)
+    found = difference_of(zone_set, records, replace_edited=True)
+    origin = version.data_import
+    data_import = DataImport.objects.create(
+        kind=ImportKind.ZONES, file_name=f"{zone_set.name}, version {version.number}"[:255], sha256=origin.sha256 if origin else "",
+        attribution=origin.attribution if origin else "", licence=origin.licence if origin else "", imported_by=actor,
+        source_address=origin.source_address if origin else "", fetched_at=origin and origin.fetched_at,
+        is_synthetic=bool(origin and origin.is_synthetic), counts=found.numbers | {"layers": len(records)},
+    )  # fmt: skip
+    make_so(zone_set, found, data_import=data_import, actor=actor, edited=edited)
+    ZoneSet.objects.filter(pk=zone_set.pk).update(data_import=data_import)
+    return data_import
+
+
+def _version(parameters: dict[str, Any]) -> ZoneSetVersion:
+    version = (
+        ZoneSetVersion.objects.select_related("zone_set", "data_import")
+        .filter(zone_set=parameters.get("set"), number=parameters.get("version"))
+        .first()
+    )
+    if version is None:
+        raise FileRefused([Fault("version", "this version of the set is no longer there")])
+    return version
+
+
+def _set_name(parameters: dict[str, Any]) -> str | None:
+    name = parameters.get("set_name")
+    if name is None or (isinstance(name, str) and name.strip()):
+        return name and name.strip()
+    raise FileRefused([Fault("set_name", "the name of the set is a text")])
+
+
+@contextmanager
+def _faults_as_refusal() -> Iterator[None]:
+    try:
+        yield
+    except ZoneFileError as error:
+        raise FileRefused(
+            Fault(fault.place, fault.message, (fault.position.lon, fault.position.lat) if fault.position else None)
+            for fault in error.faults
+        ) from error
+
+
+def _changes(found: ZoneDifference) -> Iterator[Change]:
+    for record in found.new:
+        yield Change(ChangeAction.NEW, "zone", _label(record), geometry=_drawn(record), after=_shown(record_facts(record)))
+    for zone, record in found.changed:
+        before, after = differing(_shown(zone_facts(zone)), _shown(record_facts(record)))
+        yield Change(ChangeAction.CHANGED, "zone", _label(record), zone.pk, _drawn(record), before, after)
+    for zone in found.vanished:
+        yield Change(ChangeAction.VANISHED, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
+    for zone, record in found.kept:
+        yield _kept(zone, record)
+
+
+def _kept(zone: NoFlyZone, record: ZoneRecord | None) -> Change:
+    if record is None:
+        return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
+    before, after = differing(_shown(zone_facts(zone)), _shown(record_facts(record)))
+    return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before, after)
+
+
+def _shown(facts: dict[str, Any]) -> dict[str, Any]:
+    """Without what only programs read; a changed geometry is on the map."""
+    return {name: value for name, value in facts.items() if name not in {"source_heights", "properties", "zone_set_id", "is_edited"}}
+
+
+def _label(zone: NoFlyZone | ZoneRecord) -> str:
+    return zone.name if zone.layer == 0 else f"{zone.name}, layer {zone.layer + 1}"
+
+
+def _drawn(record: ZoneRecord) -> GEOSGeometry:
+    return GEOSGeometry(memoryview(record.geometry.wkb), srid=4326)

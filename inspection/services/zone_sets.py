@@ -1,0 +1,181 @@
+"""The zones of one source: what another file would change in them, making it so, and every state that a set has had."""
+
+import json
+import zlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import shapely
+from django.db import connection
+from django.db.models import Max
+
+from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion
+from inspection.services.facts import zone_facts
+from inspection.zones.records import HeightBand, ZoneRecord
+from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
+
+_BATCH = 1_000
+_COLUMNS = (
+    "identifier", "layer", "name", "geometry", "restriction", "reason", "lower_limit_m", "lower_reference", "upper_limit_m",
+    "upper_reference", "source_heights", "circle", "schedule", "properties", "is_edited",
+)  # fmt: skip
+_STAGING = """
+CREATE TEMPORARY TABLE zone_staging (
+    identifier text, layer smallint, name text, geometry geometry, restriction text, reason text, lower_limit_m double precision,
+    lower_reference text, upper_limit_m double precision, upper_reference text, source_heights jsonb, circle jsonb, schedule jsonb,
+    properties jsonb, is_edited boolean
+) ON COMMIT DROP
+"""
+_COPY = f"COPY zone_staging ({', '.join(_COLUMNS)}) FROM STDIN"
+_MERGE = f"""
+INSERT INTO inspection_noflyzone ({", ".join(_COLUMNS)}, zone_set_id, updated_at)
+SELECT {", ".join(_COLUMNS)}, %(zone_set)s, now() FROM zone_staging
+ON CONFLICT (zone_set_id, identifier, layer)
+DO UPDATE SET updated_at = now(), revision = inspection_noflyzone.revision + 1,
+              {", ".join(f"{column} = EXCLUDED.{column}" for column in _COLUMNS[2:])}
+"""  # noqa: S608 -- column names only
+
+Key = tuple[str, int]
+
+
+@dataclass
+class ZoneDifference:
+    """What other records would change in a set. kept: edited by hand, and the source now says something else, or nothing."""
+
+    new: list[ZoneRecord] = field(default_factory=list)
+    changed: list[tuple[NoFlyZone, ZoneRecord]] = field(default_factory=list)
+    vanished: list[NoFlyZone] = field(default_factory=list)
+    kept: list[tuple[NoFlyZone, ZoneRecord | None]] = field(default_factory=list)
+    confirmed: list[NoFlyZone] = field(default_factory=list)  # edited, and the source now says the same
+    unchanged: int = 0
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        return {
+            "new": len(self.new), "changed": len(self.changed), "vanished": len(self.vanished), "kept": len(self.kept),
+            "unchanged": self.unchanged,
+        }  # fmt: skip
+
+    @property
+    def changes_something(self) -> bool:
+        return bool(self.new or self.changed or self.vanished)
+
+
+def difference_of(zone_set: ZoneSet | None, records: Iterable[ZoneRecord], *, replace_edited: bool = False) -> ZoneDifference:
+    """Compare the set's rows with what a file or a version says; edited rows are kept unless they are to be replaced."""
+    found = ZoneDifference()
+    held = {(zone.identifier, zone.layer): zone for zone in zone_set.zones.all()} if zone_set else {}
+    for record in records:
+        zone = held.pop((record.identifier, record.layer), None)
+        if zone is None:
+            found.new.append(record)
+        elif says_the_same(zone, record):
+            found.unchanged += 1
+            if zone.is_edited:
+                found.confirmed.append(zone)
+        elif zone.is_edited and not replace_edited:
+            found.kept.append((zone, record))
+        else:
+            found.changed.append((zone, record))
+    for zone in held.values():
+        if zone.is_edited and not replace_edited:
+            found.kept.append((zone, None))
+        else:
+            found.vanished.append(zone)
+    return found
+
+
+def write_difference(zone_set: ZoneSet, found: ZoneDifference, *, actor: User | None, edited: frozenset[Key] = frozenset()) -> None:
+    """Make the set what the difference says, under hold_ground; `edited` are the records that count as edited by hand."""
+    written = [*found.new, *(record for _, record in found.changed)]
+    entries = [_entry(actor, "vanished", zone, zone_facts(zone), None) for zone in found.vanished]
+    for zone, record in found.changed:
+        before = zone_facts(zone)
+        entries.append(_entry(actor, "changed", zone, before, before | record_facts(record)))
+    AuditEntry.objects.bulk_create(entries, batch_size=_BATCH)
+    NoFlyZone.objects.filter(pk__in=[zone.pk for zone in found.vanished]).delete()
+    NoFlyZone.objects.filter(pk__in=[zone.pk for zone in found.confirmed]).update(is_edited=False)
+    with connection.cursor() as cursor:
+        cursor.execute(_STAGING)
+        with cursor.copy(_COPY) as copy:
+            for record in written:
+                copy.write_row(_row(record, is_edited=(record.identifier, record.layer) in edited))
+        cursor.execute(_MERGE, {"zone_set": zone_set.pk})
+        cursor.execute("DROP TABLE zone_staging")  # before the end of the transaction: several imports may share one
+
+
+def store_version(zone_set: ZoneSet, *, data_import: DataImport | None, created_by: User | None) -> ZoneSetVersion:
+    """Keep the set's zones as they are now."""
+    zones = [zone_facts(zone) for zone in zone_set.zones.order_by("identifier", "layer")]
+    last = zone_set.versions.aggregate(last=Max("number"))["last"] or 0
+    return ZoneSetVersion.objects.create(
+        zone_set=zone_set, number=last + 1, data_import=data_import, zones=len(zones), created_by=created_by,
+        content=zlib.compress(json.dumps(zones).encode(), level=6),
+    )  # fmt: skip
+
+
+def keep_what_was(zone_set: ZoneSet) -> None:
+    """Before a set is changed: store it as a version if its present state is in none."""
+    if not zone_set.zones.exists():
+        return
+    last = zone_set.versions.first()
+    if last is None or zone_set.zones.filter(updated_at__gt=last.created_at).exists() or zone_set.zones.count() != last.zones:
+        store_version(zone_set, data_import=zone_set.data_import, created_by=None)
+
+
+def records_of_version(version: ZoneSetVersion) -> tuple[list[ZoneRecord], frozenset[Key]]:
+    """What the version says, and which of it had been edited by hand."""
+    facts = json.loads(zlib.decompress(bytes(version.content)))
+    edited = frozenset((zone["identifier"], zone["layer"]) for zone in facts if zone["is_edited"])
+    return [_record(zone) for zone in facts], edited
+
+
+def says_the_same(zone: NoFlyZone, record: ZoneRecord) -> bool:
+    if any(getattr(zone, name) != value for name, value in _facts(record).items()):
+        return False
+    return bool(shapely.from_wkb(bytes(zone.geometry.wkb)).equals_exact(record.geometry, 0.0))
+
+
+def record_facts(record: ZoneRecord) -> dict[str, Any]:
+    """The same keys as zone_facts gives them, as far as a record has them."""
+    geometry = json.loads(shapely.to_geojson(record.geometry))
+    return _facts(record) | {"geometry": {"type": geometry["type"], "coordinates": geometry["coordinates"]}}
+
+
+def _facts(record: ZoneRecord) -> dict[str, Any]:
+    band = record.band
+    return {
+        "name": record.name, "restriction": record.restriction, "reason": record.reason, "lower_limit_m": band.lower_limit_m,
+        "lower_reference": band.lower_reference, "upper_limit_m": band.upper_limit_m, "upper_reference": band.upper_reference,
+        "source_heights": band.as_stated, "circle": record.circle, "schedule": record.schedule, "properties": record.properties,
+    }  # fmt: skip
+
+
+def _row(record: ZoneRecord, *, is_edited: bool) -> Sequence[Any]:
+    geometry = shapely.to_wkb(shapely.set_srid(record.geometry, 4326), hex=True, include_srid=True)
+    values: dict[str, Any] = {
+        "identifier": record.identifier, "layer": record.layer, "geometry": geometry, "is_edited": is_edited, **_facts(record),
+    }  # fmt: skip
+    for column in ("source_heights", "circle", "schedule", "properties"):
+        values[column] = None if values[column] is None else json.dumps(values[column])
+    return [values[column] for column in _COLUMNS]
+
+
+def _record(facts: dict[str, Any]) -> ZoneRecord:
+    band = HeightBand(
+        facts["lower_limit_m"], facts["lower_reference"], facts["upper_limit_m"], facts["upper_reference"], facts["source_heights"]
+    )
+    geometry = shapely.from_geojson(json.dumps(facts["geometry"]))
+    return ZoneRecord(
+        identifier=facts["identifier"], layer=facts["layer"], name=facts["name"], geometry=geometry,
+        band=band, restriction=facts["restriction"], reason=facts["reason"], circle=facts["circle"], schedule=facts["schedule"],
+        properties=facts["properties"],
+    )  # fmt: skip
+
+
+def _entry(actor: User | None, action: str, zone: NoFlyZone, before: dict[str, Any], after: dict[str, Any] | None) -> AuditEntry:
+    return AuditEntry(
+        organisation_id=actor.organisation_id if actor else DEFAULT_ORGANISATION_ID, actor=actor, action=action, subject_type="zone",
+        subject_id=str(zone.pk), before=before, after=after,
+    )  # fmt: skip
