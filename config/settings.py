@@ -269,6 +269,9 @@ BASE_MAP_ATTRIBUTION = os.environ.get("SPANWISE_BASE_MAP_ATTRIBUTION", "© OpenS
 SATELLITE_TILES = os.environ.get("SPANWISE_SATELLITE_TILES", "")
 SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 
+# Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
+OUTGOING_ALLOWED_HOSTS = _list("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
+
 LOGGING = {
     "version": 1,
     "disable_existing_loggers": False,
