@@ -162,7 +162,10 @@ STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".s
 
 # What users may send in one request. Files come in as uploads, part by part.
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
-LARGEST_UPLOAD_BYTES = int(_float("SPANWISE_LARGEST_UPLOAD_MIB", 512) * 1024 * 1024)
+LARGEST_FILE_BYTES = {
+    kind: int(_float(f"SPANWISE_LARGEST_{kind.upper()}_MIB", mebibytes) * 1024 * 1024)
+    for kind, mebibytes in {"osm": 512, "terrain": 512, "assets": 128, "zones": 16}.items()
+}
 
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [

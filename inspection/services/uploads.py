@@ -1,15 +1,18 @@
 """Files on their way in: received part by part, kept in the database, given to a reader as a file that does not stay."""
 
+import fcntl
 import hashlib
+import os
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path, PurePosixPath
 
 from django.conf import settings
 from django.db import transaction
+from django.db.models import Q
 from django.utils import timezone
 
 from inspection.models import ImportProposal, ProposalState, Upload, UploadPart
@@ -19,6 +22,7 @@ PART_BYTES = 1024 * 1024
 KEPT = timedelta(hours=24)  # an upload that nobody went on with, or that was decided on
 _FOLDER_PREFIX = "spanwise-upload-"
 _OPEN_STATES = (ProposalState.READING, ProposalState.READY, ProposalState.APPLYING)
+_DECIDED_STATES = (ProposalState.APPLIED, ProposalState.DISCARDED)
 
 
 class UploadRefused(ValueError):
@@ -30,15 +34,30 @@ class UploadTooLarge(UploadRefused):
 
 
 class UploadGap(UploadRefused):
-    """Bytes before these are missing; the upload says how many it has."""
+    """Bytes before these are missing, or some of these are here already; the upload says how many it has."""
+
+
+class UploadInUse(UploadRefused):
+    """Somebody still has to look at what the file would change."""
 
 
 def begin_upload(*, file_name: str, size_bytes: int, created_by: User | None) -> Upload:
     """Raises UploadTooLarge."""
-    if size_bytes > settings.LARGEST_UPLOAD_BYTES:
-        most = settings.LARGEST_UPLOAD_BYTES / 2**20
-        raise UploadTooLarge(f"The file has {size_bytes / 2**20:.0f} MiB; at most {most:.0f} MiB are taken. Cut it into parts.")
+    _refuse_more_than(max(settings.LARGEST_FILE_BYTES.values()), size_bytes)
     return Upload.objects.create(file_name=plain_name(file_name), size_bytes=size_bytes, created_by=created_by)
+
+
+def check_size_for(kind: str, size_bytes: int) -> None:
+    """Each kind of data has its own limit. Raises UploadTooLarge."""
+    _refuse_more_than(settings.LARGEST_FILE_BYTES[kind], size_bytes)
+
+
+def delete_upload(*, upload: Upload) -> None:
+    """Raises UploadInUse."""
+    with transaction.atomic():
+        if upload.proposals.filter(state__in=_OPEN_STATES).exists():
+            raise UploadInUse("The file is part of an import that is not decided yet. Discard that first.")
+        upload.delete()
 
 
 def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
@@ -53,7 +72,7 @@ def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
         if end <= held.received_bytes:
             return held  # sent again because its answer was lost
         if first_byte != held.received_bytes:
-            raise UploadGap(f"Go on from byte {held.received_bytes}.")
+            raise UploadGap(f"The part begins at byte {first_byte}; go on from byte {held.received_bytes}.")
         UploadPart.objects.create(upload=held, first_byte=first_byte, content=content)
         held.received_bytes = end
         if held.is_complete:
@@ -83,8 +102,7 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
     """The upload as a file of its own name that only this user may read, gone afterwards. Raises UploadRefused if it is not whole."""
     if not upload.is_complete:
         raise UploadRefused("The file has not arrived whole.")
-    folder = Path(tempfile.mkdtemp(prefix=_FOLDER_PREFIX, dir=upload_folder()))  # mode 0700
-    try:
+    with _private_folder() as folder:
         path = folder / plain_name(upload.file_name)
         digest = hashlib.sha256()
         with path.open("wb") as file:
@@ -94,8 +112,6 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
         if digest.hexdigest() != upload.sha256:
             raise UploadRefused("The stored file is damaged. Send it again.")
         yield path
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def upload_folder() -> Path:
@@ -112,16 +128,64 @@ def plain_name(file_name: str) -> str:
 
 
 def forget_old_uploads() -> int:
-    """Delete uploads that nothing needs any more, and files that a killed worker has left."""
-    now = timezone.now()
-    for folder in upload_folder().glob(f"{_FOLDER_PREFIX}*"):
-        with suppress(OSError):
-            if now.timestamp() - folder.stat().st_mtime > settings.CELERY_TASK_TIME_LIMIT:
-                shutil.rmtree(folder, ignore_errors=True)
-    needed = ImportProposal.objects.filter(state__in=_OPEN_STATES, upload__isnull=False).values("upload")
-    old = Upload.objects.filter(updated_at__lt=now - KEPT).exclude(pk__in=needed)
-    deleted, _ = old.delete()
+    """Delete uploads that nothing needs any more, and files that a killed worker has left. Returns how many rows went."""
+    with _folder_lock():
+        _remove_left_folders()
+    states = ImportProposal.objects.filter(upload__isnull=False)
+    open_ones = states.filter(state__in=_OPEN_STATES).values("upload")
+    is_old = Q(updated_at__lt=timezone.now() - KEPT) | Q(pk__in=states.filter(state__in=_DECIDED_STATES).values("upload"))
+    deleted, _ = Upload.objects.filter(is_old).exclude(pk__in=open_ones).delete()
     return deleted
+
+
+@contextmanager
+def _private_folder() -> Iterator[Path]:
+    """A folder that is gone afterwards: removed here, or, after a kill -9, by the next one who makes a folder.
+
+    The process that uses a folder holds a lock on it, and the system takes the lock back with the process.
+    """
+    with _folder_lock():
+        _remove_left_folders()
+        folder = Path(tempfile.mkdtemp(prefix=_FOLDER_PREFIX, dir=upload_folder()))  # mode 0700
+        held = os.open(folder, os.O_RDONLY)
+        fcntl.flock(held, fcntl.LOCK_EX)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        os.close(held)
+
+
+@contextmanager
+def _folder_lock() -> Iterator[None]:
+    handle = os.open(upload_folder(), os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _remove_left_folders() -> None:
+    for folder in upload_folder().glob(f"{_FOLDER_PREFIX}*"):
+        try:
+            handle = os.open(folder, os.O_RDONLY)
+        except FileNotFoundError:
+            continue
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(folder, ignore_errors=True)
+        except BlockingIOError:
+            pass  # somebody reads from it
+        finally:
+            os.close(handle)
+
+
+def _refuse_more_than(most_bytes: int, size_bytes: int) -> None:
+    if size_bytes > most_bytes:
+        raise UploadTooLarge(
+            f"The file has {size_bytes / 2**20:,.1f} MiB; at most {most_bytes / 2**20:,.0f} MiB are taken. Cut it into parts."
+        )
 
 
 def _sha256(upload: Upload) -> str:

@@ -23,6 +23,7 @@ from inspection.serializers.imports import (
     proposal_json,
 )
 from inspection.services.proposals import pipeline
+from inspection.services.uploads import UploadTooLarge, check_size_for
 from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone
 from workspace.errors import ApiProblem
@@ -110,6 +111,10 @@ class ImportList(APIView):
             raise invalid("upload", "There is no such upload.") from error
         if not upload.is_complete:
             raise invalid("upload", f"Only {upload.received_bytes} of {upload.size_bytes} bytes have arrived.")
+        try:
+            check_size_for(values["kind"], upload.size_bytes)
+        except UploadTooLarge as error:
+            raise ApiProblem(413, "too_large", str(error)) from error
         return {"upload": upload, "file_name": upload.file_name}
 
 

@@ -12,7 +12,7 @@ from rest_framework.views import APIView
 from inspection.models import Upload
 from inspection.selectors.imports import upload_of_id
 from inspection.serializers.imports import UploadInputSerializer, UploadSerializer, upload_json
-from inspection.services.uploads import UploadGap, UploadRefused, UploadTooLarge, begin_upload, receive_part
+from inspection.services.uploads import UploadGap, UploadInUse, UploadRefused, UploadTooLarge, begin_upload, delete_upload, receive_part
 from workspace.errors import ApiProblem
 from workspace.parsers import OctetParser
 from workspace.permissions import CURATORS, RolePermission
@@ -54,9 +54,16 @@ class UploadDetail(APIView):
     def get(self, request: Request, upload_id: UUID) -> Response:
         return Response(upload_json(_upload(upload_id)))
 
-    @extend_schema(operation_id="delete_upload", summary="Forget a file", responses={204: None})
+    @extend_schema(
+        operation_id="delete_upload",
+        summary="Forget a file",
+        responses={204: None, 409: OpenApiResponse(description="An open import needs it.")},
+    )
     def delete(self, request: Request, upload_id: UUID) -> Response:
-        _upload(upload_id).delete()
+        try:
+            delete_upload(upload=_upload(upload_id))
+        except UploadInUse as error:
+            raise ApiProblem(409, "in_use", str(error)) from error
         return Response(status=204)
 
 
@@ -76,7 +83,7 @@ class UploadBytes(APIView):
         try:
             upload = receive_part(upload=upload, first_byte=first_byte, content=request.data)
         except UploadGap as error:
-            raise ApiProblem(409, "gap", str(error), details={"received_bytes": upload.received_bytes}) from error
+            raise ApiProblem(409, "gap", str(error), details={"received_bytes": upload_of_id(upload.pk).received_bytes}) from error
         except UploadRefused as error:
             raise ApiProblem(400, "invalid", str(error)) from error
         return Response(upload_json(upload))

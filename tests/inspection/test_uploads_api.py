@@ -77,7 +77,7 @@ def test_a_part_that_is_too_large_is_refused(client: Client) -> None:
 
 
 def test_a_file_over_the_limit_is_refused_before_a_byte_is_sent(client: Client, settings: Any) -> None:
-    settings.LARGEST_UPLOAD_BYTES = 1024 * 1024
+    settings.LARGEST_FILE_BYTES = dict.fromkeys(settings.LARGEST_FILE_BYTES, 1024 * 1024)
     answer = begin(client, 1024 * 1024 + 1)
     assert answer.status_code == 413
     assert "at most 1 MiB" in answer.json()["error"]["message"]

@@ -1,5 +1,6 @@
 """The way of a file from upload to ground: proposed, read, looked at, applied or discarded. What a kind of data needs is in its module."""
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -144,8 +145,8 @@ def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job:
         for fault in faults[:MOST_FAULTS_KEPT]
     ]
     with transaction.atomic():
-        if job is not None:
-            finish_job(job=job, message="Refused")
+        if job is not None and not finish_job(job=job, message="Refused"):
+            raise LostJob
         open_states = (ProposalState.READING, ProposalState.APPLYING)
         ImportProposal.objects.filter(pk=proposal.pk, state__in=open_states).update(state=ProposalState.REFUSED, faults=listed)
 
@@ -208,14 +209,16 @@ def _differs_now(proposal: ImportProposal, job: Job, revision: int, progress: Pr
 
 
 def _fingerprints(changes: tuple[Change, ...]) -> list[tuple[Any, ...]]:
-    return sorted(
-        (change.action, change.subject, change.subject_id or 0, change.label, str(change.before)) for change in _first_of_each(changes)
-    )
+    return sorted(_fingerprint(_row(None, change)) for change in _first_of_each(changes))
 
 
 def _stored_fingerprints(proposal: ImportProposal) -> list[tuple[Any, ...]]:
-    rows = proposal.changes.values_list("action", "subject", "subject_id", "label", "before")
-    return sorted((action, subject, subject_id or 0, label, str(before)) for action, subject, subject_id, label, before in rows)
+    return sorted(_fingerprint(row) for row in proposal.changes.all())
+
+
+def _fingerprint(row: ProposedChange) -> tuple[Any, ...]:
+    facts = [json.dumps(value, sort_keys=True) for value in (row.before, row.after)]
+    return (row.action, row.subject, row.subject_id or 0, row.label, *facts)
 
 
 def _store_reading(proposal: ImportProposal, job: Job, reading: Reading, revision: int, message: str = "Read") -> None:
@@ -236,7 +239,7 @@ def _first_of_each(changes: tuple[Change, ...]) -> list[Change]:
     return [change for _, group in groupby(ordered, key=lambda change: change.action) for change in list(group)[:MOST_CHANGES_KEPT]]
 
 
-def _row(proposal: ImportProposal, change: Change) -> ProposedChange:
+def _row(proposal: ImportProposal | None, change: Change) -> ProposedChange:
     return ProposedChange(
         proposal=proposal, action=change.action, subject=change.subject, subject_id=change.subject_id, label=change.label[:300],
         geometry=change.geometry, before=change.before, after=change.after,
