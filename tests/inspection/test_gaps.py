@@ -1,0 +1,351 @@
+"""Gaps of real data: found, kept over searches, repaired, and repaired still after the next import."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from django.contrib.gis.geos import LineString, Point
+from django.db import connection
+
+from inspection.data_gaps.network import Network
+from inspection.data_gaps.search import search
+from inspection.models import Asset, DataGap, GapSearch, GapState
+from inspection.selectors.gap_ground import gap_ground
+from inspection.services import find_gaps, import_osm
+from inspection.services.gaps import SEARCH_LOCK, dismiss_gap, gaps_are_current
+from inspection.services.repair_edits import CannotRepair
+from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
+from inspection.tasks import find_gaps as find_gaps_task
+from tests.inspection.ground import bridge, line, tower
+from tests.workspace.people import somebody
+from workspace.models import AuditEntry, Role
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def curator():
+    return somebody(Role.CURATOR)
+
+
+def counts(state=GapState.OPEN):
+    return Counter(DataGap.objects.filter(state=state).values_list("kind", flat=True))
+
+
+def mend(gap, curator, action=None, **parameters):
+    return repair_gap(gap=gap, action=action or offers_of(gap)[0].action, parameters=parameters, actor=curator)
+
+
+def state_of(gap):
+    return DataGap.objects.get(pk=gap.pk).state
+
+
+def test_nepal_has_its_long_spans(shared_data):
+    """README of the data: "a few spans are far longer than real spans (max 11.25 km), because towers there are not mapped yet".
+
+    On the great circle, that is; on the ellipsoid it is 11.27 km.
+    """
+    import_osm(path=shared_data("osm/nepal-power-2025.osm.pbf"))
+    find_gaps()
+    spans = sorted((gap.details["span_m"] for gap in DataGap.objects.filter(kind="long_span")), reverse=True)
+    assert spans[0] == pytest.approx(11_273, abs=1)
+    assert len(spans) == 128
+    assert min(spans) > 800
+    longest = DataGap.objects.get(kind="long_span", details__span_m=spans[0])
+    assert longest.details["is_impossible"]
+    found = counts()
+    assert (found["tower_on_no_line"], found["line_without_towers"], found["ends_apart"], found["dead_end"]) == (54, 8, 8, 124)
+    worst = list(DataGap.objects.values_list("cut_off_m", flat=True)[:50])
+    assert worst == sorted(worst, reverse=True)
+
+
+def test_columbus_has_its_untagged_vertices(shared_data):
+    """README of the data: 156 of the 731 nodes of its lines are no support, 21 %. Of these 17 are ends in substations."""
+    import_osm(path=shared_data("osm/columbus-ohio.osm.pbf"))
+    ground = gap_ground()
+    network = Network(ground)
+    bare = network.node_count - network.support_count
+    assert (bare, bare + int(network.is_carried.sum())) == (156, 731)
+    gaps = [gap for gap in search(ground) if gap.kind in {"missing_support", "line_without_towers"}]
+    places = {place for gap in gaps for place in map(tuple, [part.coords[0] for part in gap.geometry.geoms])}
+    excused = {tuple(place) for place in network.node_position[network.support_count :].tolist()} - places
+    assert (len(places), len(excused)) == (139, 17)
+    assert len(gaps) == 14
+    assert all(network.degree[np.flatnonzero((network.node_position == place).all(axis=1))].max() <= 1 for place in excused)
+
+
+def test_liechtenstein_has_few_gaps(shared_data):
+    import_osm(path=shared_data("osm/liechtenstein-2021.osm.pbf"))
+    find_gaps()
+    assert counts() == {"dead_end": 3, "bridge_without_way": 5, "missing_support": 1}
+
+
+def test_a_repair_is_kept_over_the_next_import(shared_data, curator):
+    path = shared_data("osm/nepal-power-2025.osm.pbf")
+    import_osm(path=path)
+    find_gaps()
+    gap = DataGap.objects.filter(kind="long_span").order_by("-details__span_m").first()
+    vertices = len(gap.asset.geometry.coords)
+    repaired = mend(gap, curator)
+    placed = gap.details["missing_towers"]
+    assert len(repaired.entries) == placed + 1
+    assert repaired.said == f"{placed} towers placed, 1 line changed."
+    find_gaps()
+    assert state_of(gap) == GapState.REPAIRED
+
+    again = import_osm(path=path)
+    assert again.counts["kept_edited"] == 1
+    assert len(Asset.objects.get(pk=gap.asset_id).geometry.coords) == vertices + placed
+    assert Asset.objects.filter(tags={"spanwise:placed": "by hand"}, vanished_at=None).count() == placed
+    find_gaps(force=True)
+    assert state_of(gap) == GapState.REPAIRED
+
+
+def test_a_repair_is_undone_whole(shared_data, curator):
+    import_osm(path=shared_data("osm/liechtenstein-2021.osm.pbf"))
+    find_gaps()
+    gap = DataGap.objects.get(kind="missing_support")
+    before = gap.asset.geometry.coords
+    repaired = mend(gap, curator)
+    find_gaps()
+    assert state_of(gap) == GapState.REPAIRED
+    made = Asset.objects.filter(tags__has_key="spanwise:placed")
+    assert made.count() == len(repaired.entries) == 3
+    assert set(made.values_list("line_id", flat=True)) == {gap.asset_id}
+    undo_repair(gap=gap, entries=repaired.entries, actor=curator)
+    assert made.count() == 0
+    assert Asset.objects.get(pk=gap.asset_id).geometry.coords == before
+    find_gaps()
+    assert state_of(gap) == GapState.OPEN
+
+
+def test_a_tower_made_of_a_vertex_is_the_one_that_a_later_file_has(shared_data, curator):
+    """It is known by the vertex's OSM node: no second one when OSM gets it too."""
+    path = shared_data("osm/liechtenstein-2021.osm.pbf")
+    import_osm(path=path)
+    find_gaps()
+    mend(DataGap.objects.get(kind="missing_support"), curator)
+    made = list(Asset.objects.filter(tags__has_key="spanwise:placed"))
+    nodes = set(made[0].line.node_osm_ids)
+    assert {tower.osm_id for tower in made} <= nodes
+    assert {tower.osm_type for tower in made} == {"n"}
+
+
+def long_line(**facts):
+    """Eleven towers 300 m apart, then a span of 2,400 m."""
+    places = [(10.0, 56.0 + 0.0027 * step) for step in range(11)] + [(10.0, 56.0 + 0.0027 * 18)]
+    for place in places:
+        tower(place)
+    return line(*places, voltages_v=[110_000], **facts)
+
+
+def drawn_search():
+    return find_gaps(force=True)
+
+
+def test_a_dismissed_gap_stays_dismissed_with_its_note(curator):
+    long_line()
+    drawn_search()
+    gap = DataGap.objects.get(kind="long_span")
+    dismiss_gap(gap=gap, note="A lake: the span is real.", actor=curator)
+    tower((10.5, 56.5))
+    drawn_search()
+    kept = DataGap.objects.get(pk=gap.pk)
+    assert (kept.state, kept.note, kept.decided_by) == (GapState.DISMISSED, "A lake: the span is real.", curator)
+
+
+def test_a_gap_that_is_gone_counts_as_repaired_and_opens_when_it_is_back():
+    row = long_line()
+    drawn_search()
+    gap = DataGap.objects.get(kind="long_span")
+    Asset.objects.filter(pk=row.pk).update(is_flyable=False)
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+    Asset.objects.filter(pk=row.pk).update(is_flyable=True)
+    drawn_search()
+    assert state_of(gap) == GapState.OPEN
+    assert DataGap.objects.filter(kind="long_span").count() == 1
+
+
+def test_towers_may_be_placed_where_they_were_seen(curator):
+    row = long_line()
+    drawn_search()
+    gap = DataGap.objects.get(kind="long_span")
+    seen = [[10.001, 56.0 + 0.0027 * 16], [10.0005, 56.0 + 0.0027 * 13]]
+    mend(gap, curator, positions=seen)
+    course = Asset.objects.get(pk=row.pk).geometry.coords
+    assert list(course[11:13]) == [tuple(seen[1]), tuple(seen[0])]
+    assert [tuple(map(tuple, [row.geometry.coords])) for row in Asset.objects.filter(tags__has_key="spanwise:placed").order_by("pk")] == [
+        (tuple(seen[1]),), (tuple(seen[0]),),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("positions", [[], [[10.0]], [["a", "b"]], [[10.0, float("nan")]], [[200.0, 56.0]], "x", [[11.0, 56.04]]])
+def test_places_that_are_none_are_refused(curator, positions):
+    long_line()
+    drawn_search()
+    before = AuditEntry.objects.count()
+    with pytest.raises(CannotRepair):
+        mend(DataGap.objects.get(kind="long_span"), curator, positions=positions)
+    assert (AuditEntry.objects.count(), state_of(DataGap.objects.get(kind="long_span"))) == (before, GapState.OPEN)
+
+
+def test_a_line_that_changed_meanwhile_is_not_repaired_blindly(curator):
+    row = long_line()
+    drawn_search()
+    Asset.objects.filter(pk=row.pk).update(geometry=LineString((10.0, 56.0), (10.0, 56.01), srid=4326))
+    with pytest.raises(CannotRepair, match="has changed since"):
+        mend(DataGap.objects.get(kind="long_span"), curator)
+
+
+def test_of_two_curators_the_second_is_told(curator):
+    long_line()
+    drawn_search()
+    gap = DataGap.objects.get(kind="long_span")
+    mend(gap, curator)
+    with pytest.raises(CannotRepair, match="Somebody has decided"):
+        repair_gap(gap=gap, action="place_towers", parameters={}, actor=somebody(Role.CURATOR))
+
+
+def test_ends_that_miss_each_other_are_joined(curator):
+    """The end without a tower moves; the other one, which has a tower, stays."""
+    one = line((10.0, 56.0), (10.0, 56.01), (10.0, 56.02))
+    other = line((10.00003, 56.02), (10.01, 56.02))
+    tower((10.00003, 56.02))
+    drawn_search()
+    gap = DataGap.objects.get(kind="ends_apart")
+    mend(gap, curator)
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+    ends = {Asset.objects.get(pk=one.pk).geometry.coords[-1], Asset.objects.get(pk=other.pk).geometry.coords[0]}
+    assert len(ends) == 1 or Asset.objects.get(pk=other.pk).geometry.coords[0] == (10.0, 56.02)
+    assert Network(gap_ground()).component.max() == 0
+
+
+def test_an_end_beside_a_span_gets_a_vertex_there(curator):
+    through = line((10.0, 56.0), (10.0, 56.01))
+    branch = line((10.00004, 56.004), (10.01, 56.004))
+    drawn_search()
+    gap = DataGap.objects.get(kind="ends_apart")
+    repaired = mend(gap, curator)
+    assert repaired.said == "2 lines changed."
+    assert len(Asset.objects.get(pk=through.pk).geometry.coords) == 3
+    assert Asset.objects.get(pk=branch.pk).geometry.coords[0] == Asset.objects.get(pk=through.pk).geometry.coords[1]
+    assert Network(gap_ground()).component.max() == 0
+
+
+def test_a_dead_end_is_led_on_to_the_network(curator):
+    one, other = line((10.0, 56.0), (10.0, 56.01)), line((10.0, 56.02), (10.0, 56.03))
+    drawn_search()
+    gap = DataGap.objects.filter(kind="dead_end", details__nearest_m__lt=1_200, asset=one.pk).first()
+    mend(gap, curator)
+    assert Asset.objects.get(pk=one.pk).geometry.coords[-1] == other.geometry.coords[0]
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+
+
+def test_a_lone_tower_joins_the_line_beside_it(curator):
+    row = line((10.0, 56.0), (10.0, 56.003), (10.0, 56.006))
+    for place in row.geometry.coords:
+        tower(place)
+    tower((10.0002, 56.0045))
+    drawn_search()
+    gap = DataGap.objects.get(kind="tower_on_no_line")
+    mend(gap, curator)
+    assert Asset.objects.get(pk=row.pk).geometry.coords[2] == (10.0002, 56.0045)
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+
+
+def test_what_is_left_out_is_no_gap_any_more(curator):
+    lone = tower((10.0, 56.0))
+    drawn_search()
+    gap = DataGap.objects.get(kind="tower_on_no_line")
+    mend(gap, curator, "leave_out")
+    assert not Asset.objects.get(pk=lone.pk).is_flyable
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+
+
+def test_a_voltage_is_corrected_as_offered_or_as_typed(curator):
+    offered = line((10.0, 56.0), (10.0, 56.001), voltages_v=[110], tags={"voltage": "110"})
+    typed = line((11.0, 56.0), (11.0, 56.001), voltages_v=[220], tags={"voltage": "220"})
+    drawn_search()
+    mend(DataGap.objects.get(kind="impossible_voltage", asset=offered), curator)
+    mend(DataGap.objects.get(kind="impossible_voltage", asset=typed), curator, voltages_v=[132_000])
+    assert list(Asset.objects.filter(pk__in=[offered.pk, typed.pk]).order_by("pk").values_list("max_voltage_v", flat=True)) == [
+        110_000, 132_000,
+    ]  # fmt: skip
+    drawn_search()
+    assert counts(GapState.REPAIRED)["impossible_voltage"] == 2
+
+
+@pytest.mark.parametrize("volts", [[], [0], [True], ["110000"], [1_200_001], list(range(1_000, 8_000, 1_000)), None])
+def test_voltages_that_cannot_be_are_refused(curator, volts):
+    line((10.0, 56.0), (10.0, 56.001), voltages_v=[110])
+    drawn_search()
+    with pytest.raises(CannotRepair):
+        mend(DataGap.objects.get(kind="impossible_voltage"), curator, voltages_v=volts)
+
+
+def test_a_bridge_is_told_what_it_carries(curator):
+    row = bridge(tags={"man_made": "bridge"})
+    drawn_search()
+    gap = DataGap.objects.get(kind="bridge_without_way")
+    with pytest.raises(CannotRepair):
+        mend(gap, curator, "carries", way="cows")
+    mend(gap, curator, "carries", way="railway")
+    assert Asset.objects.get(pk=row.pk).carries == "a railway"
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+
+
+def test_a_preview_shows_what_would_be_drawn_and_stores_nothing():
+    long_line()
+    drawn_search()
+    before = list(Asset.objects.order_by("pk").values())
+    preview = preview_of(gap=DataGap.objects.get(kind="long_span"), action="place_towers", parameters={})
+    roles = Counter((feature["properties"]["role"], feature["properties"]["is_new"]) for feature in preview["features"])
+    assert roles == {("line", False): 1, ("tower", True): 7}
+    assert list(Asset.objects.order_by("pk").values()) == before
+
+
+def test_the_search_runs_once_for_each_ground(curator):
+    assert find_gaps() is None  # no ground yet
+    long_line()
+    drawn_search()
+    assert gaps_are_current()
+    assert find_gaps() is None
+    mend(DataGap.objects.get(kind="long_span"), curator)
+    assert not gaps_are_current()
+    find_gaps_task()
+    assert gaps_are_current()
+    assert GapSearch.objects.get().found == DataGap.objects.filter(state=GapState.OPEN).count()
+
+
+@pytest.mark.django_db(transaction=True)
+def test_one_search_runs_at_a_time():
+    long_line()
+    other = connection.copy()
+    try:
+        with other.cursor() as cursor:
+            cursor.execute("SELECT pg_advisory_lock(%s)", [SEARCH_LOCK])
+        assert find_gaps(force=True) is None
+        assert not DataGap.objects.exists()
+    finally:
+        other.close()
+
+
+def test_a_gap_goes_with_an_asset_that_is_deleted():
+    lone = tower((10.0, 56.0))
+    drawn_search()
+    lone.delete()
+    assert not DataGap.objects.exists()
+
+
+def test_a_support_moved_by_a_hand_keeps_its_key():
+    lone = tower((10.0, 56.0), osm_id=77)
+    drawn_search()
+    Asset.objects.filter(pk=lone.pk).update(is_edited=True, geometry=Point(10.0001, 56.0, srid=4326))
+    drawn_search()
+    assert list(DataGap.objects.values_list("key", "state")) == [("tower_on_no_line n77", "open")]
