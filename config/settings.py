@@ -8,6 +8,7 @@ from typing import Any
 
 import dj_database_url
 
+from config.mail import mail_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from inspection.graph.rules import LinkingRules
 from missions.flight_plan.rules import FlightRules
@@ -150,6 +151,11 @@ AUTH_PASSWORD_VALIDATORS = [
 LOGIN_URL = "sign-in"
 LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"
+
+PASSWORD_RESET_TIMEOUT = 3_600  # seconds that the link of a mail works
+
+globals().update(mail_settings(os.environ.get("SPANWISE_EMAIL_URL", "console://")))
+DEFAULT_FROM_EMAIL = os.environ.get("SPANWISE_EMAIL_FROM", "Spanwise <spanwise@localhost>")
 
 LANGUAGE_CODE = "en-gb"
 TIME_ZONE = "UTC"

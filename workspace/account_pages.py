@@ -1,0 +1,66 @@
+"""Pages of somebody's own account: a new password, by mail for whoever has lost it."""
+
+from typing import Any
+
+from django.contrib.auth import views
+from django.contrib.auth.forms import PasswordResetForm
+from django.core.exceptions import ValidationError
+from django.urls import reverse_lazy
+
+from workspace.sign_in_attempts import address_of, count_failure, is_locked
+
+# Counted like wrong sign-ins, under names that nobody can have: nobody is locked out of signing in by it.
+_OF_AN_ACCOUNT, _OF_AN_ADDRESS = "\nreset\n", "\nresets from here"
+
+
+class LostPasswordForm(PasswordResetForm):
+    """Django's form with a limit: a few mails to one account, and from one address, in a quarter of an hour."""
+
+    def __init__(self, *args: Any, address: str = "", **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.address = address
+
+    def clean_email(self) -> str:
+        email: str = self.cleaned_data["email"]
+        for name, address in ((_OF_AN_ACCOUNT + email, ""), (_OF_AN_ADDRESS, self.address)):
+            if is_locked(name, address):
+                raise ValidationError("Too many mails were asked for. Wait 15 min, then try again.", code="locked")
+            count_failure(name, address)
+        return email
+
+
+class LostPasswordPage(views.PasswordResetView):
+    """Sends a link if somebody has this address. The answer is the same if nobody has."""
+
+    template_name = "account/lost_password.html"
+    email_template_name = "account/lost_password_mail.txt"
+    subject_template_name = "account/lost_password_subject.txt"
+    form_class = LostPasswordForm
+    success_url = reverse_lazy("lost-password-sent")
+
+    def get_form_kwargs(self) -> dict[str, Any]:
+        return super().get_form_kwargs() | {"address": address_of(self.request)}
+
+
+class LostPasswordSentPage(views.PasswordResetDoneView):
+    template_name = "account/lost_password_sent.html"
+
+
+class NewPasswordPage(views.PasswordResetConfirmView):
+    """Behind the link of the mail, which works once and for an hour."""
+
+    template_name = "account/new_password.html"
+    success_url = reverse_lazy("new-password-set")
+
+
+class NewPasswordSetPage(views.PasswordResetCompleteView):
+    template_name = "account/new_password_set.html"
+
+
+class ChangePasswordPage(views.PasswordChangeView):
+    template_name = "account/change_password.html"
+    success_url = reverse_lazy("password-changed")
+
+
+class PasswordChangedPage(views.PasswordChangeDoneView):
+    template_name = "account/password_changed.html"

@@ -1,0 +1,21 @@
+"""Addresses of the account's pages."""
+
+from django.urls import path
+
+from workspace.account_pages import (
+    ChangePasswordPage,
+    LostPasswordPage,
+    LostPasswordSentPage,
+    NewPasswordPage,
+    NewPasswordSetPage,
+    PasswordChangedPage,
+)
+
+urlpatterns = [
+    path("lost-password", LostPasswordPage.as_view(), name="lost-password"),
+    path("lost-password/sent", LostPasswordSentPage.as_view(), name="lost-password-sent"),
+    path("new-password/<uidb64>/<token>", NewPasswordPage.as_view(), name="new-password"),
+    path("new-password/set", NewPasswordSetPage.as_view(), name="new-password-set"),
+    path("change-password", ChangePasswordPage.as_view(), name="change-password"),
+    path("change-password/done", PasswordChangedPage.as_view(), name="password-changed"),
+]
