@@ -7,6 +7,7 @@ from rest_framework import serializers
 from inspection.models import AssetKind, HeightReference
 from inspection.services.geometry_input import asset_shape, bridge_stored, stored, zone_shape
 from inspection.zones.geometry_gate import GeometryFault
+from inspection.zones.schedule import checked_schedule
 from workspace.errors import ApiProblem
 
 HIGHEST_VOLTAGE_V = 2_000_000  # the highest line in service has 1,150 kV
@@ -84,6 +85,7 @@ class ZoneInputSerializer(serializers.Serializer):
     reason = serializers.CharField(max_length=255, allow_blank=True, required=False)
     lower_limit = LimitInputSerializer(required=False, allow_null=True)
     upper_limit = LimitInputSerializer(required=False, allow_null=True)
+    schedule = serializers.JSONField(required=False, allow_null=True, help_text="periods as ED-318's limitedApplicability; null = always")
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
         try:
@@ -95,6 +97,8 @@ class ZoneInputSerializer(serializers.Serializer):
             else:
                 values.pop("circle", None)
                 values.pop("geometry", None)
+            if "schedule" in values:
+                values["schedule"] = checked_schedule(values["schedule"], "schedule")
         except GeometryFault as fault:
             raise geometry_problem(fault) from fault
         for side in ("lower", "upper"):

@@ -7,6 +7,8 @@ from rest_framework import serializers
 
 from inspection.models import HeightReference, NoFlyZone
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+from inspection.zones.geometry_gate import GeometryFault
+from inspection.zones.schedule import checked_schedule, schedule_sentence
 
 
 class LimitSerializer(serializers.Serializer):
@@ -29,7 +31,8 @@ class ZonePropertiesSerializer(serializers.Serializer):
     circle = serializers.DictField(
         allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it"
     )
-    schedule = serializers.JSONField(allow_null=True, help_text="when it applies, in the source's own words; null = always")
+    schedule = serializers.JSONField(allow_null=True, help_text="when it applies: periods as ED-318 writes them; null = always")
+    schedule_words = serializers.CharField(help_text="the same for people")
     updated_at = serializers.DateTimeField()
     source = SourceSerializer(allow_null=True)
 
@@ -58,6 +61,7 @@ def zone_feature(zone: NoFlyZone) -> dict[str, Any]:
         "source_heights": zone.source_heights,
         "circle": zone.circle,
         "schedule": zone.schedule,
+        "schedule_words": schedule_words(zone.schedule),
         "updated_at": zone.updated_at,
         "source": source_json(zone.zone_set.data_import if zone.zone_set else None),
     }
@@ -72,3 +76,11 @@ def zone_detail_feature(zone: NoFlyZone) -> dict[str, Any]:
 
 def _limit(value_m: float | None, reference: str) -> dict[str, Any] | None:
     return None if value_m is None else {"value_m": value_m, "reference": reference}
+
+
+def schedule_words(schedule: Any) -> str:
+    """A schedule that was stored before there was one form is told as what it is."""
+    try:
+        return schedule_sentence(checked_schedule(schedule, "schedule"))
+    except GeometryFault:
+        return "As its source says"

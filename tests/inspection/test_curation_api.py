@@ -267,3 +267,12 @@ def test_a_geometry_is_checked_without_being_stored(cora: APIClient) -> None:
         11_119, rel=1e-3
     )
     assert not NoFlyZone.objects.exists()
+
+
+def test_a_schedule_is_kept_in_its_one_form_and_said_in_words(cora: APIClient) -> None:
+    schedule = [{"endDateTime": "2026-12-31T23:59:00Z", "schedule": [{"day": ["MON", "FRI"], "startTime": "08:00Z", "endEvent": "SS"}]}]
+    zone = new_zone(cora, schedule=schedule)
+    assert zone.data["properties"]["schedule"][0]["schedule"][0]["startTime"] == "08:00:00Z"
+    assert zone.data["properties"]["schedule_words"] == "Mon, Fri 08:00 to sunset UTC, until 31 Dec 2026"
+    wrong = new_zone(cora, schedule=[{"schedule": [{"day": ["FUNDAY"]}]}])
+    assert (wrong.status_code, wrong.data["error"]["details"]["place"]) == (400, "schedule[0].schedule[0].day")
