@@ -1,5 +1,264 @@
-/** The page "Gaps in the data": composes its panel and the map. */
+/** The page "Gaps in the data": composes list, map and panel, and keeps them at what the ground is now. */
 
+import { get, post } from "../api.js";
+import { byId } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
+import { boxAround } from "../map/map_view.js";
+import { say, toast } from "../page/toast.js";
+import { countText, whenText } from "../units.js";
+import * as layer from "./gap_layer.js";
+import { mountGapList } from "./gap_list.js";
+import { mountGapPanel } from "./gap_panel.js";
 
-mountGroundPage().open();
+const PAGE = 100;
+const SEARCHING_MS = 2_000; // between looks while the ground is searched
+const RESTING_MS = 15_000;
+const ROUND_DEG = 0.0015; // what is shown around a gap at least, some 150 m
+
+let gaps = [];
+let next = null;
+let chosen = null;
+let summary = null;
+let placed = null; // positions that are being clicked, with what to tell of them
+let asked = 0;
+
+const { page, map, open } = mountGroundPage({
+  ringsItself: true,
+  isBusy: () => placed !== null,
+  click: (thing, position, point) => {
+    const id = layer.gapAt(map.map, point);
+    if (id) choose(id, { stay: true });
+  },
+});
+const list = mountGapList({
+  narrow: () => load(),
+  choose: (id) => choose(id),
+  point: (gap) => map.ring(gap ? [{ type: "Point", coordinates: gap.properties.position }] : []),
+  more: () => load({ more: true }),
+});
+const panel = mountGapPanel(page.canCurate, {
+  repair,
+  dismiss: (note) => act(() => post(`/gaps/${chosen.id}/dismiss`, { note }), "Left as it is.", (id) => post(`/gaps/${id}/reopen`)),
+  reopen: () => act(() => post(`/gaps/${chosen.id}/reopen`), "On the open list again."),
+  preview: (collection) => layer.showRepair(map.map, collection),
+  place: startPlacing,
+  placeDone: (offer) => repair({ action: offer.action, positions: placed.positions }),
+  placeBack: () => {
+    placed.positions.pop();
+    tellPlaces();
+  },
+  placeCancel: () => (stopPlacing(), panel.show(chosen)),
+  close: () => choose(null),
+});
+
+function query() {
+  const { state, kinds, text, inView } = list.filter;
+  const parts = new URLSearchParams({ state, limit: PAGE });
+  if (kinds.size) parts.set("kind", [...kinds].join(","));
+  if (text) parts.set("text", text);
+  if (inView) parts.set("bbox", map.box().map((degrees) => degrees.toFixed(6)).join(","));
+  return `/gaps?${parts}`;
+}
+
+async function load({ more = false } = {}) {
+  const turn = ++asked;
+  try {
+    const { data } = await get(more && next ? next : query());
+    if (turn !== asked) return; // the filter has changed since
+    gaps = more ? [...gaps, ...data.features] : data.features;
+    next = data.next;
+    draw();
+  } catch (error) {
+    toast(error.message, { label: "Try again", act: () => load({ more }) });
+  }
+}
+
+function draw() {
+  list.show(gaps, { hasMore: next !== null, hasSearched: Boolean(summary?.searched_at) });
+  if (summary) list.counts(summary.kinds);
+  layer.showAll(map.map, gaps);
+}
+
+async function look() {
+  try {
+    const before = summary?.searched_at;
+    summary = (await get("/gaps/summary")).data;
+    list.counts(summary.kinds);
+    tellFacts();
+    if (before !== undefined && before !== summary.searched_at) {
+      await load();
+      if (chosen && placed === null) await refreshChosen();
+    }
+  } catch {
+    byId("page-facts").textContent = "The server cannot be reached. Trying again.";
+  }
+}
+
+/** Ends never: the ground may change at any time, by somebody else's hand too. */
+async function keepLooking() {
+  for (;;) {
+    await new Promise((resolve) => setTimeout(resolve, summary?.is_current ? RESTING_MS : SEARCHING_MS));
+    if (!document.hidden) await look();
+  }
+}
+
+function tellFacts() {
+  const open = Object.values(summary.kinds).reduce((total, byState) => total + byState.open, 0);
+  const facts = byId("page-facts");
+  facts.dataset.searching = String(!summary.is_current);
+  if (!summary.searched_at) facts.textContent = summary.is_current ? "Nothing to search yet" : "Searching the ground…";
+  else facts.textContent = `${countText(open, "gap")} open · ${summary.is_current ? `searched ${whenText(summary.searched_at)}` : "searching the changed ground…"}`;
+}
+
+async function choose(id, { stay = false } = {}) {
+  stopPlacing();
+  layer.showRepair(map.map, null);
+  if (id === null) {
+    const row = document.querySelector(".gap-row[aria-current=true]");
+    const hadFocus = byId("gap-panel").contains(document.activeElement);
+    chosen = null;
+    panel.show(null);
+    layer.showGap(map.map, null);
+    list.mark(null);
+    remember();
+    if (hadFocus) row?.focus();
+    return;
+  }
+  try {
+    const { data } = await get(`/gaps/${id}`);
+    chosen = data;
+    panel.show(data);
+    layer.showGap(map.map, data);
+    list.mark(id);
+    remember();
+    if (!stay) map.fit(boxOf(data.geometry));
+    say(data.properties.sentence);
+  } catch (error) {
+    toast(error.status === 404 ? "This gap is gone: its asset was taken away." : error.message);
+  }
+}
+
+async function refreshChosen() {
+  try {
+    chosen = (await get(`/gaps/${chosen.id}`)).data;
+    panel.show(chosen);
+    layer.showGap(map.map, chosen);
+  } catch {
+    await choose(null);
+  }
+}
+
+function remember() {
+  const address = new URL(location.href);
+  if (chosen) address.searchParams.set("gap", chosen.id);
+  else address.searchParams.delete("gap");
+  history.replaceState(history.state, "", address);
+}
+
+function boxOf(geometry) {
+  const [west, south, east, north] = boxAround(layer.placesOf(geometry));
+  const wide = Math.max(0, ROUND_DEG - (east - west) / 2) / Math.cos((south * Math.PI) / 180);
+  const high = Math.max(0, ROUND_DEG - (north - south) / 2);
+  return [west - wide, south - high, east + wide, north + high];
+}
+
+async function repair(body) {
+  const { id } = chosen;
+  panel.busy(true);
+  panel.fault("");
+  try {
+    const { data } = await post(`/gaps/${id}/repair`, body);
+    stopPlacing();
+    const undo = () => settle(post(`/gaps/${id}/undo`, { entries: data.entries }), "Taken back.", id);
+    toast(data.said, { label: "Undo", act: undo });
+    await afterChange(id);
+  } catch (error) {
+    panel.busy(false);
+    panel.fault(error.message);
+  }
+}
+
+/** A decision about the chosen gap; `back(id)` takes it back. */
+async function act(change, words, back = null) {
+  const { id } = chosen;
+  panel.busy(true);
+  try {
+    await change();
+    toast(words, back && { label: "Undo", act: () => settle(back(id), "On the open list again.", id) });
+    await afterChange(id);
+  } catch (error) {
+    panel.busy(false);
+    panel.fault(error.message);
+  }
+}
+
+async function settle(promise, words, id) {
+  try {
+    await promise;
+    toast(words);
+    await afterChange(id, { stays: true });
+  } catch (error) {
+    toast(error.message);
+  }
+}
+
+/** The list and the map anew; the next gap of the list comes up, unless the changed one is to stay. */
+async function afterChange(id, { stays = false } = {}) {
+  map.refreshTiles();
+  const index = gaps.findIndex((gap) => gap.id === id);
+  await look();
+  await load();
+  const following = stays ? gaps.find((gap) => gap.id === id) : gaps[Math.min(Math.max(index, 0), gaps.length - 1)];
+  await choose(following?.id ?? null);
+}
+
+function startPlacing(tell) {
+  placed = { positions: [], tell };
+  layer.showPlaces(map.map, []);
+  map.map.getCanvas().style.cursor = "crosshair";
+}
+
+function tellPlaces() {
+  layer.showPlaces(map.map, placed.positions);
+  placed.tell(placed.positions.length);
+}
+
+function stopPlacing() {
+  if (!placed) return;
+  placed = null;
+  map.map.getCanvas().style.cursor = "";
+  layer.showPlaces(map.map, []);
+}
+
+map.map.on("click", (event) => {
+  if (!placed) return;
+  placed.positions.push([event.lngLat.lng, event.lngLat.lat].map((degrees) => Number(degrees.toFixed(7))));
+  tellPlaces();
+});
+map.map.on("moveend", () => list.filter.inView && load());
+
+const showChosen = () => {
+  const row = document.activeElement;
+  if (!row?.classList.contains("gap-row")) return false;
+  row.click();
+  return true;
+};
+
+open({
+  bindings: [
+    { keys: ["/"], words: "Find", act: list.focusText },
+    { keys: ["j"], words: "Next gap", act: () => list.step(1) },
+    { keys: ["k"], words: "Previous gap", act: () => list.step(-1) },
+    { keys: ["enter"], words: "Show it on the map", act: showChosen },
+    { keys: ["escape"], act: () => (placed ? (stopPlacing(), panel.show(chosen)) : chosen ? choose(null) : false) },
+  ],
+  async load() {
+    layer.addTo(map.map);
+    map.onRecolour(() => layer.recolour(map.map));
+    await look();
+    await load();
+    const wanted = Number(new URLSearchParams(location.search).get("gap"));
+    if (wanted) await choose(wanted, { stay: map.opensAtPlace });
+    keepLooking();
+  },
+});

@@ -1,0 +1,147 @@
+/** The dock: the chosen gap in one sentence, its facts, and what can be done about it. */
+
+import { byId, h, icon } from "../dom.js";
+import { coordinateText, whenText } from "../units.js";
+import { cautionOf, dismissWords, factsOf } from "./kinds.js";
+
+const LONGEST_NOTE = 500;
+
+/**
+ * on: { repair(body), dismiss(note), reopen(), preview(collection or null), place(tell), placeDone(offer), placeBack(), placeCancel(), close() };
+ * canCurate says whether they are offered. `place` begins to take places from the map and tells how many there are.
+ * Returns { show(gap or null), busy(whether), fault(sentence) }.
+ */
+export function mountGapPanel(canCurate, on) {
+  const dock = byId("dock");
+  const panel = byId("gap-panel");
+  let acts = null;
+  let said = null;
+
+  function show(gap) {
+    dock.hidden = !gap;
+    if (!gap) {
+      panel.replaceChildren();
+      return;
+    }
+    const { properties } = gap;
+    acts = h("div", { class: "gap-acts" }, ...actsOf(gap));
+    said = h("p", { class: "field-error", role: "alert" });
+    const caution = properties.state === "open" ? cautionOf(properties) : "";
+    panel.replaceChildren(
+      h(
+        "div",
+        { class: "gap-words" },
+        h("h2", { class: "gap-sentence" }, properties.sentence),
+        h("p", { class: "gap-assets" }, assetWords(properties)),
+        h("dl", { class: "gap-facts" }, [...factsOf(properties), ["Place", coordinateText(properties.position)]].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
+        caution && h("p", { class: "caption" }, caution),
+        properties.state !== "open" && h("p", { class: "gap-decided" }, icon(properties.state === "repaired" ? "circle-check" : "hand"), decidedWords(properties)),
+      ),
+      h("div", { class: "gap-do" }, acts, said),
+      h("button", { class: "icon-button tight gap-close", type: "button", "aria-label": "Close", title: "Close (Esc)", onclick: on.close }, icon("x")),
+    );
+  }
+
+  function actsOf(gap) {
+    const { repairs, state, kind } = gap.properties;
+    if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? "Curators can repair this." : "")];
+    if (state === "dismissed") return [h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), "Open it again")];
+    if (state === "repaired") return [];
+    return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(kind)];
+  }
+
+  function offerActs(offer, isFirst) {
+    if (offer.parameter === "way") return [choiceOf(offer)];
+    const refused = offer.refused;
+    const style = isFirst ? "button primary" : "button";
+    const act = h("button", { class: style, type: "button", disabled: Boolean(refused), title: refused || null }, offer.words);
+    previews(act, offer.preview);
+    act.addEventListener("click", () => on.repair({ action: offer.action }));
+    if (offer.parameter === "positions") {
+      return [act, h("button", { class: "button", type: "button", onclick: () => (on.place((count) => placing(offer, count)), placing(offer, 0)) }, icon("map-pin"), "Place them on the map")];
+    }
+    if (offer.parameter === "voltages_v") return [offer.choices.length ? act : null, voltageForm(offer, !offer.choices.length)];
+    return [act];
+  }
+
+  function previews(act, collection) {
+    if (!collection) return;
+    for (const come of ["pointerenter", "focus"]) act.addEventListener(come, () => on.preview(collection));
+    for (const go of ["pointerleave", "blur"]) act.addEventListener(go, () => on.preview(null));
+  }
+
+  function choiceOf(offer) {
+    const choices = offer.choices.map(({ value, words }) =>
+      h("button", { class: "button", type: "button", onclick: () => on.repair({ action: offer.action, [offer.parameter]: value }) }, words),
+    );
+    return h("div", { class: "gap-choice", role: "group", "aria-label": offer.words }, h("span", { class: "field-label" }, offer.words), choices);
+  }
+
+  function voltageForm(offer, isFirst) {
+    const input = h("input", { class: "input", id: "gap-volts", inputmode: "decimal", placeholder: "110, 20", autocomplete: "off", required: true });
+    const submit = (event) => {
+      event.preventDefault();
+      const kilovolts = input.value.split(/[,;\s]+/).filter(Boolean).map(Number);
+      if (!kilovolts.length || kilovolts.some((value) => !(value > 0))) return fault("Give one voltage or several in kV, with commas.");
+      on.repair({ action: offer.action, voltages_v: kilovolts.map((value) => Math.round(value * 1000)) });
+    };
+    return h(
+      "form",
+      { class: "gap-form", onsubmit: submit },
+      h("label", { for: "gap-volts" }, "Voltage"),
+      h("span", { class: "with-unit" }, input, h("span", { class: "unit" }, "kV")),
+      h("button", { class: isFirst ? "button primary" : "button" }, "Set"),
+    );
+  }
+
+  function dismissAct(kind) {
+    const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(kind));
+    opener.addEventListener("click", () => {
+      const note = h("input", { class: "input", id: "gap-note", maxlength: LONGEST_NOTE, placeholder: "Why it is right", "aria-label": "Note", autocomplete: "off" });
+      const form = h(
+        "form",
+        { class: "gap-form", onsubmit: (event) => (event.preventDefault(), on.dismiss(note.value.trim())) },
+        note,
+        h("button", { class: "button primary" }, "Leave it"),
+        h("button", { class: "button quiet", type: "button", onclick: () => (form.replaceWith(opener), opener.focus()) }, "Cancel"),
+      );
+      opener.replaceWith(form);
+      note.focus();
+    });
+    return opener;
+  }
+
+  /** While places are clicked on the map the acts say how many there are. */
+  function placing(offer, count) {
+    const words = count ? `Place ${count === 1 ? "one tower" : `${count} towers`}` : "Click along the span";
+    acts.replaceChildren(
+      h("button", { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) }, words),
+      h("button", { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() }, icon("undo-2"), "Take one back"),
+      h("button", { class: "button quiet", type: "button", onclick: () => on.placeCancel() }, "Cancel"),
+    );
+  }
+
+  function fault(sentence) {
+    said?.replaceChildren(...(sentence ? [icon("circle-alert"), sentence] : []));
+  }
+
+  return {
+    show,
+    fault,
+    busy(isBusy) {
+      panel.setAttribute("aria-busy", String(isBusy));
+      for (const button of panel.querySelectorAll(".gap-acts button")) button.setAttribute("aria-disabled", String(isBusy));
+    },
+  };
+}
+
+function assetWords({ asset, other_asset: other }) {
+  const name = (thing) => [thing.label, thing.detail].filter(Boolean).join(", ");
+  return [asset, other].filter(Boolean).map(name).join(" · ");
+}
+
+function decidedWords({ state, decided_by: who, decided_at: when, note }) {
+  const act = state === "repaired" ? (who ? "Repaired" : "No longer found") : "Left as it is";
+  const by = who ? ` by ${who}` : "";
+  return `${act}${by}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
+}
