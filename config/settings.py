@@ -244,6 +244,11 @@ CELERY_BEAT_SCHEDULE = {
     "look for gaps in a changed ground": {"task": "inspection.tasks.find_gaps", "schedule": 10.0, "options": {"expires": 10}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 10.0, "options": {"expires": 10}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
+    "fetch zone sets whose time has come": {
+        "task": "inspection.tasks.fetch_due_subscriptions",
+        "schedule": 60.0,
+        "options": {"expires": 60},
+    },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }

@@ -6,12 +6,14 @@ from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 
 from inspection import services
+from inspection.services import subscriptions
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import forget_old_uploads as forget_uploads
 from workspace.job_watch import JobWatch
 from workspace.models import Job
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
+from workspace.tasks import send_job_on_commit
 
 SOFT_LIMIT_S = 870
 HARD_LIMIT_S = 900
@@ -46,6 +48,25 @@ def settle_proposals() -> None:
     """Proposals whose worker was lost for good wait no longer."""
     for proposal in pipeline.unsettled_proposals():
         pipeline.settle_proposal_of(job=proposal.job)
+
+
+@shared_task(time_limit=60, soft_time_limit=50)
+def fetch_due_subscriptions() -> None:
+    """Start a job for each zone set whose time to be fetched has come."""
+    for job in subscriptions.start_due_fetches():
+        send_job_on_commit(job)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def fetch_subscription(job_id: str) -> None:
+    """Fetch a zone set's next file; what is new becomes a proposal."""
+    _work(job_id, _fetch)
+
+
+def _fetch(*, job: Job, progress: Progress) -> None:
+    proposal = subscriptions.fetch_subscription(job=job, progress=progress)
+    if proposal is not None:
+        send_job_on_commit(proposal.job)
 
 
 @shared_task(time_limit=300, soft_time_limit=280)

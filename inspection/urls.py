@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, gaps, geometry_checks, ground, history, imports, uploads, zones
+from inspection.views import assets, gaps, geometry_checks, ground, history, imports, uploads, zone_sets, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -14,6 +14,13 @@ urlpatterns = [
     path("zones/<int:zone_id>", zones.ZoneDetail.as_view(), name="api-zone"),
     path("zones/<int:zone_id>/history", history.ZoneHistory.as_view(), name="api-zone-history"),
     path("zones/<int:zone_id>/revert", history.ZoneRevert.as_view(), name="api-zone-revert"),
+    path("zone-sets", zone_sets.ZoneSetList.as_view(), name="api-zone-sets"),
+    path("zone-sets/<int:set_id>", zone_sets.ZoneSetDetail.as_view(), name="api-zone-set"),
+    path("zone-sets/<int:set_id>/versions", zone_sets.ZoneSetVersions.as_view(), name="api-zone-set-versions"),
+    path("zone-sets/<int:set_id>/roll-back", zone_sets.ZoneSetRollBack.as_view(), name="api-zone-set-roll-back"),
+    path("zone-subscriptions", zone_sets.ZoneSubscriptionList.as_view(), name="api-zone-subscriptions"),
+    path("zone-subscriptions/<int:subscription_id>", zone_sets.ZoneSubscriptionDetail.as_view(), name="api-zone-subscription"),
+    path("zone-subscriptions/<int:subscription_id>/fetch", zone_sets.ZoneSubscriptionFetch.as_view(), name="api-zone-subscription-fetch"),
     path("history", history.HistoryList.as_view(), name="api-history"),
     path("history/<int:entry_id>/undo", history.HistoryUndo.as_view(), name="api-undo"),
     path("uploads", uploads.UploadList.as_view(), name="api-uploads"),

@@ -41,7 +41,7 @@ def import_zones(
         hold_ground()
         zone_set, _ = ZoneSet.objects.select_related("data_import").get_or_create(name=name)
         if not (set_name is not None if replace_all is None else replace_all):
-            refuse_if_elsewhere(zone_set, content)
+            refuse_if_elsewhere(zone_set, content, f"--set {name} replaces them, another name keeps both")
         found = difference_of(zone_set, content.zones, replace_edited=replace_edited)
         counts = zone_counts(content) | found.numbers | {"removed": len(found.vanished)}
         if zone_set.data_import is not None and zone_set.data_import.sha256 == sha256 and not found.changes_something:
@@ -66,7 +66,7 @@ def make_so(
 ) -> None:
     """Write a difference, with the states before and after it kept as versions. Under hold_ground."""
     if not found.changes_something:
-        write_difference(zone_set, found, actor=actor)
+        write_difference(zone_set, found, actor=actor, edited=edited)
         return
     keep_what_was(zone_set)
     write_difference(zone_set, found, actor=actor, edited=edited)
@@ -86,18 +86,14 @@ def set_name_of(path: Path, set_name: str | None) -> str:
     return (set_name or path.stem)[:200]
 
 
-def refuse_if_elsewhere(zone_set: ZoneSet | None, content: ZoneFile) -> None:
+def refuse_if_elsewhere(zone_set: ZoneSet | None, content: ZoneFile, what_to_do: str) -> None:
     """Raises ZoneFileError if the set has zones, and none of them comes near to those of the file."""
     if zone_set is None or not zone_set.zones.exists():
         return
     near = Polygon.from_bbox(extent_of(content))
     near.srid = 4326
     if not zone_set.zones.filter(geometry__bboverlaps=near).exists():
-        name = zone_set.name
-        message = (
-            f"the set {name!r} has zones, all of them elsewhere: say that you mean to replace them (--set {name}), or use another name"
-        )
-        raise ZoneFileError([GeometryFault("", message)])
+        raise ZoneFileError([GeometryFault("", f"the set {zone_set.name!r} has zones, all of them elsewhere: {what_to_do}")])
 
 
 def extent_of(content: ZoneFile) -> list[float]:

@@ -7,13 +7,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import shapely
-from django.db import connection
+from django.db import connection, transaction
 from django.db.models import Max
 
-from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion
+from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.facts import zone_facts
+from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.zones.records import HeightBand, ZoneRecord
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
+from workspace.services import record_change
 
 _BATCH = 1_000
 _COLUMNS = (
@@ -92,10 +94,12 @@ def write_difference(zone_set: ZoneSet, found: ZoneDifference, *, actor: User | 
     entries = [_entry(actor, "vanished", zone, zone_facts(zone), None) for zone in found.vanished]
     for zone, record in found.changed:
         before = zone_facts(zone)
-        entries.append(_entry(actor, "changed", zone, before, before | record_facts(record)))
+        after = before | record_facts(record) | {"is_edited": (record.identifier, record.layer) in edited}
+        entries.append(_entry(actor, "changed", zone, before, after))
     AuditEntry.objects.bulk_create(entries, batch_size=_BATCH)
     NoFlyZone.objects.filter(pk__in=[zone.pk for zone in found.vanished]).delete()
-    NoFlyZone.objects.filter(pk__in=[zone.pk for zone in found.confirmed]).update(is_edited=False)
+    following = [zone.pk for zone in found.confirmed if (zone.identifier, zone.layer) not in edited]
+    NoFlyZone.objects.filter(pk__in=following).update(is_edited=False)
     with connection.cursor() as cursor:
         cursor.execute(_STAGING)
         with cursor.copy(_COPY) as copy:
@@ -122,6 +126,28 @@ def keep_what_was(zone_set: ZoneSet) -> None:
     last = zone_set.versions.first()
     if last is None or zone_set.zones.filter(updated_at__gt=last.created_at).exists() or zone_set.zones.count() != last.zones:
         store_version(zone_set, data_import=zone_set.data_import, created_by=None)
+
+
+def empty_zone_set(*, zone_set: ZoneSet, actor: User) -> None:
+    """Take all zones of a set off the ground. The set stays, without zones: each of its versions can be brought back.
+
+    What is fetched for it is paused, or it would soon be proposed again. An empty set stays as it is.
+    """
+    with transaction.atomic():
+        hold_ground()
+        held = ZoneSet.objects.select_for_update(of=["self"]).get(pk=zone_set.pk)
+        found = difference_of(held, [], replace_edited=True)
+        ZoneSubscription.objects.filter(zone_set=held).update(is_active=False)
+        if not found.vanished:
+            return
+        keep_what_was(held)
+        write_difference(held, found, actor=actor)
+        ZoneSet.objects.filter(pk=held.pk).update(data_import=None)
+        record_change(
+            organisation=actor.organisation, actor=actor, action="emptied", subject_type="zone_set", subject_id=held.pk,
+            before={"name": held.name, "zones": len(found.vanished)}, after={"name": held.name, "zones": 0},
+        )  # fmt: skip
+        mark_ground_changed()
 
 
 def records_of_version(version: ZoneSetVersion) -> tuple[list[ZoneRecord], frozenset[Key]]:

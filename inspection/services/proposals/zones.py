@@ -23,6 +23,8 @@ from inspection.zones.records import ZoneRecord
 from inspection.zones.zone_file import ZoneFileError
 from workspace.models import User
 
+ALL_ELSEWHERE = "say that all of them are to be replaced, or use another name"
+
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
     """What the file, or the version that parameters name, would change in its set. Raises FileRefused."""
@@ -39,7 +41,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         name = set_name_of(path, _set_name(parameters))
         zone_set = ZoneSet.objects.filter(name=name).first()
         if not parameters.get("replace_all"):
-            refuse_if_elsewhere(zone_set, content)
+            refuse_if_elsewhere(zone_set, content, ALL_ELSEWHERE)
     progress("comparing", 0.6)
     found = difference_of(zone_set, content.zones, replace_edited=replace_edited)
     summary = zone_counts(content) | {"set": name, "is_new_set": zone_set is None or not zone_set.zones.exists()}
@@ -66,9 +68,10 @@ def _roll_back(version: ZoneSetVersion, actor: User | None) -> DataImport:
     found = difference_of(zone_set, records, replace_edited=True)
     origin = version.data_import
     data_import = DataImport.objects.create(
-        kind=ImportKind.ZONES, file_name=f"{zone_set.name}, version {version.number}"[:255], sha256=origin.sha256 if origin else "",
+        kind=ImportKind.ZONES, file_name=roll_back_name(version), sha256=origin.sha256 if origin else "",
         attribution=origin.attribution if origin else "", licence=origin.licence if origin else "", imported_by=actor,
         source_address=origin.source_address if origin else "", fetched_at=origin and origin.fetched_at,
+        valid_from=origin and origin.valid_from, valid_until=origin and origin.valid_until,
         is_synthetic=bool(origin and origin.is_synthetic), counts=found.numbers | {"layers": len(records)},
     )  # fmt: skip
     make_so(zone_set, found, data_import=data_import, actor=actor, edited=edited)
@@ -76,14 +79,19 @@ def _roll_back(version: ZoneSetVersion, actor: User | None) -> DataImport:
     return data_import
 
 
+def roll_back_name(version: ZoneSetVersion) -> str:
+    """What stands where a file's name does."""
+    return f"{version.zone_set.name[:220]}, version {version.number}"
+
+
 def _version(parameters: dict[str, Any]) -> ZoneSetVersion:
-    version = (
-        ZoneSetVersion.objects.select_related("zone_set", "data_import")
-        .filter(zone_set=parameters.get("set"), number=parameters.get("version"))
-        .first()
-    )
+    zone_set, number = parameters.get("set"), parameters.get("version")
+    version = None
+    if isinstance(zone_set, int) and isinstance(number, int) and max(zone_set, number) < 2**31:
+        versions = ZoneSetVersion.objects.select_related("zone_set", "data_import")
+        version = versions.filter(zone_set=zone_set, number=number).first()
     if version is None:
-        raise FileRefused([Fault("version", "this version of the set is no longer there")])
+        raise FileRefused([Fault("version", "there is no such version of the set")])
     return version
 
 
@@ -109,7 +117,7 @@ def _changes(found: ZoneDifference) -> Iterator[Change]:
     for record in found.new:
         yield Change(ChangeAction.NEW, "zone", _label(record), geometry=_drawn(record), after=_shown(record_facts(record)))
     for zone, record in found.changed:
-        before, after = differing(_shown(zone_facts(zone)), _shown(record_facts(record)))
+        before, after = _differing(zone, record)
         yield Change(ChangeAction.CHANGED, "zone", _label(record), zone.pk, _drawn(record), before, after)
     for zone in found.vanished:
         yield Change(ChangeAction.VANISHED, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
@@ -120,8 +128,21 @@ def _changes(found: ZoneDifference) -> Iterator[Change]:
 def _kept(zone: NoFlyZone, record: ZoneRecord | None) -> Change:
     if record is None:
         return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
-    before, after = differing(_shown(zone_facts(zone)), _shown(record_facts(record)))
+    before, after = _differing(zone, record)
     return Change(ChangeAction.KEPT, "zone", _label(zone), zone.pk, zone.geometry, before, after)
+
+
+def _differing(zone: NoFlyZone, record: ZoneRecord) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+    """The facts that differ; of what the source says besides them, its own keys that differ."""
+    facts, other = zone_facts(zone), record_facts(record)
+    before, after = differing(_shown(facts), _shown(other))
+    for name in ("source_heights", "properties"):
+        old, new = facts[name] or {}, other[name] or {}
+        keys = [key for key in {**old, **new} if key not in old or key not in new or old[key] != new[key]]
+        if keys and before is not None and after is not None:
+            before[name] = {key: old[key] for key in keys if key in old}
+            after[name] = {key: new[key] for key in keys if key in new}
+    return before, after
 
 
 def _shown(facts: dict[str, Any]) -> dict[str, Any]:

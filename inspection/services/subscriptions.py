@@ -1,0 +1,257 @@
+"""Zone sets that are fetched: when, from where, and what becomes of the answer. It is proposed; a curator decides."""
+
+import tempfile
+from datetime import datetime, timedelta
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+from django.db import IntegrityError, transaction
+from django.utils import timezone
+
+from inspection.models import ImportKind, ImportProposal, ProposalOrigin, ProposalState, ZoneSet, ZoneSubscription
+from inspection.selectors.zone_sets import FETCH_TASK, open_fetch_of
+from inspection.services.proposals.pipeline import LostJob, WrongState, discard_proposal, start_proposal
+from inspection.services.proposals.reading import Progress
+from inspection.services.uploads import plain_name, store_upload, upload_folder
+from inspection.services.zone_import import read_zone_file
+from inspection.services.zone_sets import difference_of
+from inspection.zones.zone_file import MAX_FILE_BYTES, ZoneFileError
+from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
+from workspace.outgoing import Fetched, OutgoingError, OutgoingFailed, fetch
+from workspace.services import create_job, fail_job, finish_job, record_change
+
+SILENCE_S = 20.0
+TOTAL_S = 120.0
+FIRST_RETRY = timedelta(minutes=15)  # doubled with each failure that follows
+LONGEST_RETRY = timedelta(days=1)  # or the interval, if that is longer
+MOST_AT_ONCE = 20  # fetches that one look at the clock starts
+_FOLDER_PREFIX = "spanwise-upload-"  # what a killed worker leaves is removed with the uploads
+_CHANGEABLE = ("address", "source_format", "licence", "attribution", "interval_h", "is_active")
+_OPEN = (ProposalState.READING, ProposalState.READY, ProposalState.APPLYING)
+
+
+class AlreadySubscribed(ValueError):
+    """The set is fetched from somewhere already."""
+
+
+def subscribe(*, set_name: str, actor: User, **values: Any) -> ZoneSubscription:
+    """Have a set fetched, which is made if there is none of the name; first at the next look at the clock. Raises AlreadySubscribed."""
+    try:
+        with transaction.atomic():
+            zone_set, _ = ZoneSet.objects.get_or_create(name=set_name)
+            subscription = ZoneSubscription.objects.create(zone_set=zone_set, next_fetch_at=timezone.now(), **values)
+            _record(actor, subscription, "created", None, _facts(subscription))
+    except IntegrityError as error:
+        raise AlreadySubscribed(f"The set {set_name} is fetched already. Change its subscription instead.") from error
+    return subscription
+
+
+def change_subscription(*, subscription: ZoneSubscription, actor: User, **values: Any) -> ZoneSubscription:
+    """With another address nothing is known of the source any more; what was paused and goes on is fetched soon."""
+    with transaction.atomic():
+        held = ZoneSubscription.objects.select_for_update(of=["self"]).select_related("zone_set").get(pk=subscription.pk)
+        before = _facts(held)
+        for name, value in values.items():
+            setattr(held, name, value)
+        after = _facts(held)
+        if after == before:
+            return held
+        now = timezone.now()
+        if held.address != before["address"] or held.source_format != before["source_format"]:
+            held.etag = held.last_modified = held.sha256 = held.problem = ""
+            held.failures, held.fetched_at, held.next_fetch_at = 0, None, now
+        elif held.is_active and not before["is_active"]:
+            held.next_fetch_at = now
+        elif held.failures == 0 and held.fetched_at is not None:
+            held.next_fetch_at = held.fetched_at + timedelta(hours=held.interval_h)
+        held.save()
+        _record(actor, held, "changed", before, after)
+    return held
+
+
+def unsubscribe(*, subscription: ZoneSubscription, actor: User) -> None:
+    """The set and its zones stay. What was fetched and waits to be decided stays, too."""
+    with transaction.atomic():
+        _record(actor, subscription, "deleted", _facts(subscription), None)
+        subscription.delete()
+
+
+def ask_to_fetch(*, subscription: ZoneSubscription, actor: User) -> Job:
+    """A job that fetches now, or the one that is at it already; the caller sends it to its queue after the commit."""
+    with transaction.atomic():
+        held = ZoneSubscription.objects.select_for_update(of=["self"]).get(pk=subscription.pk)
+        if job := open_fetch_of(held):
+            return job
+        _put_off(held)
+        return _fetch_job(held, actor)
+
+
+def start_due_fetches() -> list[Job]:
+    """Jobs for the subscriptions whose time has come. Two clocks start none twice: rows are locked, and put off before the fetch."""
+    jobs = []
+    with transaction.atomic():
+        due = ZoneSubscription.objects.select_for_update(skip_locked=True, of=["self"]).filter(
+            is_active=True, next_fetch_at__lte=timezone.now()
+        )
+        for subscription in due.order_by("next_fetch_at")[:MOST_AT_ONCE]:
+            _put_off(subscription)
+            if open_fetch_of(subscription) is None:
+                jobs.append(_fetch_job(subscription, None))
+    return jobs
+
+
+def fetch_subscription(*, job: Job, progress: Progress) -> ImportProposal | None:
+    """Fetch, and propose what has come if it is new; the caller sends the proposal's job to its queue.
+
+    By the clock an answer is proposed once: what a curator has thrown away, or rolled back, does not come back every day. On demand it
+    is proposed again, unless the set says the same or it still waits to be decided.
+    """
+    subscription = ZoneSubscription.objects.select_related("zone_set", "proposal").filter(pk=job.parameters["subscription"]).first()
+    if subscription is None:
+        finish_job(job=job, message="The subscription is no longer there.")
+        return None
+    is_asked_for = job.created_by_id is not None
+    with tempfile.TemporaryDirectory(prefix=_FOLDER_PREFIX, dir=upload_folder()) as folder:
+        path = Path(folder) / _file_name(subscription)
+        progress("Fetching", 0.0)
+        try:
+            fetched = fetch(
+                subscription.address, to=path, max_bytes=MAX_FILE_BYTES, timeout_s=SILENCE_S, total_s=TOTAL_S,
+                headers={} if is_asked_for else _conditions(subscription),
+                progress=lambda size: progress("Fetching", min(0.9, size / MAX_FILE_BYTES)),
+            )  # fmt: skip
+        except OutgoingError as error:
+            _note_failure(subscription, job, error)
+            return None
+        progress("Comparing", 0.9)
+        is_news = _is_news(subscription, fetched, path, is_asked_for=is_asked_for)
+        return _note_answer(subscription, job, fetched, path if is_news else None)
+
+
+def _is_news(subscription: ZoneSubscription, fetched: Fetched, path: Path, *, is_asked_for: bool) -> bool:
+    if fetched.status == 304:
+        return False
+    is_as_before = fetched.sha256 == subscription.sha256
+    if is_as_before and (not is_asked_for or (subscription.proposal is not None and subscription.proposal.state in _OPEN)):
+        return False
+    return not _says_what_the_set_says(subscription.zone_set, path)
+
+
+def _says_what_the_set_says(zone_set: ZoneSet, path: Path) -> bool:
+    """Also when its bytes differ: many sources write the hour of the request into each answer."""
+    try:
+        content, _ = read_zone_file(path)
+    except ZoneFileError:
+        return False  # the proposal says what is wrong with it
+    return zone_set.data_import is not None and not difference_of(zone_set, content.zones).changes_something
+
+
+def _note_answer(subscription: ZoneSubscription, job: Job, fetched: Fetched, path: Path | None) -> ImportProposal | None:
+    """Remember what the source said, and propose the file if it is news. Nothing, if somebody changed the address meanwhile."""
+    with transaction.atomic():
+        held = _held(subscription)
+        proposal = None
+        if held is not None:
+            if path is not None:
+                proposal = _propose(held, job, fetched, path)
+            elif fetched.status == 200 and fetched.sha256 != held.sha256:
+                _discard_undecided(held)  # the source has gone back to what the set says
+            held.fetched_at, held.problem, held.failures = timezone.now(), "", 0
+            if fetched.status == 200:
+                held.etag, held.last_modified, held.sha256 = fetched.etag, fetched.last_modified, fetched.sha256
+            held.next_fetch_at = max(held.next_fetch_at, _next_regular(held))
+            held.save()
+        message = "A new file is proposed." if proposal else "Nothing new." if held else "The subscription was changed meanwhile."
+        result = {"proposal": str(proposal.pk) if proposal else None, "is_new": proposal is not None}
+        if not finish_job(job=job, result=result, message=message):
+            raise LostJob
+    return proposal
+
+
+def _propose(held: ZoneSubscription, job: Job, fetched: Fetched, path: Path) -> ImportProposal:
+    _discard_undecided(held)
+    with path.open("rb") as file:
+        upload = store_upload(file_name=path.name, chunks=iter(lambda: file.read(1024 * 1024), b""), created_by=None)
+    parameters = {"set_name": held.zone_set.name} | ({"format": held.source_format} if held.source_format else {})
+    held.proposal = start_proposal(
+        kind=ImportKind.ZONES, origin=ProposalOrigin.SUBSCRIPTION, upload=upload, file_name=upload.file_name, parameters=parameters,
+        provenance={
+            "source_address": held.address, "licence": held.licence, "attribution": held.attribution,
+            "fetched_at": timezone.now().isoformat(),
+        },
+        created_by=job.created_by,
+    )  # fmt: skip
+    return held.proposal
+
+
+def _discard_undecided(held: ZoneSubscription) -> None:
+    """A newer answer takes the place of one that nobody has decided on. One that is being applied has been decided on."""
+    if held.proposal is None or held.proposal.state not in {ProposalState.READING, ProposalState.READY, ProposalState.REFUSED}:
+        return
+    try:
+        discard_proposal(proposal=held.proposal, actor=None)
+    except WrongState:
+        return
+
+
+def _note_failure(subscription: ZoneSubscription, job: Job, error: OutgoingError) -> None:
+    with transaction.atomic():
+        held = _held(subscription)
+        if held is not None:
+            held.failures = min(held.failures + 1, 1_000)
+            held.problem = str(error)[:500]
+            wait = min(FIRST_RETRY * 2 ** min(held.failures - 1, 20), max(LONGEST_RETRY, timedelta(hours=held.interval_h)))
+            if isinstance(error, OutgoingFailed) and error.retry_after_s is not None:
+                wait = max(wait, timedelta(seconds=error.retry_after_s))
+            held.next_fetch_at = timezone.now() + wait
+            held.save()
+        fail_job(job=job, code="fetch_failed", message=str(error))
+
+
+def _held(subscription: ZoneSubscription) -> ZoneSubscription | None:
+    """The row under lock, unless it is gone or fetches from elsewhere by now."""
+    rows = ZoneSubscription.objects.select_for_update(of=["self"]).select_related("zone_set", "proposal")
+    return rows.filter(pk=subscription.pk, address=subscription.address).first()
+
+
+def _conditions(subscription: ZoneSubscription) -> dict[str, str]:
+    """What the source needs to answer "not modified"."""
+    headers = {}
+    if subscription.sha256 and subscription.etag:
+        headers["If-None-Match"] = subscription.etag
+    if subscription.sha256 and subscription.last_modified:
+        headers["If-Modified-Since"] = subscription.last_modified
+    return headers
+
+
+def _put_off(subscription: ZoneSubscription) -> None:
+    subscription.next_fetch_at = _next_regular(subscription)
+    subscription.save(update_fields=["next_fetch_at"])
+
+
+def _next_regular(subscription: ZoneSubscription) -> datetime:
+    return timezone.now() + timedelta(hours=subscription.interval_h)
+
+
+def _fetch_job(subscription: ZoneSubscription, actor: User | None) -> Job:
+    organisation = actor.organisation if actor else Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID)
+    parameters = {"subscription": subscription.pk}
+    return create_job(organisation=organisation, created_by=actor, task=FETCH_TASK, parameters=parameters, message="Waiting to be fetched")
+
+
+def _file_name(subscription: ZoneSubscription) -> str:
+    """The last part of the address, where that is a name."""
+    name = plain_name(unquote(urlsplit(subscription.address).path).rstrip("/"))
+    return plain_name(subscription.zone_set.name) if name == "file" else name
+
+
+def _facts(subscription: ZoneSubscription) -> dict[str, Any]:
+    return {name: getattr(subscription, name) for name in _CHANGEABLE}
+
+
+def _record(actor: User, subscription: ZoneSubscription, action: str, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
+    record_change(
+        organisation=actor.organisation, actor=actor, action=action, subject_type="zone_subscription", subject_id=subscription.pk,
+        before=before, after=after,
+    )  # fmt: skip
