@@ -74,13 +74,17 @@ async function problemOf(response) {
 }
 
 /** request("POST", "/plans", { body }) → { data, status, etag }. Throws ApiError; an abort passes as AbortError. */
-export async function request(method, path, { body, headers = {}, signal } = {}) {
+export async function request(method, path, { body, bytes, headers = {}, signal } = {}) {
   const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
   const send = { method, signal, credentials: "same-origin", headers: { Accept: "application/json", ...headers } };
   if (method !== "GET") send.headers["X-CSRFToken"] = cookie("csrftoken");
   if (body !== undefined) {
     send.headers["Content-Type"] = "application/json";
     send.body = JSON.stringify(body);
+  }
+  if (bytes !== undefined) {
+    send.headers["Content-Type"] = "application/octet-stream";
+    send.body = bytes;
   }
   let response;
   try {
@@ -97,6 +101,8 @@ export async function request(method, path, { body, headers = {}, signal } = {})
 export const get = (path, options) => request("GET", path, options);
 export const post = (path, body, options) => request("POST", path, { ...options, body });
 export const patch = (path, body, options) => request("PATCH", path, { ...options, body });
+/** Raw bytes: a Blob. */
+export const put = (path, bytes, options) => request("PUT", path, { ...options, bytes });
 export const remove = (path, options) => request("DELETE", path, options);
 
 const pause = (ms, signal) =>
