@@ -44,12 +44,12 @@ def import_zones(
             refuse_if_elsewhere(zone_set, content, f"--set {name} replaces them, another name keeps both")
         found = difference_of(zone_set, content.zones, replace_edited=replace_edited)
         counts = zone_counts(content) | found.numbers | {"removed": len(found.vanished)}
+        origin = _origin(content, provenance, is_synthetic=is_synthetic)
         if zone_set.data_import is not None and zone_set.data_import.sha256 == sha256 and not found.changes_something:
-            zone_set.data_import.counts = counts  # of this run, for the caller; the row keeps those of its own
-            return zone_set.data_import
+            return _seen_again(zone_set.data_import, origin, counts)
         data_import = DataImport.objects.create(
             kind=ImportKind.ZONES, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
-            counts=counts, **_origin(content, provenance, is_synthetic=is_synthetic),
+            counts=counts, **origin,
         )  # fmt: skip
         make_so(zone_set, found, data_import=data_import, actor=imported_by)
         ZoneSet.objects.filter(pk=zone_set.pk).update(data_import=data_import, source_format=content.source_format)
@@ -114,11 +114,22 @@ def zone_counts(content: ZoneFile) -> dict[str, Any]:
 
 
 def _origin(content: ZoneFile, provenance: Provenance | None, *, is_synthetic: bool) -> dict[str, Any]:
+    """Where the zones come from, as far as somebody or the file says so."""
+    stated: dict[str, Any] = {}
+    if provenance is not None:
+        stated = {
+            "attribution": provenance.attribution, "licence": provenance.licence, "source_address": provenance.source_address,
+            "fetched_at": provenance.fetched_at,
+        }  # fmt: skip
     if is_synthetic:
-        return {"attribution": SYNTHETIC_ATTRIBUTION}
-    if provenance is None:
-        return {}
-    return {
-        "attribution": provenance.attribution, "licence": provenance.licence, "source_address": provenance.source_address,
-        "fetched_at": provenance.fetched_at,
-    }  # fmt: skip
+        stated["attribution"] = SYNTHETIC_ATTRIBUTION
+    return {name: value for name, value in stated.items() if value}
+
+
+def _seen_again(data_import: DataImport, origin: dict[str, Any], counts: dict[str, Any]) -> DataImport:
+    """The same file once more: what is newly known of its origin is kept. The row keeps its own counts, the caller gets this run's."""
+    for name, value in origin.items():
+        setattr(data_import, name, value)
+    data_import.save(update_fields=list(origin))
+    data_import.counts = counts
+    return data_import

@@ -3,68 +3,24 @@
 import socket
 import ssl
 import subprocess
-import threading
 import time
 from collections.abc import Callable, Iterator
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from contextlib import ExitStack
+from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.workspace.loopback import Answer, Server, body, serving
 from workspace import outgoing
 from workspace.outgoing import Fetched, OutgoingFailed, OutgoingRefused, check_address, fetch, is_global
-
-Answer = Callable[[BaseHTTPRequestHandler], None]
-
-
-class Handler(BaseHTTPRequestHandler):
-    protocol_version = "HTTP/1.1"
-
-    def answer(self) -> None:
-        server: Any = self.server
-        server.asked.append((self.command, self.path, dict(self.headers)))
-        try:
-            server.answers[self.path](self)
-        except OSError:
-            self.close_connection = True  # the client has hung up, as it should
-
-    do_GET = do_POST = answer  # noqa: N815 -- names of http.server
-
-    def log_message(self, format: str, *args: Any) -> None:
-        pass
-
-
-class Server(ThreadingHTTPServer):
-    daemon_threads = True
-    block_on_close = False
-
-    def __init__(self) -> None:
-        super().__init__(("127.0.0.1", 0), Handler)
-        self.answers: dict[str, Answer] = {}
-        self.asked: list[tuple[str, str, dict[str, str]]] = []
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        pass  # a handshake that the client broke off
-
-    def address(self, path: str = "/", host: str = "127.0.0.1", scheme: str = "http") -> str:
-        return f"{scheme}://{host}:{self.server_port}{path}"
 
 
 @pytest.fixture
 def servers() -> Iterator[Callable[[], Server]]:
-    started: list[Server] = []
-
-    def start() -> Server:
-        server = Server()
-        threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True).start()
-        started.append(server)
-        return server
-
-    yield start
-    for server in started:
-        server.shutdown()
-        server.server_close()
+    with ExitStack() as started:
+        yield lambda: started.enter_context(serving())
 
 
 @pytest.fixture
@@ -87,17 +43,6 @@ def names(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[list[str]]]:
 
     monkeypatch.setattr(outgoing, "resolve", resolve)
     return known
-
-
-def body(content: bytes = b"zones", status: int = 200, **headers: str) -> Answer:
-    def answer(request: BaseHTTPRequestHandler) -> None:
-        request.send_response(status)
-        for name, value in {"Content_Length": str(len(content)), **headers}.items():
-            request.send_header(name.replace("_", "-"), value)
-        request.end_headers()
-        request.wfile.write(content)
-
-    return answer
 
 
 def redirect(to: str, status: int = 302) -> Answer:

@@ -8,6 +8,7 @@ from django.core.management.base import CommandError, CommandParser
 from inspection.management.import_command import ImportCommand, Progress
 from inspection.models import DataImport
 from inspection.services import ZoneFileError, import_zones
+from inspection.services.proposals.reading import Provenance
 
 
 class Command(ImportCommand):
@@ -19,10 +20,13 @@ class Command(ImportCommand):
     def add_arguments(self, parser: CommandParser) -> None:
         super().add_arguments(parser)
         parser.add_argument("--set", dest="set_name", help="name of the zone set (default: the file's name without its ending)")
+        parser.add_argument("--licence", default="", help="the licence of the data, shown with the set")
+        parser.add_argument("--attribution", default="", help="whom to name as the source, shown with the set")
 
     def read(self, path: Path, options: dict[str, Any], progress: Progress | None) -> DataImport:
+        origin = Provenance(file_name=path.name, licence=options["licence"][:200], attribution=options["attribution"][:300])
         try:
-            return import_zones(path=path, set_name=options["set_name"], is_synthetic=options["synthetic"])
+            return import_zones(path=path, set_name=options["set_name"], is_synthetic=options["synthetic"], provenance=origin)
         except ZoneFileError as error:
             faults = "".join(f"\n  {fault}" for fault in error.faults)
             raise CommandError(f"{path.name} is refused, nothing of it was stored:{faults}") from error
