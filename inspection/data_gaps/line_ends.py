@@ -123,7 +123,11 @@ def _dead_ends(network: Network, vertex: IntArray) -> list[Gap]:
 
 
 def _nearest_other_component(network: Network, node: IntArray) -> tuple[IntArray, FloatArray]:
-    """For each node the nearest node of lines that do not hang together with it, within reach, or -1."""
+    """For each node the nearest one within reach of lines of its voltage that do not hang together with it, or -1.
+
+    Lines of two voltages meet in a transformer, not in each other; a voltage that is not stated may be any.
+    """
+    volts = _node_volts(network)
     on_lines = np.flatnonzero(network.degree > 0)
     partner, best = np.full(len(node), -1, dtype=np.int64), np.full(len(node), np.nan)
     waiting = np.arange(len(node))
@@ -131,7 +135,9 @@ def _nearest_other_component(network: Network, node: IntArray) -> tuple[IntArray
     while len(waiting):
         row, other, metres = nearest_within(network.node_position[node[waiting]], network.node_position[on_lines], REACH_M, count=count)
         found = on_lines[other]
-        apart = network.component[found] != network.component[node[waiting[row]]]
+        asking = node[waiting[row]]
+        apart = network.component[found] != network.component[asking]
+        apart &= (volts[found] == volts[asking]) | (volts[found] == 0) | (volts[asking] == 0)
         settled, first = np.unique(row[apart], return_index=True)
         partner[waiting[settled]] = found[apart][first]
         best[waiting[settled]] = metres[apart][first]
@@ -141,6 +147,14 @@ def _nearest_other_component(network: Network, node: IntArray) -> tuple[IntArray
             break
         waiting, count = waiting[is_full], count * 4  # only where all that were asked for hang together with the node
     return partner, best
+
+
+def _node_volts(network: Network) -> IntArray:
+    """Of each node the highest voltage of its lines, 0 where none is stated."""
+    of_way = np.array([max(volts, default=0) for volts in network.ground.line_facts.voltages_v], dtype=np.int64)
+    highest = np.zeros(network.node_count, dtype=np.int64)
+    np.maximum.at(highest, network.node_of_vertex, of_way[network.way_of_vertex])
+    return highest
 
 
 def _way_key(network: Network, way: int) -> str:

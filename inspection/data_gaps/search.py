@@ -3,7 +3,7 @@
 What a gap cuts off (`cut_off_m`, by which the list is sorted) is the length of line network that depends on it:
 
 - ends apart, dead end: the smaller of the two parts of the network that joining would connect; 0 where they hang together anyway, or
-  where a dead end has no other part of the network within 2 km;
+  where a dead end has no other part of the network, of its voltage, within 2 km;
 - long span: the span, and the smaller side beyond it where nothing else connects that side;
 - line without towers: the line; a row of towers on no line: the shortest tree through them;
 - line with some vertices without tower, single tower, bridge, voltage: 0.

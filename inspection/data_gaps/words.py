@@ -76,7 +76,7 @@ def _dead_end(details: Details) -> str:
     what = "The line ends at a tower" if details["has_tower"] else "The line ends at a vertex without a tower"
     said = f"{what}, and nothing is within 150 m that it could lead to."
     near = details["nearest_m"]
-    return said if near is None else f"{said} The next part of the network is {kilometres(near)} away."
+    return said if near is None else f"{said} Another part of the network is {kilometres(near)} away."
 
 
 def _ends_apart(details: Details) -> str:

@@ -6,6 +6,7 @@ const DOTS = "gaps-dots";
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 16 : 7;
 
 const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+const byZoom = (far, near) => ["interpolate", ["linear"], ["zoom"], 9, far, 13, near]; // a hundred places of one line must not become a blot
 const isPoint = ["==", ["geometry-type"], "Point"];
 const isLine = ["==", ["geometry-type"], "LineString"];
 
@@ -16,13 +17,13 @@ function layers() {
     { id: DOTS, type: "circle", source: "gaps", paint: { "circle-radius": 4, "circle-color": mark, "circle-stroke-color": casing, "circle-stroke-width": 1.5 } },
     { id: "gap-casing", type: "line", source: "gap", filter: isLine, layout: round, paint: { "line-color": casing, "line-width": 9 } },
     { id: "gap-line", type: "line", source: "gap", filter: isLine, paint: { "line-color": mark, "line-width": 4, "line-dasharray": [2, 1.2] } },
-    { id: "gap-halo", type: "circle", source: "gap", filter: isPoint, paint: { "circle-radius": 11, "circle-color": mark, "circle-opacity": 0.18 } },
+    { id: "gap-halo", type: "circle", source: "gap", filter: isPoint, paint: { "circle-radius": byZoom(4, 11), "circle-color": mark, "circle-opacity": 0.18 } },
     {
       id: "gap-places",
       type: "circle",
       source: "gap",
       filter: isPoint,
-      paint: { "circle-radius": 5.5, "circle-color": ground, "circle-stroke-color": mark, "circle-stroke-width": 2.5 },
+      paint: { "circle-radius": byZoom(1.6, 5.5), "circle-color": ground, "circle-stroke-color": mark, "circle-stroke-width": byZoom(1, 2.5) },
     },
     { id: "gap-repair-casing", type: "line", source: "gap-repair", filter: isLine, layout: round, paint: { "line-color": casing, "line-width": 6.5 } },
     { id: "gap-repair-line", type: "line", source: "gap-repair", filter: isLine, layout: round, paint: { "line-color": accent, "line-width": 3 } },
@@ -31,7 +32,7 @@ function layers() {
       type: "circle",
       source: "gap-repair",
       filter: isPoint,
-      paint: { "circle-radius": 5, "circle-color": accent, "circle-stroke-color": raised, "circle-stroke-width": 1.5 },
+      paint: { "circle-radius": byZoom(2, 5), "circle-color": accent, "circle-stroke-color": raised, "circle-stroke-width": byZoom(0.5, 1.5) },
     },
   ];
 }
@@ -55,9 +56,12 @@ export function showAll(map, gaps) {
   map.getSource("gaps").setData({ type: "FeatureCollection", features });
 }
 
-/** The gap's own geometry, with a ring at each of its places. */
+/** The gap's own geometry, with a ring at each of its places; of a dead end also the way to the next part of the network. */
 export function showGap(map, gap) {
-  map.getSource("gap").setData({ type: "FeatureCollection", features: gap ? [feature(gap.geometry), ...points(placesOf(gap.geometry))] : [] });
+  const features = gap ? [feature(gap.geometry), ...points(placesOf(gap.geometry))] : [];
+  const nearest = gap?.properties.details.nearest;
+  if (nearest) features.unshift(feature({ type: "LineString", coordinates: [gap.properties.position, nearest] }));
+  map.getSource("gap").setData({ type: "FeatureCollection", features });
 }
 
 /** A FeatureCollection, or null. Lines first, so that towers stand on them. */

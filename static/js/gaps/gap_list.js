@@ -6,7 +6,7 @@ import { cutOffText, KINDS, STATES } from "./kinds.js";
 
 const TYPED_MS = 250;
 
-/** on: { narrow(filter), choose(id), point(gap or null), more() }. Returns { filter, show(…), counts(…), step(±1), focusText }. */
+/** on: { narrow(filter), choose(id), point(gap or null), more() }. Returns { filter, show(…), counts(…), mark(id), step(±1), openNext(), focusText() }. */
 export function mountGapList(on) {
   const filter = { state: "open", kinds: new Set(), text: "", inView: false };
   const list = byId("gap-list");
@@ -16,6 +16,7 @@ export function mountGapList(on) {
   const text = byId("gap-text");
   const change = () => on.narrow(filter);
   let chosenId = null;
+  let chosenIndex = 0; // of the row that is or was chosen: what follows takes its place
   let typing = 0;
 
   const radios = STATES.map(({ state, name }) => {
@@ -74,6 +75,8 @@ export function mountGapList(on) {
     row.setAttribute("aria-current", String(gap.id === chosenId));
   }
 
+  const rowsNow = () => [...list.querySelectorAll(".gap-row")];
+
   const clearFilters = () => {
     filter.kinds.clear();
     filter.text = text.value = "";
@@ -94,7 +97,6 @@ export function mountGapList(on) {
 
   return {
     filter,
-    clearFilters,
     focusText: () => text.focus(),
     /** The loaded gaps, and whether there are more. */
     show(gaps, { hasMore, hasSearched }) {
@@ -115,16 +117,26 @@ export function mountGapList(on) {
     },
     mark(id) {
       chosenId = id;
-      for (const item of list.children) item.firstElementChild.setAttribute("aria-current", String(Number(item.dataset.id) === id));
-      list.querySelector("[aria-current=true]")?.scrollIntoView({ block: "nearest" });
+      rowsNow().forEach((row, index) => {
+        const isChosen = Number(row.parentElement.dataset.id) === id;
+        row.setAttribute("aria-current", String(isChosen));
+        if (!isChosen) return;
+        chosenIndex = index;
+        row.scrollIntoView({ block: "nearest" });
+      });
     },
-    /** Moves the focus along the rows; from outside to the chosen one, or the first. */
+    /** Moves the focus along the rows; from outside to the one beside the chosen one. */
     step(by) {
-      const rows = [...list.querySelectorAll(".gap-row")];
-      const from = rows.indexOf(document.activeElement);
-      const chosen = rows.findIndex((row) => row.getAttribute("aria-current") === "true");
-      const to = from >= 0 ? from + by : chosen >= 0 ? chosen + by : 0;
-      rows[Math.max(0, Math.min(rows.length - 1, to))]?.focus();
+      const rows = rowsNow();
+      const focused = rows.indexOf(document.activeElement);
+      const isThere = Number(rows[chosenIndex]?.parentElement.dataset.id) === chosenId;
+      const from = focused >= 0 ? focused : isThere ? chosenIndex : chosenIndex - (by > 0 ? 1 : 0);
+      rows[Math.max(0, Math.min(rows.length - 1, from + by))]?.focus();
+    },
+    /** The gap that has taken the place of the chosen one, which is off the list. */
+    openNext() {
+      const rows = rowsNow();
+      rows[Math.min(chosenIndex, rows.length - 1)]?.click();
     },
   };
 }

@@ -7,7 +7,7 @@ import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 const LONGEST_NOTE = 500;
 
 /**
- * on: { repair(body), dismiss(note), reopen(), preview(collection or null), place(tell), placeDone(offer), placeBack(), placeCancel(), close() };
+ * on: { repair(body), dismiss(note), reopen(), preview(collection or null), place(tell), placeDone(offer), placeBack(), placeCancel(), next(), close() };
  * canCurate says whether they are offered. `place` begins to take places from the map and tells how many there are.
  * Returns { show(gap or null), busy(whether), fault(sentence) }.
  */
@@ -45,8 +45,9 @@ export function mountGapPanel(canCurate, on) {
   function actsOf(gap) {
     const { repairs, state, kind } = gap.properties;
     if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? "Curators can repair this." : "")];
-    if (state === "dismissed") return [h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), "Open it again")];
-    if (state === "repaired") return [];
+    const following = h("button", { class: "button primary", type: "button", onclick: on.next }, "Next gap");
+    if (state === "dismissed") return [following, h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), "Open it again")];
+    if (state === "repaired") return [following];
     return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(kind)];
   }
 

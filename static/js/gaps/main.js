@@ -48,6 +48,7 @@ const panel = mountGapPanel(page.canCurate, {
     tellPlaces();
   },
   placeCancel: () => (stopPlacing(), panel.show(chosen)),
+  next: () => list.openNext(),
   close: () => choose(null),
 });
 
@@ -131,7 +132,7 @@ async function choose(id, { stay = false } = {}) {
     layer.showGap(map.map, data);
     list.mark(id);
     remember();
-    if (!stay) map.fit(boxOf(data.geometry));
+    if (!stay) map.fit(boxOf(data));
     say(data.properties.sentence);
   } catch (error) {
     toast(error.status === 404 ? "This gap is gone: its asset was taken away." : error.message);
@@ -142,7 +143,8 @@ async function refreshChosen() {
   try {
     chosen = (await get(`/gaps/${chosen.id}`)).data;
     panel.show(chosen);
-    layer.showGap(map.map, chosen);
+    layer.showGap(map.map, chosen.properties.state === "repaired" ? null : chosen);
+    list.mark(chosen.id);
   } catch {
     await choose(null);
   }
@@ -155,8 +157,9 @@ function remember() {
   history.replaceState(history.state, "", address);
 }
 
-function boxOf(geometry) {
-  const [west, south, east, north] = boxAround(layer.placesOf(geometry));
+function boxOf({ geometry, properties }) {
+  const { nearest } = properties.details;
+  const [west, south, east, north] = boxAround([...layer.placesOf(geometry), ...(nearest ? [nearest] : [])]);
   const wide = Math.max(0, ROUND_DEG - (east - west) / 2) / Math.cos((south * Math.PI) / 180);
   const high = Math.max(0, ROUND_DEG - (north - south) / 2);
   return [west - wide, south - high, east + wide, north + high];
@@ -196,20 +199,19 @@ async function settle(promise, words, id) {
   try {
     await promise;
     toast(words);
-    await afterChange(id, { stays: true });
+    await afterChange(id);
   } catch (error) {
     toast(error.message);
   }
 }
 
-/** The list and the map anew; the next gap of the list comes up, unless the changed one is to stay. */
-async function afterChange(id, { stays = false } = {}) {
+/** The list and the map anew; the changed gap stays in sight, so that one sees what has become of it. */
+async function afterChange(id) {
   map.refreshTiles();
-  const index = gaps.findIndex((gap) => gap.id === id);
+  layer.showRepair(map.map, null);
   await look();
   await load();
-  const following = stays ? gaps.find((gap) => gap.id === id) : gaps[Math.min(Math.max(index, 0), gaps.length - 1)];
-  await choose(following?.id ?? null);
+  if (chosen?.id === id) await refreshChosen();
 }
 
 function startPlacing(tell) {

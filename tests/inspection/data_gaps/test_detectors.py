@@ -166,6 +166,14 @@ def test_a_dead_end_cuts_off_the_smaller_part_within_reach() -> None:
     assert all(gap.cut_off_m == pytest.approx(600, rel=1e-3) for gap in facing)
 
 
+def test_a_dead_end_does_not_lead_on_to_a_line_of_another_voltage() -> None:
+    one, two = row(0, 2_000, 200), row(2_800, 3_400, 200)
+    gaps = found("dead_end", ground(one, two, towers=[*one, *two], voltages_v=[(400_000,), (132_000,)]))
+    assert [gap.details["nearest_m"] for gap in gaps] == [None] * 4
+    gaps = found("dead_end", ground(one, two, towers=[*one, *two], voltages_v=[(400_000,), ()]))
+    assert sum(gap.details["nearest_m"] is not None for gap in gaps) == 2
+
+
 def test_an_end_in_reach_of_its_own_network_alone_cuts_off_nothing() -> None:
     path = row(0, 2_000, 200)
     gaps = found("dead_end", ground(path, towers=path))
