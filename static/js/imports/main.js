@@ -1,5 +1,273 @@
-/** The page "Imports": composes its panel and the map. */
+/** The page "Imports": composes what comes in, the list, the open one with its difference, and the map. */
 
+import { ApiError, get, patch, post, signInAddress } from "../api.js";
+import { byId, h, icon } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
+import { boxAround } from "../map/map_view.js";
+import { say, toast } from "../page/toast.js";
+import { createStore } from "../store.js";
+import { countText } from "../units.js";
+import { mountBringIn, notAllowed } from "./bring_in.js";
+import { createChangesLayer, positionsOf } from "./changes_layer.js";
+import { mountChanges } from "./changes.js";
+import { mountList, titleOf } from "./list.js";
+import { mountOverpassBox } from "./overpass_box.js";
+import { mountProposal } from "./proposal.js";
+import { isOpen, STATES } from "./words.js";
 
-mountGroundPage().open();
+const LOOK_MS = 1_000; // while the open one is worked on
+const LIST_MS = 4_000; // while another one is
+const LIST_PAGE = 50;
+const CHANGES_PAGE = 200;
+
+const store = createStore({ proposals: null, next: null, current: null, busy: null, changes: [], changesNext: null, action: "", lit: null, selected: null });
+let changesLayer = null;
+let lookedAt = 0;
+
+const { page, map, open } = mountGroundPage({
+  click(thing, position, point) {
+    const change = changeAt(point);
+    if (change) select(change, { stay: true });
+  },
+  hover(thing, point) {
+    const change = point && changeAt(point);
+    light(change?.id ?? null);
+  },
+});
+
+const changeAt = (point) => {
+  const id = changesLayer?.at(point);
+  return id ? store.state.changes.find((change) => change.id === id) : null;
+};
+
+function tell(error, title) {
+  if (!(error instanceof ApiError)) throw error;
+  const words = error.isSignedOut ? ["Sign in to go on. ", h("a", { class: "text-button", href: signInAddress() }, "Sign in")] : [error.message];
+  byId("notices").replaceChildren(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, title), " ", ...words)));
+}
+const clearNotices = () => byId("notices").replaceChildren();
+
+/** Runs what somebody asked for; says so where it did not work. True if it did. */
+async function attempt(title, act) {
+  clearNotices();
+  try {
+    await act();
+    return true;
+  } catch (error) {
+    tell(error, title);
+    return false;
+  }
+}
+
+/* the list */
+
+async function loadList({ more = false } = {}) {
+  const { data } = await get(more ? store.state.next : `/imports?limit=${LIST_PAGE}`);
+  const proposals = more ? [...store.state.proposals, ...data.results] : data.results;
+  store.update({ proposals, next: data.next });
+  tellFacts(proposals);
+}
+
+function tellFacts(proposals) {
+  const waiting = proposals.filter(({ state }) => state === "ready").length;
+  const working = proposals.filter(isOpen).length;
+  byId("page-facts").textContent = [working && `${working} being worked on`, waiting ? `${countText(waiting, "import")} to be decided` : "Nothing to be decided"].filter(Boolean).join(" · ");
+}
+
+const put = (proposal) => {
+  const proposals = store.state.proposals ?? [];
+  const isKnown = proposals.some(({ id }) => id === proposal.id);
+  const next = isKnown ? proposals.map((known) => (known.id === proposal.id ? proposal : known)) : [proposal, ...proposals];
+  store.update({ proposals: next, ...(store.state.current?.id === proposal.id ? { current: proposal } : {}) });
+  tellFacts(next);
+};
+
+/* the open one */
+
+async function openProposal(id, { isNew = true, focus = true } = {}) {
+  clearNotices();
+  try {
+    const { data } = await get(`/imports/${id}`);
+    if (isNew) history.pushState({}, "", `/imports/${id}`);
+    store.update({ current: data, changes: [], changesNext: null, action: "", lit: null, selected: null });
+    byId("side-scroll").scrollTop = 0;
+    if (focus) byId("proposal-title").focus({ preventScroll: true });
+    await loadChanges({ fit: true });
+  } catch (error) {
+    tell(error, error.status === 404 ? "This import is not there." : "Not opened.");
+  }
+}
+
+function closeProposal({ isNew = true } = {}) {
+  const id = store.state.current?.id;
+  if (isNew) history.pushState({}, "", "/imports");
+  store.update({ current: null, changes: [], changesNext: null, action: "", lit: null, selected: null });
+  showChanges();
+  map.ring([]);
+  if (id) document.querySelector(`a[href="/imports/${id}"]`)?.focus();
+}
+
+async function loadChanges({ more = false, fit = false } = {}) {
+  const { current, action } = store.state;
+  if (!current || current.state === "reading") return;
+  const { data } = await get(more ? store.state.changesNext : `/imports/${current.id}/changes?limit=${CHANGES_PAGE}${action ? `&action=${action}` : ""}`);
+  if (store.state.current?.id !== current.id || store.state.action !== action) return; // somebody has gone on
+  store.update({ changes: more ? [...store.state.changes, ...data.features] : data.features, changesNext: data.next });
+  showChanges();
+  if (fit) map.fit(boxAround(store.state.changes.flatMap((change) => positionsOf(change.geometry))));
+}
+
+function showChanges() {
+  changesLayer?.show(store.state.changes, store.state.action);
+}
+
+const geometriesOf = (change) => (change?.geometry ? [change.geometry] : []);
+
+function light(id) {
+  if (id === store.state.lit) return;
+  store.update({ lit: id });
+  const change = store.state.changes.find((known) => known.id === id) ?? store.state.changes.find((known) => known.id === store.state.selected);
+  map.ring(geometriesOf(change));
+}
+
+function select(change, { stay = false } = {}) {
+  const isAgain = store.state.selected === change.id && !stay;
+  store.update({ selected: isAgain ? null : change.id });
+  map.ring(isAgain ? [] : geometriesOf(change));
+  if (isAgain || !change.geometry) return;
+  if (stay) document.querySelector(".change[aria-expanded=true]")?.scrollIntoView({ block: "nearest" });
+  else map.fit(boxAround(positionsOf(change.geometry)));
+}
+
+/** What somebody decides; where somebody else was faster, what that one decided is shown. */
+async function decide(busy, title, act) {
+  store.update({ busy });
+  clearNotices();
+  try {
+    put((await act()).data);
+  } catch (error) {
+    tell(error, title);
+    if (error.status === 409) put((await get(`/imports/${store.state.current.id}`)).data);
+  } finally {
+    store.update({ busy: null });
+  }
+}
+
+const acts = {
+  back: () => closeProposal(),
+  cancel: (proposal) => post(`/jobs/${proposal.job.id}/cancel`, {}).catch((error) => (tell(error, "Not stopped."), Promise.reject(error))),
+  apply: (overwrites) => decide("apply", "Not applied.", () => post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } })),
+  async discard() {
+    const { current } = store.state;
+    await decide("discard", "Not discarded.", () => post(`/imports/${current.id}/discard`, {}));
+    if (store.state.current?.state !== "discarded") return;
+    closeProposal();
+    toast(`“${titleOf(current)}” is discarded. Nothing of it counts.`);
+  },
+  async readAgain(parameters) {
+    await decide("read", "Not read again.", () => patch(`/imports/${store.state.current.id}`, { parameters }));
+    store.update({ changes: [], changesNext: null, action: "", selected: null });
+    showChanges();
+  },
+  place(position) {
+    map.show(position);
+    map.ring([{ type: "Point", coordinates: position }]);
+  },
+  async versions(name) {
+    const found = { set: null, rows: [] };
+    await attempt("The versions were not loaded.", async () => {
+      const { data } = await get("/zone-sets?limit=1000");
+      found.set = data.results.find((set) => set.name === name) ?? null;
+      if (found.set) found.rows = (await get(`/zone-sets/${found.set.id}/versions`)).data.results;
+    });
+    return found;
+  },
+  rollBack: (set, version) =>
+    attempt("Not rolled back.", async () => {
+      const { data } = await post(`/zone-sets/${set.id}/roll-back`, { version });
+      await openProposal(data.id);
+    }),
+};
+
+mountProposal(store, acts);
+mountList(store, { open: (id) => openProposal(id), more: () => attempt("Not loaded.", () => loadList({ more: true })) });
+mountChanges(store, {
+  async filter(action) {
+    store.update({ action, selected: null });
+    await attempt("Not loaded.", () => loadChanges());
+  },
+  point: (change) => light(change?.id ?? null),
+  show: select,
+  more: () => attempt("Not loaded.", () => loadChanges({ more: true })),
+});
+
+/** Looks again while something is worked on; what has ended is said once. */
+async function look() {
+  const { current, proposals } = store.state;
+  if (document.hidden) return;
+  try {
+    if (current && isOpen(current)) {
+      const { data } = await get(`/imports/${current.id}`);
+      if (store.state.current?.id !== data.id) return;
+      put(data);
+      if (data.state !== current.state) await ended(data);
+    } else if (proposals?.some(isOpen) && Date.now() - lookedAt > LIST_MS) {
+      lookedAt = Date.now();
+      await loadList();
+    }
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (error.isSignedOut) tell(error, "You are signed out.");
+  }
+}
+
+async function ended(proposal) {
+  say(`${titleOf(proposal)}: ${STATES[proposal.state].words}.`);
+  await loadChanges({ fit: true });
+  if (proposal.state === "refused" && proposal.faults[0]?.position) acts.place(proposal.faults[0].position);
+  if (proposal.state === "applied") {
+    map.refreshTiles();
+    map.setGround((await get("/ground")).data);
+  }
+}
+
+function openWhatTheAddressNames() {
+  const id = /^\/imports\/([0-9a-f-]{36})/.exec(location.pathname)?.[1] ?? null;
+  if (id === (store.state.current?.id ?? null)) return;
+  if (id) openProposal(id, { isNew: false });
+  else closeProposal({ isNew: false });
+}
+
+if (page.canCurate) {
+  const bringIn = mountBringIn({
+    userId: page.userId,
+    onStarted(proposal, { isLast }) {
+      put(proposal);
+      if (isLast) openProposal(proposal.id);
+    },
+  });
+  addEventListener("popstate", openWhatTheAddressNames);
+  open({
+    bindings: [{ keys: ["u"], words: "Choose a file", act: () => (store.state.current ? closeProposal() : undefined, bringIn.choose()) }],
+    async load() {
+      changesLayer = createChangesLayer(map);
+      changesLayer.addTo();
+      map.onRecolour(() => changesLayer.recolour());
+      if (page.overpass) {
+        mountOverpassBox(map, page.overpass, (box) =>
+          attempt("Not taken.", async () => {
+            const { data } = await post("/imports", { kind: "osm", parameters: { overpass_bbox: box } });
+            put(data);
+            await openProposal(data.id);
+          }),
+        );
+      }
+      await attempt("The list was not loaded.", () => loadList());
+      if (page.proposal) await openProposal(page.proposal, { isNew: false, focus: false });
+      setInterval(look, LOOK_MS);
+    },
+  });
+} else {
+  byId("imports-home").replaceChildren(h("section", { class: "panel-section" }, notAllowed()));
+  open();
+}

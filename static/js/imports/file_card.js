@@ -1,0 +1,131 @@
+/** One chosen file: what it is, where it comes from, and how far it is on its way. */
+
+import { h, icon } from "../dom.js";
+import { percentText } from "../units.js";
+import { KINDS, sizeText, VERTICAL_DATUMS } from "./words.js";
+
+const FIELDS = {
+  osm: [],
+  zones: [["set_name", "Name of the set", "The set that this file is the newest state of"]],
+  assets: [["set_name", "Name of the set", "The set that this file is the newest state of"]],
+  terrain: [["vertical_datum", "Heights count from", "The file does not say it"]],
+};
+const PROVENANCE = [
+  ["licence", "Licence", "CC BY 4.0"],
+  ["attribution", "Attribution", "Who must be named"],
+  ["source_address", "Address", "https://…"],
+];
+let count = 0;
+
+/** acts: { start(item), stop(item), choose(item), drop(item), kind(item, kind), change(item) }. Returns { element, refresh(item) }. */
+export function fileCard(item, acts) {
+  const id = `file-${(count += 1)}`;
+  const fields = h("div", { class: "stack" });
+  const status = h("div", { class: "file-status" });
+  const kind = h(
+    "select",
+    { class: "input", id: `${id}-kind`, onchange: () => (acts.kind(item, kind.value), drawFields()) },
+    Object.entries(KINDS).map(([value, { words }]) => h("option", { value }, words)),
+  );
+  const form = h(
+    "form",
+    { class: "stack", "aria-label": item.name, onsubmit: (event) => (event.preventDefault(), acts.start(item)) },
+    h("div", { class: "field" }, h("label", { for: `${id}-kind` }, "What it is"), kind),
+    fields,
+  );
+  const element = h(
+    "li",
+    { class: "file-card" },
+    h(
+      "div",
+      { class: "file-head" },
+      icon("file"),
+      h("span", { class: "file-name" }, h("strong", {}, item.name), h("span", { class: "caption" }, sizeText(item.size))),
+      h("button", { type: "button", class: "icon-button tight", "aria-label": `Take ${item.name} off`, title: "Take it off", onclick: () => acts.drop(item) }, icon("x", "small")),
+    ),
+    form,
+    status,
+  );
+
+  function input(group, name, hint, isUrl) {
+    const box = h("input", { class: "input", id: `${id}-${name}`, type: isUrl ? "url" : "text", placeholder: hint, maxlength: "300", value: item[group][name] ?? "" });
+    box.addEventListener("input", () => {
+      item[group][name] = box.value;
+      acts.change(item);
+    });
+    return box;
+  }
+
+  function datumChoice(name) {
+    const choice = h("select", { class: "input", id: `${id}-${name}` }, VERTICAL_DATUMS.map((datum) => h("option", {}, datum)));
+    choice.value = item.parameters[name] ?? VERTICAL_DATUMS[0];
+    item.parameters[name] = choice.value;
+    choice.addEventListener("change", () => {
+      item.parameters[name] = choice.value;
+      acts.change(item);
+    });
+    return choice;
+  }
+
+  function drawFields() {
+    kind.value = item.kind;
+    fields.replaceChildren(
+      ...FIELDS[item.kind].map(([name, words, hint]) =>
+        h("div", { class: "field" }, h("label", { for: `${id}-${name}` }, words), name === "vertical_datum" ? datumChoice(name) : input("parameters", name, hint)),
+      ),
+      item.kind === "osm"
+        ? h("p", { class: "caption" }, "© OpenStreetMap contributors, ODbL.")
+        : h(
+            "details",
+            { open: item.kind === "zones" },
+            h("summary", {}, "Where it comes from"),
+            h("div", { class: "stack" }, PROVENANCE.map(([name, words, hint]) => h("div", { class: "field" }, h("label", { for: `${id}-${name}` }, words), input("provenance", name, hint, name === "source_address")))),
+          ),
+    );
+  }
+  drawFields();
+
+  let shown = "";
+  function refresh() {
+    const isIdle = item.phase === "chosen" || item.phase === "failed";
+    form.hidden = !isIdle;
+    if (shown !== item.phase) {
+      shown = item.phase;
+      status.replaceChildren(...statusOf(item, acts));
+    }
+    const share = item.size ? item.received / item.size : 0;
+    for (const place of status.querySelectorAll("[data-share]")) place.textContent = percentText(share * 100);
+    for (const place of status.querySelectorAll("[data-wait]")) place.textContent = `${item.waits_s}\u00a0s`;
+    for (const place of status.querySelectorAll("[data-problem]")) place.textContent = item.problem;
+    const bar = status.querySelector("[role=progressbar]");
+    if (bar) {
+      bar.setAttribute("aria-valuenow", String(Math.round(share * 100)));
+      bar.firstElementChild.style.width = `${share * 100}%`;
+    }
+  }
+  return { element, refresh };
+}
+
+function statusOf(item, acts) {
+  const share = () => h("span", { dataset: { share: "" } });
+  const button = (words, act, look = "") => h("button", { type: "button", class: `button ${look}`.trim(), onclick: act }, words);
+  const bar = () => h("div", { class: "progress", role: "progressbar", "aria-label": `Sending ${item.name}`, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
+  if (item.phase === "sending") return [h("div", { class: "job-words" }, h("span", {}, "Sending"), share()), bar(), h("div", { class: "row-acts" }, button("Stop", () => acts.stop(item)))];
+  if (item.phase === "starting") return [h("div", { class: "job-words" }, h("span", { role: "status" }, "Sent. It will be read now."))];
+  if (item.phase === "waiting") {
+    const wait = h("span", { dataset: { wait: "" } });
+    return [
+      h("div", { class: "notice warning" }, icon("cloud-off"), h("p", {}, h("strong", { role: "status" }, "The connection was cut."), " ", share(), " is there and stays. Next try in ", wait, ". ", h("button", { type: "button", class: "text-button", onclick: () => item.wake?.() }, "Try now"))),
+      bar(),
+      h("div", { class: "row-acts" }, button("Stop", () => acts.stop(item))),
+    ];
+  }
+  if (item.phase === "lost") {
+    return [
+      h("p", {}, share(), " is there already. Choose the same file again, and it goes on from there."),
+      h("div", { class: "row-acts" }, button("Choose the file", () => acts.choose(item))),
+    ];
+  }
+  const problem = item.phase === "failed" && h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", { dataset: { problem: "" } }));
+  return [problem, h("div", { class: "row-acts" }, button("Read the file", () => acts.start(item), "primary"))].filter(Boolean);
+}

@@ -1,0 +1,32 @@
+/** How far a job is, and the way to stop it. */
+
+import { h } from "../dom.js";
+import { percentText } from "../units.js";
+
+/** Returns { element, refresh(job) }; `cancel()` asks the job to stop. */
+export function jobLine(what, cancel) {
+  const words = h("span", {});
+  const share = h("span", {});
+  const bar = h("div", { class: "progress", role: "progressbar", "aria-label": what, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
+  const stop = h("button", { type: "button", class: "button", "aria-label": `Cancel: ${what}` }, "Cancel");
+  stop.addEventListener("click", () => {
+    stop.disabled = true;
+    stop.textContent = "Stopping";
+    cancel().catch(() => {
+      stop.disabled = false;
+      stop.textContent = "Cancel";
+    });
+  });
+  const element = h("div", { class: "import-job" }, h("div", { class: "job-words" }, words, share), bar, h("div", { class: "row-acts" }, stop));
+
+  function refresh(job) {
+    const text = job?.message || what;
+    words.textContent = text.charAt(0).toUpperCase() + text.slice(1);
+    const isKnown = job?.state === "running";
+    share.textContent = isKnown ? percentText(job.progress * 100) : "";
+    if (isKnown) bar.setAttribute("aria-valuenow", String(Math.round(job.progress * 100)));
+    else bar.removeAttribute("aria-valuenow");
+    bar.firstElementChild.style.width = isKnown ? `${job.progress * 100}%` : "0";
+  }
+  return { element, refresh };
+}

@@ -1,0 +1,69 @@
+/** The list of what has come in, newest first. */
+
+import { byId, h, icon, keyedList } from "../dom.js";
+import { percentText, whenText } from "../units.js";
+import { differenceSentence, isOpen, KINDS, ORIGINS, STATES } from "./words.js";
+
+/** acts: { open(id), more() } */
+export function mountList(store, acts) {
+  const list = byId("imports");
+  const draw = keyedList(
+    list,
+    (proposal) => proposal.id,
+    (proposal) => {
+      const row = h("li", {});
+      const link = h("a", { class: "import-row", href: `/imports/${proposal.id}` });
+      link.addEventListener("click", (event) => {
+        if (event.metaKey || event.ctrlKey || event.shiftKey || event.button) return;
+        event.preventDefault();
+        acts.open(proposal.id);
+      });
+      row.append(link);
+      return row;
+    },
+    (row, proposal) => {
+      const seen = JSON.stringify(proposal);
+      if (row.dataset.seen === seen) return;
+      row.dataset.seen = seen;
+      row.firstElementChild.replaceChildren(...content(proposal));
+    },
+  );
+
+  store.listen(["proposals", "next"], ({ proposals, next }) => {
+    if (proposals === null) return;
+    draw(proposals);
+    list.hidden = proposals.length === 0;
+    byId("no-imports").hidden = proposals.length > 0;
+    byId("more-imports").hidden = next === null;
+  });
+  byId("more-imports").addEventListener("click", acts.more);
+}
+
+export function stateChip({ state }) {
+  const { words, icon: name, chip } = STATES[state];
+  return h("span", { class: `chip ${chip}`.trim() }, icon(name), words);
+}
+
+function content(proposal) {
+  return [
+    h("span", { class: "import-kind", title: KINDS[proposal.kind].words }, icon(KINDS[proposal.kind].icon)),
+    h("span", { class: "import-what" }, h("strong", {}, titleOf(proposal)), h("span", { class: "caption" }, secondLine(proposal))),
+    stateChip(proposal),
+  ];
+}
+
+export const titleOf = (proposal) => proposal.file_name || `${KINDS[proposal.kind].words} ${ORIGINS[proposal.origin]}`.trim();
+
+function secondLine(proposal) {
+  const who = proposal.decided_by ?? proposal.created_by;
+  const when = whenText(proposal.decided_at ?? proposal.created_at);
+  const what = {
+    reading: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
+    applying: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
+    refused: () => proposal.faults[0]?.message ?? "",
+    ready: () => differenceSentence(proposal.difference),
+    applied: () => differenceSentence(proposal.difference),
+    discarded: () => "",
+  }[proposal.state]();
+  return [what, [isOpen(proposal) ? "" : who, when].filter(Boolean).join(", ")].filter(Boolean).join(" · ");
+}

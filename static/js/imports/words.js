@@ -1,0 +1,116 @@
+/** What the page "Imports" says: kinds, states, differences and facts as words. */
+
+import { countText } from "../units.js";
+
+const SPACE = "\u00a0";
+
+export const KINDS = {
+  osm: { words: "OpenStreetMap", icon: "line" },
+  zones: { words: "No-fly zones", icon: "zone" },
+  assets: { words: "Asset file", icon: "tower" },
+  terrain: { words: "Terrain", icon: "mountain" },
+};
+
+export const STATES = {
+  reading: { words: "Reading", icon: "loader-circle", chip: "active" },
+  refused: { words: "Refused", icon: "octagon-alert", chip: "failed" },
+  ready: { words: "To be decided", icon: "eye", chip: "approved" },
+  applying: { words: "Applying", icon: "loader-circle", chip: "active" },
+  applied: { words: "Applied", icon: "circle-check", chip: "" },
+  discarded: { words: "Discarded", icon: "circle-x", chip: "draft" },
+};
+
+/** In the order in which they are said. `sign` stands on the map, `icon` in the list. */
+export const ACTIONS = {
+  new: { words: "new", sign: "+", icon: "plus" },
+  changed: { words: "changed", sign: "≠", icon: "pencil" },
+  vanished: { words: "vanished", sign: "−", icon: "minus" },
+  kept: { words: "kept as edited by hand", sign: "=", icon: "hand" },
+};
+
+export const ORIGINS = { upload: "", overpass: "from Overpass", subscription: "from a subscription", roll_back: "roll-back" };
+
+/** Where a height counts from, as a terrain file does not say. */
+export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EVRF2007", "NAVD88"];
+
+export const isOpen = (proposal) => proposal.state === "reading" || proposal.state === "applying";
+
+const number = (value) => value.toLocaleString("en-GB");
+
+/** "412 new, 3 changed, 1 vanished, 2 kept as edited by hand." */
+export function differenceSentence(difference) {
+  const parts = Object.keys(ACTIONS)
+    .filter((action) => difference[action] > 0)
+    .map((action) => `${number(difference[action])}${SPACE}${ACTIONS[action].words}`);
+  return parts.length ? `${parts.join(", ")}.` : "Nothing would change.";
+}
+
+/** How many rows of the ground an application touches. */
+export function touched(difference, { overwrites = false } = {}) {
+  const counted = ["new", "changed", "vanished", ...(overwrites ? ["kept"] : [])];
+  return counted.reduce((sum, action) => sum + (difference[action] ?? 0), 0);
+}
+
+export function sizeText(bytes) {
+  if (bytes === null || bytes === undefined) return "";
+  if (bytes < 1024 * 1024) return `${number(Math.max(1, Math.round(bytes / 1024)))}${SPACE}kB`;
+  return `${(bytes / 1024 / 1024).toLocaleString("en-GB", { maximumFractionDigits: 1 })}${SPACE}MiB`;
+}
+
+const UNITS = { m: "m", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: "m²", bytes: "bytes", s: "s" };
+
+/** "height_m" → { words: "height", unit: "m" } */
+export function factName(name) {
+  const parts = name.split("_");
+  const unit = parts.length > 1 ? (UNITS[parts.at(-1)] ?? "") : "";
+  if (unit) parts.pop();
+  if (parts[0] === "is" && parts.length > 1) parts.shift();
+  return { words: parts.join(" "), unit };
+}
+
+/** A value as text; what has a shape is on the map. */
+export function factText(name, value) {
+  if (value === null || value === undefined || value === "") return "nothing";
+  if (value === true) return "yes";
+  if (value === false) return "no";
+  if (typeof value === "number") return number(value).replace("-", "−");
+  if (typeof value === "string") return value.length > 120 ? `${value.slice(0, 119)}…` : value;
+  if (isGeometry(value)) return "on the map";
+  if (Array.isArray(value)) return value.length && value.every((entry) => typeof entry !== "object") ? value.join(", ") : countText(value.length, "entry", "entries");
+  if ("value_m" in value) return `${number(value.value_m)}${SPACE}m ${value.reference ?? ""}`.trim();
+  const entries = Object.entries(value);
+  return entries.length ? factText(name, entries.map(([key, inner]) => `${key}: ${factText(key, inner)}`).join(", ")) : "nothing";
+}
+
+export const isGeometry = (value) => Boolean(value) && typeof value === "object" && typeof value.type === "string" && ("coordinates" in value || "geometries" in value);
+
+/** The facts of a change, one line each: { words, before, after }; null where that side does not exist. */
+export function factLines({ before, after }) {
+  const names = [...new Set([...Object.keys(before ?? {}), ...Object.keys(after ?? {})])];
+  const isSaid = (name) => !isEmpty(before?.[name]) || !isEmpty(after?.[name]);
+  return names.filter(isSaid).map((name) => {
+    const { words, unit } = factName(name);
+    const side = (facts) => {
+      if (!facts) return null;
+      const text = factText(name, facts[name]);
+      return unit && typeof facts[name] === "number" ? `${text}${SPACE}${unit}` : text;
+    };
+    if (isGeometry(before?.[name]) && isGeometry(after?.[name])) return { words, before: "dashed on the map", after: "drawn on the map" };
+    return { words, before: side(before), after: side(after) };
+  });
+}
+
+const isEmpty = (value) => value === null || value === undefined || value === "" || (typeof value === "object" && Object.keys(value).length === 0);
+
+/** Figures of a file, for people: numbers and short texts alone. */
+export function summaryLines(summary) {
+  return Object.entries(summary)
+    .filter(([name, value]) => name !== "columns" && (typeof value === "number" || typeof value === "string" || typeof value === "boolean") && value !== "")
+    .map(([name, value]) => {
+      const { words, unit } = factName(name);
+      return { words, value: `${factText(name, value)}${unit ? `${SPACE}${unit}` : ""}` };
+    });
+}
+
+/** Sentences that a reader of files has left for people. */
+export const notesOf = (summary) => (Array.isArray(summary.notes) ? summary.notes.filter((note) => typeof note === "string") : []);
