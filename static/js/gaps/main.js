@@ -22,7 +22,7 @@ let summary = null;
 let placed = null; // positions that are being clicked, with what to tell of them
 let asked = 0;
 
-const { page, map, open } = mountGroundPage({
+const { page, map, layout, open } = mountGroundPage({
   ringsItself: true,
   isBusy: () => placed !== null,
   click: (thing, position, point) => {
@@ -33,7 +33,7 @@ const { page, map, open } = mountGroundPage({
 const list = mountGapList({
   narrow: () => load(),
   choose: (id) => choose(id),
-  point: (gap) => map.ring(gap ? [{ type: "Point", coordinates: gap.properties.position }] : []),
+  point: (gap) => map.ring(gap && gap.id !== chosen?.id ? [{ type: "Point", coordinates: gap.properties.position }] : []),
   more: () => load({ more: true }),
 });
 const panel = mountGapPanel(page.canCurate, {
@@ -130,7 +130,9 @@ async function choose(id, { stay = false } = {}) {
     chosen = data;
     panel.show(data);
     layer.showGap(map.map, data);
+    map.ring([]);
     list.mark(id);
+    if (layout.isPhone()) byId("side-scroll").scrollTop = 0; // there the panel stands above the list
     remember();
     if (!stay) map.fit(boxOf(data));
     say(data.properties.sentence);
