@@ -5,10 +5,10 @@ from typing import Any
 from rest_framework import serializers
 
 from inspection.models import DataImport, ImportProposal, ProposalState, ZoneSet, ZoneSetVersion, ZoneSubscription
+from inspection.services.zone_import import FORMAT_NAMES
 from workspace.models import User
 from workspace.outgoing import OutgoingRefused, check_address
 
-SOURCE_FORMATS = ["ed269", "ed318", "openair", "geojson"]
 LONGEST_INTERVAL_H = 24 * 90
 
 
@@ -92,7 +92,7 @@ class ZoneSubscriptionPageSerializer(serializers.Serializer):
 
 class SubscriptionChangeSerializer(serializers.Serializer):
     address = serializers.CharField(max_length=500, help_text="http or https, on the public internet, without user name or password")
-    source_format = serializers.ChoiceField(choices=SOURCE_FORMATS, allow_blank=True, required=False)
+    source_format = serializers.ChoiceField(choices=list(FORMAT_NAMES), allow_blank=True, required=False)
     licence = serializers.CharField(max_length=200, allow_blank=True, required=False)
     attribution = serializers.CharField(max_length=300, allow_blank=True, required=False)
     interval_h = serializers.IntegerField(min_value=1, max_value=LONGEST_INTERVAL_H, required=False)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
+from django.conf import settings
 from django.db import IntegrityError, transaction
 from django.utils import timezone
 
@@ -14,7 +15,7 @@ from inspection.selectors.zone_sets import FETCH_TASK, open_fetch_of
 from inspection.services.proposals.pipeline import LostJob, WrongState, discard_proposal, start_proposal
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import plain_name, store_upload, upload_folder
-from inspection.services.zone_import import read_zone_file
+from inspection.services.zone_import import read_zone_file, stated_validity
 from inspection.services.zone_sets import difference_of
 from inspection.zones.zone_file import MAX_FILE_BYTES, ZoneFileError
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
@@ -112,14 +113,15 @@ def fetch_subscription(*, job: Job, progress: Progress) -> ImportProposal | None
         finish_job(job=job, message="The subscription is no longer there.")
         return None
     is_asked_for = job.created_by_id is not None
+    most_bytes = min(MAX_FILE_BYTES, settings.LARGEST_FILE_BYTES[ImportKind.ZONES])
     with tempfile.TemporaryDirectory(prefix=_FOLDER_PREFIX, dir=upload_folder()) as folder:
         path = Path(folder) / _file_name(subscription)
         progress("Fetching", 0.0)
         try:
             fetched = fetch(
-                subscription.address, to=path, max_bytes=MAX_FILE_BYTES, timeout_s=SILENCE_S, total_s=TOTAL_S,
+                subscription.address, to=path, max_bytes=most_bytes, timeout_s=SILENCE_S, total_s=TOTAL_S,
                 headers={} if is_asked_for else _conditions(subscription),
-                progress=lambda size: progress("Fetching", min(0.9, size / MAX_FILE_BYTES)),
+                progress=lambda size: progress("Fetching", 0.9 * size / most_bytes),
             )  # fmt: skip
         except OutgoingError as error:
             _note_failure(subscription, job, error)
@@ -144,7 +146,10 @@ def _says_what_the_set_says(zone_set: ZoneSet, path: Path) -> bool:
         content, _ = read_zone_file(path)
     except ZoneFileError:
         return False  # the proposal says what is wrong with it
-    return zone_set.data_import is not None and not difference_of(zone_set, content.zones).changes_something
+    known = zone_set.data_import
+    if known is None or stated_validity(content) != (known.valid_from, known.valid_until):
+        return False
+    return not difference_of(zone_set, content.zones).changes_something
 
 
 def _note_answer(subscription: ZoneSubscription, job: Job, fetched: Fetched, path: Path | None) -> ImportProposal | None:

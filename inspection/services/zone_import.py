@@ -2,12 +2,14 @@
 
 import hashlib
 from collections import Counter
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import shapely
 from django.contrib.gis.geos import Polygon
 from django.db import transaction
+from django.utils.dateparse import parse_datetime
 
 from inspection.models import DataImport, ImportKind, ZoneSet
 from inspection.services.ground import hold_ground, mark_ground_changed
@@ -18,6 +20,8 @@ from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.zone_file import MAX_FILE_BYTES, ZoneFile, ZoneFileError, read_zones
 from workspace.models import User
 
+FORMAT_NAMES = {"ed269": "ED-269", "ed318": "ED-318", "openair": "OpenAir", "geojson": "GeoJSON"}
+
 
 def import_zones(
     *,
@@ -27,6 +31,7 @@ def import_zones(
     is_synthetic: bool = False,
     replace_edited: bool = False,
     replace_all: bool | None = None,
+    source_format: str = "",
     provenance: Provenance | None = None,
 ) -> DataImport:
     """Make the set (by default named after the file) what the file says, and return the import with its counts.
@@ -35,7 +40,7 @@ def import_zones(
     replace_edited says otherwise. Raises ZoneFileError and changes nothing, also when the set has zones that are all elsewhere: they
     would be gone unnoticed. A set that is named, or replace_all, says that this is meant.
     """
-    content, sha256 = read_zone_file(path)
+    content, sha256 = read_zone_file(path, source_format=source_format)
     name = set_name_of(path, set_name)
     with transaction.atomic():
         hold_ground()
@@ -74,12 +79,21 @@ def make_so(
     mark_ground_changed()
 
 
-def read_zone_file(path: Path) -> tuple[ZoneFile, str]:
-    """The zones of a file and its SHA-256. Raises ZoneFileError."""
+def read_zone_file(path: Path, *, source_format: str = "") -> tuple[ZoneFile, str]:
+    """The zones of a file and its SHA-256. Raises ZoneFileError, also if the file is in another format than was said."""
     if path.stat().st_size > MAX_FILE_BYTES:
         raise ZoneFileError([GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")])
     data = path.read_bytes()
-    return read_zones(data), hashlib.sha256(data).hexdigest()
+    content = read_zones(data)
+    if source_format and content.source_format != FORMAT_NAMES[source_format]:
+        message = f"the file is {content.source_format}, not {FORMAT_NAMES[source_format]} as was said"
+        raise ZoneFileError([GeometryFault("", message)])
+    return content, hashlib.sha256(data).hexdigest()
+
+
+def stated_validity(content: ZoneFile) -> tuple[datetime | None, datetime | None]:
+    """From when and until when the file says that it holds."""
+    return content.valid_from and parse_datetime(content.valid_from), content.valid_until and parse_datetime(content.valid_until)
 
 
 def set_name_of(path: Path, set_name: str | None) -> str:
@@ -109,7 +123,8 @@ def zone_counts(content: ZoneFile) -> dict[str, Any]:
         "polygons": sum(zone.circle is None for zone in content.zones),
         "with_schedule": sum(zone.schedule is not None for zone in content.zones),
         "restrictions": dict(sorted(Counter(zone.restriction or "not stated" for zone in content.zones).items())),
-        "extent": extent_of(content),
+        "extent": extent_of(content), "provider": content.provider, "valid_from": content.valid_from, "valid_until": content.valid_until,
+        "notes": list(content.notes),
     }  # fmt: skip
 
 
@@ -123,6 +138,9 @@ def _origin(content: ZoneFile, provenance: Provenance | None, *, is_synthetic: b
         }  # fmt: skip
     if is_synthetic:
         stated["attribution"] = SYNTHETIC_ATTRIBUTION
+    elif not stated.get("attribution"):
+        stated["attribution"] = content.provider[:300]
+    stated["valid_from"], stated["valid_until"] = stated_validity(content)
     return {name: value for name, value in stated.items() if value}
 
 

@@ -11,6 +11,7 @@ from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, Z
 from inspection.services.facts import differing, zone_facts
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from inspection.services.zone_import import (
+    FORMAT_NAMES,
     import_zones,
     make_so,
     read_zone_file,
@@ -37,7 +38,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         return Reading(summary, found.numbers, tuple(_changes(found)))
     progress("reading the zones", 0.1)
     with _faults_as_refusal():
-        content, _ = read_zone_file(path)
+        content, _ = read_zone_file(path, source_format=_source_format(parameters))
         name = set_name_of(path, _set_name(parameters))
         zone_set = ZoneSet.objects.filter(name=name).first()
         if not parameters.get("replace_all"):
@@ -58,7 +59,8 @@ def apply(
     with _faults_as_refusal():
         return import_zones(
             path=path, set_name=set_name_of(path, _set_name(parameters)), imported_by=applied_by,
-            replace_edited=bool(parameters.get("replace_edited")), replace_all=bool(parameters.get("replace_all")), provenance=provenance,
+            replace_edited=bool(parameters.get("replace_edited")), replace_all=bool(parameters.get("replace_all")),
+            source_format=_source_format(parameters), provenance=provenance,
         )  # fmt: skip
 
 
@@ -100,6 +102,13 @@ def _set_name(parameters: dict[str, Any]) -> str | None:
     if name is None or (isinstance(name, str) and name.strip()):
         return name and name.strip()
     raise FileRefused([Fault("set_name", "the name of the set is a text")])
+
+
+def _source_format(parameters: dict[str, Any]) -> str:
+    stated = parameters.get("format") or ""
+    if stated and (not isinstance(stated, str) or stated not in FORMAT_NAMES):
+        raise FileRefused([Fault("format", f"known formats are {', '.join(FORMAT_NAMES)}")])
+    return stated
 
 
 @contextmanager
