@@ -1,4 +1,7 @@
-"""Zones from an ED-269 document: {"features": [...]}, whose features are not GeoJSON's. Each geometry entry is a layer."""
+"""Zones from an ED-269 document, whose features are not GeoJSON's; each geometry entry is a layer.
+
+Both envelopes in use are read: {"title", "description", "features": [...]} and {"formatVersion", "createdAt", "UASZoneList": [...]}.
+"""
 
 from typing import Any
 
@@ -7,26 +10,37 @@ from inspection.zones.faults import FaultList
 from inspection.zones.geometry_gate import MAX_POLYGONS, GeometryFault, VertexBudget, checked_area, checked_position
 from inspection.zones.height_bands import height_band
 from inspection.zones.records import ZoneRecord
+from inspection.zones.schedule import checked_schedule
 from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
 
 _OWN_FIELDS = {"identifier", "name", "restriction", "geometry", "applicability"}
 
 
+ENVELOPES = ("features", "UASZoneList")
+
+
 def is_ed269(document: Any) -> bool:
-    """An object with a list of features, none of which says that it is a GeoJSON Feature."""
-    if not isinstance(document, dict) or not isinstance(document.get("features"), list) or document.get("type") == "FeatureCollection":
+    """An object with a list of zones, none of which says that it is a GeoJSON Feature."""
+    if not isinstance(document, dict) or document.get("type") == "FeatureCollection":
         return False
-    return all(isinstance(feature, dict) and feature.get("type") != "Feature" for feature in document["features"])
+    zones = document.get(_envelope(document))
+    return isinstance(zones, list) and all(isinstance(zone, dict) and zone.get("type") != "Feature" for zone in zones)
+
+
+def _envelope(document: dict[str, Any]) -> str:
+    return next((name for name in ENVELOPES if name in document), ENVELOPES[0])
 
 
 def zones_of_ed269(document: dict[str, Any], faults: FaultList) -> list[ZoneRecord]:
     budget = VertexBudget()
-    if len(document["features"]) > MAX_POLYGONS:
-        raise GeometryFault("features", f"there are {len(document['features'])} features; at most {MAX_POLYGONS} are taken")
+    envelope = _envelope(document)
+    zones = document[envelope]
+    if len(zones) > MAX_POLYGONS:
+        raise GeometryFault(envelope, f"there are {len(zones)} zones; at most {MAX_POLYGONS} are taken")
     records: list[ZoneRecord] = []
-    for index, feature in enumerate(document["features"]):
+    for index, zone in enumerate(zones):
         with faults.gathering():
-            records += _layers(feature, f"features[{index}]", faults, budget)
+            records += _layers(zone, f"{envelope}[{index}]", faults, budget)
     return records
 
 
@@ -39,7 +53,7 @@ def _layers(feature: dict[str, Any], place: str, faults: FaultList, budget: Vert
     reasons = feature.get("reason") or []
     if not isinstance(reasons, list) or not all(isinstance(reason, str) for reason in reasons):
         raise GeometryFault(f"{place}.reason", "reasons are a list of texts")
-    schedule = _schedule(feature.get("applicability"), f"{place}.applicability")
+    schedule = checked_schedule(feature.get("applicability"), f"{place}.applicability")
     geometry = feature.get("geometry")
     if not isinstance(geometry, list) or not geometry:
         raise GeometryFault(f"{place}.geometry", "a zone needs a list of at least one geometry")
@@ -71,14 +85,3 @@ def _layer(volume: Any, place: str, budget: VertexBudget, facts: dict[str, Any])
     radius_m = checked_radius_m(shape.get("radius"), f"{place}.radius")
     circle = {"centre": list(centre), "radius_m": radius_m}
     return ZoneRecord(geometry=enclosing_polygon(centre, radius_m, place, budget), band=band, circle=circle, **facts)
-
-
-def _schedule(applicability: Any, place: str) -> list[Any] | None:
-    """The periods as the file gives them, or None for a zone that is permanent."""
-    if applicability is None or applicability == []:
-        return None
-    if not isinstance(applicability, list) or not all(isinstance(period, dict) for period in applicability):
-        raise GeometryFault(place, "periods of applicability are a list of objects")
-    if all(period.get("permanent") == "YES" and set(period) == {"permanent"} for period in applicability):
-        return None
-    return applicability

@@ -12,11 +12,13 @@ from inspection.zones.records import ZoneRecord
 from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
 
 _WGS84_NAMES = ("CRS84", "EPSG::4326", "EPSG:4326", "OGC:CRS84")
+_TITLES = ("name", "Name", "title")
+_RADII = ("radius_m", "radius", "buffer_m", "buffer", "Buffer")
 _AREAS = {"Polygon", "MultiPolygon"}
 _ALL_KINDS = _AREAS | {"Point", "GeometryCollection", "LineString", "MultiLineString", "MultiPoint"}
 
 
-def zones_of_geojson(document: dict[str, Any], faults: FaultList) -> list[ZoneRecord]:
+def zones_of_geojson(document: dict[str, Any], faults: FaultList, notes: list[str]) -> list[ZoneRecord]:
     with faults.gathering():
         _check_crs(document.get("crs"))
     kind = document.get("type")
@@ -33,10 +35,51 @@ def zones_of_geojson(document: dict[str, Any], faults: FaultList) -> list[ZoneRe
     else:
         places = [({"type": "Feature", "properties": {}, "geometry": document}, "")]
     records: list[ZoneRecord] = []
+    markers, hidden = 0, 0
+    areas = {_title(feature) for feature, _ in places if not _is_bare_point(feature)} - {""}
     for index, (feature, place) in enumerate(places):
-        with faults.gathering():
-            records += _zones_of_feature(feature, place, index, budget)
+        if is_hidden(feature):
+            hidden += 1
+        elif _is_bare_point(feature) and _title(feature) in areas:
+            markers += 1  # the label of an area that is here too
+        else:
+            with faults.gathering():
+                records += _zones_of_feature(feature, place, index, budget)
+    notes += left_out(markers, "marker", "of zones that are here as areas") + left_out(hidden, "zone", "that the source hides")
     return records
+
+
+def is_hidden(feature: Any) -> bool:
+    """The source itself does not show it: marked as hidden, or the frame around the country's own zones (Estonia's EERZout)."""
+    properties = feature.get("properties") if isinstance(feature, dict) else None
+    if not isinstance(properties, dict):
+        return False
+    return str(properties.get("hidden")).lower() == "true" or properties.get("identifier") == "EERZout"
+
+
+def left_out(number: int, word: str, which: str) -> list[str]:
+    return [f"{number} {word}{'' if number == 1 else 's'} {which}: left out."] if number else []
+
+
+def _is_bare_point(feature: Any) -> bool:
+    geometry = feature.get("geometry") if isinstance(feature, dict) else None
+    if not isinstance(geometry, dict) or geometry.get("type") != "Point":
+        return False
+    properties = feature.get("properties")
+    return not isinstance(properties, dict) or _radius(properties) is None
+
+
+def _radius(properties: dict[str, Any]) -> Any:
+    """Metres around a point, under the names in use."""
+    return next((properties[name] for name in _RADII if properties.get(name) is not None), None)
+
+
+def _title(feature: Any) -> str:
+    """What tells that two features are the same zone."""
+    properties = feature.get("properties") if isinstance(feature, dict) else None
+    if not isinstance(properties, dict):
+        return ""
+    return next((str(properties[name]) for name in _TITLES if isinstance(properties.get(name), str) and properties[name]), "")
 
 
 def _zones_of_feature(feature: Any, place: str, index: int, budget: VertexBudget) -> list[ZoneRecord]:
@@ -45,10 +88,8 @@ def _zones_of_feature(feature: Any, place: str, index: int, budget: VertexBudget
     properties = feature.get("properties") or {}
     if not isinstance(properties, dict):
         raise GeometryFault(_join(place, "properties"), "properties are an object")
-    if "zoneAuthority" in properties or "variant" in properties:
-        raise GeometryFault(_join(place, "properties"), "this is an ED-318 zone; ED-318 cannot be read yet")
     properties_place = _join(place, "properties")
-    titles = (checked_text(properties.get(key), f"{properties_place}.{key}", MAX_NAME) for key in ("name", "Name", "title"))
+    titles = (checked_text(properties.get(key), f"{properties_place}.{key}", MAX_NAME) for key in _TITLES)
     name = next((title for title in titles if title), "")
     identifier = checked_text(feature.get("id"), _join(place, "id"), MAX_IDENTIFIER)
     identifier = identifier or checked_text(properties.get("identifier"), f"{properties_place}.identifier", MAX_IDENTIFIER)
@@ -74,7 +115,7 @@ def _areas(geometry: Any, properties: dict[str, Any], place: str, budget: Vertex
             raise GeometryFault(f"{place}.geometries", "the collection has more than 100 members")
         return [(checked_area(member, f"{place}.geometries[{index}]", budget), None) for index, member in enumerate(members)]
     if kind == "Point":
-        radius = properties.get("radius_m", properties.get("radius"))
+        radius = _radius(properties)
         if radius is None:
             raise GeometryFault(place, "a point is no area; a circle needs a radius (metres) in its properties")
         centre = checked_position(geometry.get("coordinates"), f"{place}.coordinates")

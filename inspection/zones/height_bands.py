@@ -34,5 +34,5 @@ def _limit_m(stated: dict[str, Any], key: str, unit_m: float, place: str) -> flo
 def _reference(stated: dict[str, Any], key: str, place: str) -> str:
     reference = stated.get(key, "")
     if reference not in ("", *HEIGHT_REFERENCES):
-        raise GeometryFault(f"{place}.{key}", f"the reference is AGL or AMSL, not {str(reference)[:40]!r}")
+        raise GeometryFault(f"{place}.{key}", f"the reference is AGL, AMSL or WGS84, not {str(reference)[:40]!r}")
     return str(reference)

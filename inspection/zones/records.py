@@ -7,7 +7,7 @@ from shapely import MultiPolygon
 
 FOOT_M = 0.3048
 NO_CEILING = 99_999  # written by some sources (Switzerland) where there is no upper limit
-HEIGHT_REFERENCES = ("AGL", "AMSL")
+HEIGHT_REFERENCES = ("AGL", "AMSL", "WGS84")
 UNITS_M = {"M": 1.0, "FT": FOOT_M}
 
 

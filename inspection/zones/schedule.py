@@ -47,10 +47,10 @@ def _period(period: Any, place: str) -> dict[str, Any]:
     if not isinstance(period, dict):
         raise GeometryFault(place, "a period is an object")
     permanent = period.get("permanent", "NO")
-    if permanent not in {"YES", "NO", True, False}:
+    if permanent not in ("YES", "NO", True, False):
         raise GeometryFault(f"{place}.permanent", "permanent is YES or NO")
-    start, end = (_moment(period.get(name), f"{place}.{name}") for name in ("startDateTime", "endDateTime"))
-    if permanent in {"YES", True} and (start or end):
+    start, end = (moment_of(period.get(name), f"{place}.{name}") for name in ("startDateTime", "endDateTime"))
+    if permanent in ("YES", True) and (start or end):
         raise GeometryFault(place, "a period that is permanent has no dates")
     if start is not None and end is not None and end <= start:
         raise GeometryFault(f"{place}.endDateTime", "the period ends before it begins")
@@ -63,7 +63,8 @@ def _period(period: Any, place: str) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _moment(value: Any, place: str) -> str | None:
+def moment_of(value: Any, place: str) -> str | None:
+    """A date and time in UTC as RFC 3339 writes it; None for what is not stated. Raises GeometryFault."""
     if value is None or value == "":
         return None
     if not isinstance(value, str) or len(value) > 40:

@@ -1,15 +1,17 @@
 """A zone file as a whole: which format it is, its zones, or all that is wrong with it."""
 
 from collections import Counter
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 from inspection.zones.ed269 import is_ed269, zones_of_ed269
+from inspection.zones.ed318 import is_ed318, stated_validity, text_of, zones_of_ed318
 from inspection.zones.faults import MAX_FAULTS, FaultList, TooManyFaults
 from inspection.zones.geojson import zones_of_geojson
 from inspection.zones.geometry_gate import GeometryFault
+from inspection.zones.openair import looks_like_openair, zones_of_openair
 from inspection.zones.records import ZoneRecord
 from inspection.zones.strict_json import JsonFault, can_be_stored, parse_strict_json
+from inspection.zones.texts import MAX_NAME
 
 MAX_FILE_BYTES = 32 * 1024 * 1024
 _GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", "GeometryCollection"}
@@ -28,14 +30,27 @@ class ZoneFile:
     source_format: str
     zone_count: int  # of the file; one zone may have several layers
     zones: list[ZoneRecord]
+    provider: str = ""
+    valid_from: str | None = None  # as stated, RFC 3339, UTC
+    valid_until: str | None = None
+    notes: tuple[str, ...] = ()  # what people should know of how it was read
+
+
+@dataclass
+class _Read:
+    source_format: str
+    records: list[ZoneRecord]
+    provider: str = ""
+    validity: tuple[str | None, str | None] = (None, None)
+    notes: list[str] = field(default_factory=list)
 
 
 def read_zones(data: bytes) -> ZoneFile:
-    """All the zones of an ED-269 or GeoJSON text, or ZoneFileError: none of a file that has a fault."""
+    """All the zones of an ED-269, ED-318, GeoJSON or OpenAir text, or ZoneFileError: none of a file that has a fault."""
     found = FaultList()
     try:
-        document = parse_strict_json(data, max_bytes=MAX_FILE_BYTES)
-        source_format, records = _zones(document, found)
+        read = _read_openair(data, found) if looks_like_openair(data) and data.lstrip()[:1] not in {b"{", b"["} else _read_json(data, found)
+        records = read.records
     except JsonFault as fault:
         raise ZoneFileError([GeometryFault("", str(fault))]) from fault
     except TooManyFaults as many:
@@ -49,15 +64,45 @@ def read_zones(data: bytes) -> ZoneFile:
         raise ZoneFileError(found.faults[:MAX_FAULTS])
     if not records:
         raise ZoneFileError([GeometryFault("", "the file has no zones")])
-    return ZoneFile(source_format, sum(record.layer == 0 for record in records), _numbered(records))
+    return ZoneFile(
+        read.source_format,
+        sum(record.layer == 0 for record in records),
+        _numbered(records),
+        read.provider,
+        *read.validity,
+        tuple(read.notes),
+    )
 
 
-def _zones(document: Any, faults: FaultList) -> tuple[str, list[ZoneRecord]]:
+def _read_openair(data: bytes, faults: FaultList) -> _Read:
+    if len(data) > MAX_FILE_BYTES:
+        raise GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")
+    notes = []
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", errors="replace")
+        notes.append("The text is not UTF-8 and was read as Windows-1252.")
+    zones, more = zones_of_openair(text, faults)
+    return _Read("OpenAir", zones, notes=notes + more)
+
+
+def _read_json(data: bytes, faults: FaultList) -> _Read:
+    document = parse_strict_json(data, max_bytes=MAX_FILE_BYTES)
+    if is_ed318(document):
+        validity = stated_validity(document, faults)
+        metadata = document.get("metadata")
+        provider = ""
+        with faults.gathering():
+            provider = text_of(metadata.get("provider"), "metadata.provider", MAX_NAME) if isinstance(metadata, dict) else ""
+        notes: list[str] = []
+        return _Read("ED-318", zones_of_ed318(document, faults, notes), provider, validity, notes)
     if is_ed269(document):
-        return "ED-269", zones_of_ed269(document, faults)
+        return _Read("ED-269", zones_of_ed269(document, faults))
     if isinstance(document, dict) and isinstance(document.get("type"), str) and document["type"] in _GEOJSON:
-        return "GeoJSON", zones_of_geojson(document, faults)
-    raise GeometryFault("", "this is neither GeoJSON nor an ED-269 document")
+        notes = []
+        return _Read("GeoJSON", zones_of_geojson(document, faults, notes), notes=notes)
+    raise GeometryFault("", "this is neither GeoJSON nor an ED-269, ED-318 or OpenAir file")
 
 
 def _unstorable(record: ZoneRecord) -> GeometryFault | None:
