@@ -138,6 +138,18 @@ def test_changes_and_removals_are_in_the_history_with_before_and_after(tmp_path:
     assert NoFlyZone.objects.get().revision == 2
 
 
+def test_what_was_looked_at_for_one_set_is_not_applied_to_another_one(tmp_path: Path) -> None:
+    curator = somebody(Role.CURATOR)
+    import_zones(path=written(tmp_path, ("A", 9.0), ("B", 9.2)))
+    proposal = proposed(zone_file(("C", 9.1)), curator, set_name="New")
+    assert proposal.difference["vanished"] == 0
+    pipeline.ask_to_apply(proposal=proposal, parameters={"set_name": "Works"}, actor=curator)
+    proposal.refresh_from_db()
+    apply_proposal(str(proposal.job_id))
+    proposal.refresh_from_db()
+    assert (proposal.state, proposal.difference["vanished"], NoFlyZone.objects.count()) == ("ready", 2, 2)
+
+
 @pytest.mark.django_db(transaction=True)
 def test_a_zone_that_is_edited_while_a_file_waits_for_the_ground_is_not_overwritten(tmp_path: Path) -> None:
     """Cora edits in an open transaction; Carl applies, waits for her, and finds that what he looked at no longer holds."""
@@ -179,10 +191,10 @@ def test_two_files_for_one_set_are_applied_one_after_the_other_and_the_second_is
     assert ZoneSet.objects.get().versions.count() == 2
 
 
-def proposed(content: bytes, actor: User) -> ImportProposal:
+def proposed(content: bytes, actor: User, set_name: str = "Works") -> ImportProposal:
     upload = store_upload(file_name="Works.geojson", chunks=[content], created_by=actor)
     proposal = pipeline.start_proposal(
-        kind="zones", upload=upload, file_name="Works.geojson", parameters={"set_name": "Works"}, provenance={}, created_by=actor
+        kind="zones", upload=upload, file_name="Works.geojson", parameters={"set_name": set_name}, provenance={}, created_by=actor
     )
     read_proposal(str(proposal.job_id))
     proposal.refresh_from_db()

@@ -77,8 +77,13 @@ def read_again(*, proposal: ImportProposal, parameters: dict[str, Any], actor: U
 
 
 def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor: User) -> ImportProposal:
-    """Somebody has looked at the difference and wants it. Raises WrongState."""
+    """Somebody has looked at the difference and wants it. Raises WrongState.
+
+    What was looked at was taken with the parameters as they were: with others than that the difference is taken anew before it counts.
+    """
     with _held(proposal, {ProposalState.READY}) as held:
+        if any(held.parameters.get(name) != value for name, value in parameters.items() if name != "replace_edited"):
+            held.ground_revision = None
         held.parameters = held.parameters | parameters
         held.state = ProposalState.APPLYING
         held.decided_by, held.decided_at = actor, timezone.now()
