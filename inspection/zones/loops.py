@@ -7,7 +7,7 @@ costs nothing; what somebody draws here is never mended.
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely import MultiPolygon, Polygon
+from shapely import MultiLineString, MultiPolygon, Polygon
 
 from inspection.geodesy.wgs84 import FloatArray
 
@@ -17,7 +17,7 @@ _CHUNK = 256
 
 def area_of_all_loops(ring: FloatArray) -> list[Polygon] | None:
     """The polygons that the closed ring of shape (n, 2) encloses with any of its loops; None if it crosses itself too often."""
-    segments = shapely.get_parts(shapely.multilinestrings(shapely.linestrings(np.stack([ring[:-1], ring[1:]], axis=1))))
+    segments = shapely.get_parts(MultiLineString(list(np.stack([ring[:-1], ring[1:]], axis=1))))
     if _crossings(segments) > MOST_CROSSINGS:
         return None
     faces = shapely.get_parts(shapely.polygonize([shapely.unary_union(segments)]))
