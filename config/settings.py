@@ -30,6 +30,10 @@ def _float(name: str, default: float) -> float:
     return float(os.environ.get(name, default))
 
 
+def _mebibytes(name: str, default: int) -> int:
+    return int(_float(name, default) * 1024 * 1024)
+
+
 def _secret_key() -> str:
     """SPANWISE_SECRET_KEY, else a key made once and kept in the state folder, readable by its owner alone."""
     if key := os.environ.get("SPANWISE_SECRET_KEY"):
@@ -169,8 +173,10 @@ STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".s
 # What users may send in one request. Files come in as uploads, part by part.
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
 LARGEST_FILE_BYTES = {
-    kind: int(_float(f"SPANWISE_LARGEST_{kind.upper()}_MIB", mebibytes) * 1024 * 1024)
-    for kind, mebibytes in {"osm": 512, "terrain": 512, "assets": 128, "zones": 16}.items()
+    "osm": _mebibytes("SPANWISE_LARGEST_OSM_MIB", 512),
+    "terrain": _mebibytes("SPANWISE_LARGEST_TERRAIN_MIB", 512),
+    "assets": _mebibytes("SPANWISE_LARGEST_ASSETS_MIB", 128),
+    "zones": _mebibytes("SPANWISE_LARGEST_ZONES_MIB", 16),
 }
 
 REST_FRAMEWORK: dict[str, Any] = {
