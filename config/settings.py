@@ -207,14 +207,18 @@ SPECTACULAR_SETTINGS = {
     "COMPONENT_SPLIT_REQUEST": True,
     "ENUM_NAME_OVERRIDES": {
         "AssetKind": "inspection.models.AssetKind",
+        "ImportKind": "inspection.models.ImportKind",
+        "GapKind": "inspection.models.GapKind",
         "WaypointKind": "missions.models.WaypointKind",
         "TaskKind": ["look", "photo", "hold"],
         "JobState": "workspace.models.JobState",
+        "ProposalState": "inspection.models.ProposalState",
+        "GapState": "inspection.models.GapState",
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
         "FeatureType": ["Feature"],
         "FeatureCollectionType": ["FeatureCollection"],
-        "GeometryType": ["Point", "LineString", "MultiLineString", "Polygon", "MultiPolygon"],
+        "GeometryType": ["Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"],
     },
 }
 

@@ -10,7 +10,7 @@ from workspace.models import AuditEntry
 OF_THE_SOURCE = {"node_osm_ids", "parts", "content_hash", "data_import_id", "asset_set_id", "zone_set_id", "source_heights", "properties"}
 
 
-class HistoryEntrySerializer(serializers.Serializer):
+class GroundHistoryEntrySerializer(serializers.Serializer):
     id = serializers.IntegerField(allow_null=True, help_text="null for the first import, which cannot be undone by itself")
     action = serializers.CharField(help_text="created, changed, deleted, vanished, reverted, restored, followed source, imported")
     actor = serializers.CharField(allow_null=True, help_text="null for a command or a person who is gone")
@@ -22,8 +22,8 @@ class HistoryEntrySerializer(serializers.Serializer):
     file_name = serializers.CharField(allow_null=True, help_text="of the import that did it")
 
 
-class HistoryPageSerializer(serializers.Serializer):
-    results = HistoryEntrySerializer(many=True)
+class GroundHistoryPageSerializer(serializers.Serializer):
+    results = GroundHistoryEntrySerializer(many=True)
     next = serializers.CharField(allow_null=True, help_text="address of the next page")
 
 

@@ -12,7 +12,7 @@ from inspection.models import Asset, NoFlyZone
 from inspection.selectors import asset_with_geometry, zones
 from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_of, changes_of_the_ground
 from inspection.serializers.assets import AssetDetailFeatureSerializer, asset_detail_feature
-from inspection.serializers.history import HistoryPageSerializer, RevertSerializer, entry_json
+from inspection.serializers.history import GroundHistoryPageSerializer, RevertSerializer, entry_json
 from inspection.serializers.zones import ZoneDetailFeatureSerializer, zone_detail_feature
 from inspection.services.history import follow_source, revert_asset, revert_zone, undo
 from inspection.views.edits import edits
@@ -69,7 +69,7 @@ class HistoryList(APIView):
             OpenApiParameter("actor", str, description="a user name"),
             *PAGE_PARAMETERS,
         ],
-        responses=HistoryPageSerializer,
+        responses=GroundHistoryPageSerializer,
     )
     def get(self, request: Request) -> Response:
         subject_type = request.query_params.get("subject_type", "")
@@ -103,7 +103,10 @@ class HistoryUndo(APIView):
 
 class AssetHistory(APIView):
     @extend_schema(
-        operation_id="list_asset_history", summary="The history of an asset", parameters=PAGE_PARAMETERS, responses=HistoryPageSerializer
+        operation_id="list_asset_history",
+        summary="The history of an asset",
+        parameters=PAGE_PARAMETERS,
+        responses=GroundHistoryPageSerializer,
     )
     def get(self, request: Request, asset_id: int) -> Response:
         page = _page(request, changes_of("asset", asset_id))
@@ -160,7 +163,7 @@ class AssetFollowSource(APIView):
 
 class ZoneHistory(APIView):
     @extend_schema(
-        operation_id="list_zone_history", summary="The history of a zone", parameters=PAGE_PARAMETERS, responses=HistoryPageSerializer
+        operation_id="list_zone_history", summary="The history of a zone", parameters=PAGE_PARAMETERS, responses=GroundHistoryPageSerializer
     )
     def get(self, request: Request, zone_id: int) -> Response:
         page = _page(request, changes_of("zone", zone_id))
