@@ -6,12 +6,15 @@ Details = dict[str, Any]
 
 
 def kilometres(metres: float) -> str:
-    """ "11.3 km", "0.32 km", "14 m": as many figures as help. The space does not break."""
-    if metres < 20:
-        return f"{metres:.1f}\N{NO-BREAK SPACE}m"
-    if metres < 200:
-        return f"{metres:.0f}\N{NO-BREAK SPACE}m"
+    """ "11.3 km", "0.32 km": for spans, which are compared with each other. The space does not break."""
     return f"{metres / 1_000:.2f}\N{NO-BREAK SPACE}km" if metres < 1_000 else f"{metres / 1_000:,.1f}\N{NO-BREAK SPACE}km"
+
+
+def length(metres: float) -> str:
+    """ "2.6 m", "698 m", "34.2 km"."""
+    if metres < 999.5:
+        return f"{metres:.{1 if metres < 20 else 0}f}\N{NO-BREAK SPACE}m"
+    return kilometres(metres)
 
 
 def title(kind: str, details: Details) -> str:
@@ -28,7 +31,7 @@ def title(kind: str, details: Details) -> str:
         case "dead_end":
             return "Line ends in nothing"
         case "ends_apart":
-            return f"Lines {kilometres(details['apart_m'])} apart"
+            return f"Lines {length(details['apart_m'])} apart"
         case "bridge_without_way":
             return "Bridge without a way"
         case _:
@@ -52,36 +55,34 @@ def _long_span(details: Details) -> str:
 def _missing_support(details: Details) -> str:
     return (
         f"{details['missing_towers']} of {details['vertices']} vertices have no tower; "
-        f"{kilometres(details['without_tower_m'])} of the line cannot be picked tower by tower."
+        f"{length(details['without_tower_m'])} of the line cannot be picked tower by tower."
     )
 
 
 def _line_without_towers(details: Details) -> str:
-    return (
-        f"None of the line's {details['vertices']} vertices has a tower: {kilometres(details['line_m'])} cannot be picked tower by tower."
-    )
+    return f"None of the line's {details['vertices']} vertices has a tower: {length(details['line_m'])} cannot be picked tower by tower."
 
 
 def _tower_on_no_line(details: Details) -> str:
     near = details["nearest_line_m"]
     if details["towers"] > 1:
-        said = f"{details['towers']:,} towers in a row of {kilometres(details['row_m'])} carry no line"
-        return f"{said}; the nearest one is {kilometres(near)} away." if near is not None else f"{said}: it may not be mapped."
+        said = f"{details['towers']:,} towers in a row of {length(details['row_m'])} carry no line"
+        return f"{said}; the nearest one is {length(near)} away." if near is not None else f"{said}: it may not be mapped."
     if near is None:
         return "No line passes the tower, and none is within 500 m."
-    return f"No line passes the tower; the nearest one is {kilometres(near)} away."
+    return f"No line passes the tower; the nearest one is {length(near)} away."
 
 
 def _dead_end(details: Details) -> str:
     what = "The line ends at a tower" if details["has_tower"] else "The line ends at a vertex without a tower"
     said = f"{what}, and nothing is within 150 m that it could lead to."
     near = details["nearest_m"]
-    return said if near is None else f"{said} Another part of the network is {kilometres(near)} away."
+    return said if near is None else f"{said} Another part of the network is {length(near)} away."
 
 
 def _ends_apart(details: Details) -> str:
     other = "the other line's end" if details["is_at_end"] else "another line"
-    return f"The line ends {kilometres(details['apart_m'])} from {other} and does not join it."
+    return f"The line ends {length(details['apart_m'])} from {other} and does not join it."
 
 
 def _bridge_without_way(details: Details) -> str:

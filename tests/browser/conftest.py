@@ -21,7 +21,7 @@ CHROMIUM_FLAGS = [
     "--disable-sync",
 ]  # fmt: skip
 PASSWORD = "inspect-the-lines"
-USERS = {"opal": "operator", "rory": "operator", "vera": "viewer"}
+USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator"}
 NEW_USERS = f"""
 from workspace.models import User
 for name, role in {USERS!r}.items():

@@ -1,0 +1,117 @@
+"""The workbench: from the list to the place, a repair that is taken back, and who may only look."""
+
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks, place_of, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+UNTAGGED_KM = "86 of 88 vertices have no tower"
+
+
+def opens_gaps(visitor: Visitor, name: str, *, kind: str = "", size: tuple[int, int] = (1440, 900), theme: str = "light") -> Page:
+    page = visitor.signs_in(name, size=size, theme=theme, touch=size[0] < 721)
+    page.goto("/assets/gaps")
+    wait_for_map(page)
+    expect(page.locator("#page-facts")).to_contain_text("open · searched", timeout=30_000)  # beat looks every 10 s
+    if kind:
+        page.locator(".kind-chip", has_text=kind).click()
+    return page
+
+
+def rows(page: Page) -> list[str]:
+    return page.locator(".gap-row strong").all_text_contents()
+
+
+def open_number(page: Page) -> int:
+    return int(re.sub(r"\D", "", page.locator("#gap-states .count").first.inner_text()))
+
+
+def test_a_gap_is_found_shown_mended_and_the_repair_taken_back(visitor: Visitor) -> None:
+    page = opens_gaps(visitor, "cora", kind="Towers missing")
+    expect(page.locator(".gap-row")).to_have_count(14)
+    before = open_number(page)
+    page.locator(".gap-row").first.click()
+    expect(page.get_by_role("heading", name=UNTAGGED_KM)).to_be_visible()
+    wait_for_map(page)
+    gap_id = int(re.search(r"gap=(\d+)", page.url)[1])  # type: ignore[index]
+    frame = page.locator("#map").bounding_box()
+    assert frame
+    for position in asks(page, f"/gaps/{gap_id}")["geometry"]["coordinates"]:
+        place = place_of(page, position)
+        assert frame["x"] < place["x"] < frame["x"] + frame["width"]
+        assert frame["y"] < place["y"] < frame["y"] + frame["height"]
+
+    page.get_by_role("button", name="Make 86 towers of the vertices").click()
+    expect(page.locator(".toast")).to_contain_text("86 towers placed.")
+    expect(page.locator(".gap-decided")).to_contain_text("Repaired by cora")
+    assert open_number(page) < before
+    assert asks(page, f"/gaps/{gap_id}")["properties"]["state"] == "repaired"
+    page.get_by_role("button", name="Undo").click()
+    expect(page.locator(".toast")).to_contain_text("Taken back.")
+    expect(page.get_by_role("button", name="Make 86 towers of the vertices")).to_be_visible()
+    assert open_number(page) == before
+
+
+def test_keys_go_along_the_list_and_to_the_place(visitor: Visitor) -> None:
+    page = opens_gaps(visitor, "cora")
+    names = rows(page)
+    page.keyboard.press("j")
+    page.keyboard.press("j")
+    page.keyboard.press("k")
+    page.keyboard.press("j")
+    page.keyboard.press("Enter")
+    expect(page.locator(".gap-row[aria-current=true] strong")).to_have_text(names[1])
+    expect(page.locator(".gap-sentence")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.locator("#dock")).to_be_hidden()
+
+
+def test_a_gap_that_is_right_is_left_with_a_note_and_opened_again(visitor: Visitor) -> None:
+    page = opens_gaps(visitor, "cora", kind="Bridges without a way")
+    page.locator(".gap-row").first.click()
+    page.get_by_role("button", name="Leave it as it is").click()
+    page.get_by_role("textbox", name="Note").fill("A pipe bridge, seen on site.")
+    page.get_by_role("button", name="Leave it", exact=True).click()
+    expect(page.locator(".gap-decided")).to_contain_text("A pipe bridge, seen on site.")
+    page.get_by_role("radio", name="Left as it is").check()
+    expect(page.locator(".gap-row")).to_have_count(1)
+    page.get_by_role("button", name="Open it again").click()
+    expect(page.locator("#gap-list-end")).to_contain_text("No gap like that here.")
+
+
+def test_filters_narrow_the_list_and_an_empty_one_says_so(visitor: Visitor) -> None:
+    page = opens_gaps(visitor, "cora")
+    whole = len(rows(page))
+    page.get_by_role("searchbox").fill("no such line")
+    expect(page.locator("#gap-list-end")).to_contain_text("No gap matches “no such line”.")
+    page.get_by_role("button", name="Clear the filter").click()
+    expect(page.locator(".gap-row")).to_have_count(whole)
+    page.evaluate("location.hash = 'map=16/39.9/-82.9'")
+    page.get_by_role("checkbox", name="In view").check()
+    expect(page.locator(".gap-row")).not_to_have_count(whole)
+
+
+def test_who_is_no_curator_sees_gaps_and_cannot_mend_them(visitor: Visitor) -> None:
+    page = opens_gaps(visitor, "opal")
+    page.locator(".gap-row").first.click()
+    expect(page.locator(".gap-do")).to_have_text("Curators can repair this.")
+    expect(page.locator(".gap-acts button")).to_have_count(0)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "height", "suffix"), [(1440, 900, ""), (390, 844, "-phone")])
+def test_the_chosen_gap_stands_in_sight(
+    visitor: Visitor, picture: Callable[[Page, str], None], theme: str, width: int, height: int, suffix: str
+) -> None:
+    page = opens_gaps(visitor, "cora", size=(width, height), theme=theme)
+    page.locator(".gap-row").first.click()
+    expect(page.locator(".gap-sentence")).to_be_in_viewport()
+    wait_for_map(page)
+    expect(page.locator(".gap-acts .primary")).to_be_in_viewport()
+    picture(page, f"gaps{suffix}-{theme}")
