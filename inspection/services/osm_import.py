@@ -4,6 +4,8 @@ import hashlib
 import json
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -19,97 +21,83 @@ from inspection.models import Asset, DataImport, ImportKind
 from inspection.osm.file_gate import OsmFileError
 from inspection.osm.reader import read_osm
 from inspection.osm.records import AssetRecord, Extent, OsmContent
+from inspection.services import osm_merge
 from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.proposals.reading import Provenance
 from inspection.services.supports import number_supports
-from workspace.models import User
+from workspace.models import DEFAULT_ORGANISATION_ID, User
 
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"
 SAME_SOURCE_OVERLAP = 0.5  # two files show the same region if their extents share at least half of what they cover together
 EXTENT_MARGIN_DEG = 0.01
 HANDFUL = 10  # of one subtype; so few can really all be gone, more of them missing at once were filtered out of the file
 
-_COLUMNS = (
-    "kind", "subtype", "osm_type", "osm_id", "geometry", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits",
-    "height_m", "length_m", "is_flyable", "node_osm_ids", "tags", "parts", "content_hash",
-)  # fmt: skip
+Progress = Callable[[str, float], None]
 
-_STAGING = """
-CREATE TEMPORARY TABLE osm_staging (
-    kind text, subtype text, osm_type text, osm_id bigint, geometry geometry, centre geometry, name text, ref text, operator text,
-    voltages_v integer[], max_voltage_v integer, circuits smallint, height_m double precision, length_m double precision,
-    is_flyable boolean, node_osm_ids bigint[], tags jsonb, parts jsonb, content_hash text
-) ON COMMIT DROP
-"""
-_COPY = f"COPY osm_staging ({', '.join(_COLUMNS)}) FROM STDIN"
 
-_MATCHES = """
-SELECT count(*) FILTER (WHERE a.is_edited),
-       count(*) FILTER (WHERE NOT a.is_edited AND i.data_timestamp > %(timestamp)s),
-       count(*) FILTER (WHERE NOT a.is_edited AND (i.data_timestamp > %(timestamp)s) IS NOT TRUE
-                              AND a.content_hash = s.content_hash AND a.vanished_at IS NULL)
-FROM inspection_asset a
-JOIN osm_staging s USING (kind, osm_type, osm_id)
-LEFT JOIN inspection_dataimport i ON i.id = a.data_import_id
-"""
-_UPDATE = """
-UPDATE inspection_asset a
-SET subtype = s.subtype, geometry = s.geometry, centre = s.centre, name = s.name, ref = s.ref, operator = s.operator,
-    voltages_v = s.voltages_v, max_voltage_v = s.max_voltage_v, circuits = s.circuits, height_m = s.height_m, length_m = s.length_m,
-    is_flyable = s.is_flyable, node_osm_ids = s.node_osm_ids, tags = s.tags, parts = s.parts, content_hash = s.content_hash,
-    data_import_id = %(data_import)s, vanished_at = NULL, updated_at = now()
-FROM osm_staging s
-WHERE a.kind = s.kind AND a.osm_type = s.osm_type AND a.osm_id = s.osm_id AND NOT a.is_edited
-  AND (a.content_hash <> s.content_hash OR a.vanished_at IS NOT NULL)
-  AND NOT EXISTS (SELECT FROM inspection_dataimport i WHERE i.id = a.data_import_id AND i.data_timestamp > %(timestamp)s)
-"""
-_INSERT = f"""
-INSERT INTO inspection_asset ({", ".join(_COLUMNS)}, data_import_id, is_edited, updated_at)
-SELECT {", ".join(f"s.{column}" for column in _COLUMNS)}, %(data_import)s, false, now()
-FROM osm_staging s
-WHERE NOT EXISTS (SELECT FROM inspection_asset a WHERE a.kind = s.kind AND a.osm_type = s.osm_type AND a.osm_id = s.osm_id)
-ORDER BY s.kind DESC, s.osm_id
-"""  # noqa: S608 -- column names only
-_VANISH = """
-UPDATE inspection_asset a
-SET vanished_at = now(), updated_at = now(), data_import_id = %(data_import)s
-WHERE a.osm_id IS NOT NULL AND NOT a.is_edited AND a.vanished_at IS NULL
-  AND a.data_import_id = ANY(%(sources)s)
-  AND a.kind || ' ' || a.subtype <> ALL(%(filtered_out)s)
-  AND NOT EXISTS (SELECT FROM osm_staging s WHERE s.kind = a.kind AND s.osm_type = a.osm_type AND s.osm_id = a.osm_id)
-  AND NOT EXISTS (SELECT FROM inspection_dataimport i WHERE i.id = a.data_import_id AND i.data_timestamp > %(timestamp)s)
-  AND (%(box)s::geometry IS NULL OR ST_Intersects(ST_Points(a.geometry), %(box)s::geometry))
-"""
+@dataclass(frozen=True)
+class OsmDifference:
+    """What an OSM file would change: numbers of all, and of each action the first few rows."""
+
+    counts: dict[str, Any]  # what is in the file
+    numbers: dict[str, int]
+    samples: dict[str, list[tuple[Any, ...]]]  # by action: kind, id of the asset, label, WKB, facts before and after
 
 
 def import_osm(
-    *, path: Path, imported_by: User | None = None, is_synthetic: bool = False, progress: Callable[[str, float], None] | None = None
+    *,
+    path: Path,
+    imported_by: User | None = None,
+    is_synthetic: bool = False,
+    progress: Progress | None = None,
+    replace_edited: bool = False,
+    replace_region: bool = False,
+    provenance: Provenance | None = None,
 ) -> DataImport:
     """Bring the assets to what the file says and return the import with its counts; raises OsmFileError and changes nothing.
 
-    The same file again changes nothing. Rows that a curator edited stay as they are, and so do rows that a file with newer data has
-    written. What an earlier file of the same region had and this one has not is marked as vanished, never deleted: see _vanish.
+    The same file again changes nothing. Rows that a curator edited stay as they are (unless replace_edited), and so do rows that a file
+    with newer data has written. What an earlier file of the same region had and this one has not is marked as vanished, never deleted:
+    see _sources. With replace_region that holds for all OSM assets within the file's extent, whichever file they came from.
     """
-    content = read_osm(path, progress)
-    if not content.records:
-        raise OsmFileError("The file has no power lines, towers, railways or bridges.")
+    content = _read(path, progress)
     with path.open("rb") as file:
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
-    if progress is not None:
-        progress("writing", 0.0)
+    _tell(progress, "writing", 0.0)
     with transaction.atomic():
         hold_ground()
-        earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic)
-        sources = [row for row in earlier if _is_same_source(row.counts.get("extent"), content.extent)]
         data_import = DataImport.objects.create(
             kind=ImportKind.OSM, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
             attribution=SYNTHETIC_ATTRIBUTION if is_synthetic else content.attribution, data_timestamp=_timestamp(content.data_timestamp),
+            **_origin(provenance),
         )  # fmt: skip
-        written = _write(content, data_import, sources)
-        counts = content.counts | written | {"extent": content.extent}
-        has_changed = any(written[key] for key in ("new", "changed", "vanished"))
+        with _staged(content) as cursor:
+            values = _values(cursor, content, path, is_synthetic, replace_edited, replace_region, but=data_import)
+            values |= {
+                "data_import": data_import.pk, "actor": imported_by and imported_by.pk,
+                "organisation": imported_by.organisation_id if imported_by else DEFAULT_ORGANISATION_ID,
+            }  # fmt: skip
+            numbers = _numbers(cursor, values)
+            _tell(progress, "writing", 0.2)
+            for statement in (
+                osm_merge.REMEMBER_CHANGED,
+                osm_merge.REMEMBER_GONE,
+                osm_merge.VANISH,
+                osm_merge.UPDATE,
+                osm_merge.KEEP_BESIDE,
+            ):
+                cursor.execute(statement, values)
+            _tell(progress, "writing", 0.4)
+            cursor.execute(osm_merge.INSERT, values)
+            _tell(progress, "writing", 0.8)
+            cursor.execute(
+                "ANALYZE inspection_asset (id, kind, osm_type, osm_id, line_id, vanished_at)"
+            )  # for what numbers the supports next
+        counts = content.counts | numbers | {"extent": content.extent}
+        has_changed = any(numbers[key] for key in ("new", "changed", "vanished"))
         if number_supports() or has_changed:
             mark_ground_changed()
-        known = next((row for row in earlier if row.sha256 == sha256), None)
+        known = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic, sha256=sha256).exclude(pk=data_import.pk).first()
         if known is not None and not has_changed:
             data_import.delete()
             known.counts = counts  # of this run, for the caller; the row keeps those of its own
@@ -119,49 +107,88 @@ def import_osm(
     return data_import
 
 
-def _write(content: OsmContent, data_import: DataImport, sources: Sequence[DataImport]) -> dict[str, int]:
-    values = {"data_import": data_import.pk, "timestamp": data_import.data_timestamp}
+def difference_of_osm(
+    *, path: Path, progress: Progress | None = None, replace_edited: bool = False, replace_region: bool = False, most: int = 2_000
+) -> OsmDifference:
+    """What import_osm would do with the file; nothing is written. Raises OsmFileError."""
+    content = _read(path, progress)
+    _tell(progress, "comparing", 0.0)
+    with transaction.atomic():
+        with _staged(content) as cursor:
+            values = _values(cursor, content, path, False, replace_edited, replace_region)
+            numbers = _numbers(cursor, values)
+            _tell(progress, "comparing", 0.6)
+            samples = {}
+            for action, statement in osm_merge.SAMPLES.items():
+                cursor.execute(statement, values | {"most": most})
+                samples[action] = cursor.fetchall()
+        transaction.set_rollback(True)
+    return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, numbers, samples)
+
+
+def _read(path: Path, progress: Progress | None) -> OsmContent:
+    content = read_osm(path, progress)
+    if not content.records:
+        raise OsmFileError("The file has no power lines, towers, railways or bridges.")
+    return content
+
+
+@contextmanager
+def _staged(content: OsmContent) -> Iterator[CursorWrapper]:
+    """A cursor beside which the file's records lie in a temporary table."""
     with connection.cursor() as cursor:
-        cursor.execute(_STAGING)
-        with cursor.copy(_COPY) as copy:
+        cursor.execute(osm_merge.STAGING)
+        with cursor.copy(osm_merge.COPY) as copy:
             for row in _rows(content.records):
                 copy.write_row(row)
         cursor.execute("ANALYZE osm_staging, inspection_asset")  # right after a first import the planner still takes the table for empty
-        cursor.execute(_MATCHES, values)
-        edited, newer, unchanged = cursor.fetchone()
-        cursor.execute(_UPDATE, values)
-        changed = cursor.rowcount
-        vanished = _vanish(cursor, content, data_import, sources)
-        cursor.execute(_INSERT, values)
-        new = cursor.rowcount
-        cursor.execute("ANALYZE inspection_asset (id, kind, osm_type, osm_id, line_id, vanished_at)")  # for what numbers the supports next
+        yield cursor
         cursor.execute("DROP TABLE osm_staging")  # before the end of the transaction: several imports may share one
-    return {"new": new, "changed": changed, "unchanged": unchanged, "vanished": vanished, "kept_edited": edited, "kept_newer": newer}
 
 
-def _vanish(cursor: CursorWrapper, content: OsmContent, data_import: DataImport, sources: Sequence[DataImport]) -> int:
-    """Mark what an earlier file of the same region had and this one has not.
+def _numbers(cursor: CursorWrapper, values: dict[str, Any]) -> dict[str, int]:
+    cursor.execute(osm_merge.COUNTS, values)
+    names = ("new", "changed", "vanished", "kept", "kept_edited", "kept_newer", "unchanged")
+    return dict(zip(names, cursor.fetchone(), strict=True))
+
+
+def _values(
+    cursor: CursorWrapper, content: OsmContent, path: Path, is_synthetic: bool, replace_edited: bool, replace_region: bool,
+    *, but: DataImport | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    """What the statements need to know of the file.
 
     Files of different regions, even neighbours that overlap, say nothing about each other: only rows written by an import whose extent
-    is nearly this one's are looked at, of these only what the header's box holds, if it states one. A file may be filtered (power lines
+    is nearly this one's may vanish, of these only what the header's box holds, if it states one. A file may be filtered (power lines
     only): a subtype of which it has none at all is taken for filtered out, unless there was a handful only or the file has the old name.
     """
-    if not sources:
-        return 0
+    earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic).exclude(pk=but and but.pk)
+    sources = [row for row in earlier if _is_same_source(row.counts.get("extent"), content.extent)]
     present = Counter((record.kind, record.subtype) for record in content.records)
-    is_same_name = any(source.file_name == data_import.file_name for source in sources)
+    is_same_name = any(source.file_name == path.name[:255] for source in sources)
     held = Asset.objects.filter(data_import__in=sources, vanished_at=None, osm_id__isnull=False).order_by()
     filtered_out = [
         f"{row['kind']} {row['subtype']}"
         for row in held.values("kind", "subtype").annotate(number=Count("pk"))
         if not present[row["kind"], row["subtype"]] and row["number"] > HANDFUL and not is_same_name
     ]
-    box = None
-    if content.stated_extent is not None:
-        box = shapely.to_wkb(shapely.set_srid(shapely.box(*content.stated_extent), 4326), hex=True, include_srid=True)
-    values = {"data_import": data_import.pk, "timestamp": data_import.data_timestamp, "box": box, "filtered_out": filtered_out}
-    cursor.execute(_VANISH, values | {"sources": [source.pk for source in sources]})
-    return int(cursor.rowcount)
+    box = content.stated_extent or (content.extent if replace_region else None)
+    return {
+        "timestamp": _timestamp(content.data_timestamp), "replace_edited": replace_edited, "whole_region": replace_region,
+        "sources": [source.pk for source in sources], "filtered_out": filtered_out,
+        "box": box and shapely.to_wkb(shapely.set_srid(shapely.box(*box), 4326), hex=True, include_srid=True),
+    }  # fmt: skip
+
+
+def _origin(provenance: Provenance | None) -> dict[str, Any]:
+    if provenance is None:
+        return {}
+    return {"licence": provenance.licence, "source_address": provenance.source_address, "fetched_at": provenance.fetched_at}
+
+
+def _tell(progress: Progress | None, stage: str, share: float) -> None:
+    if progress is not None:
+        progress(stage, share)
 
 
 def _is_same_source(earlier: Sequence[float] | None, extent: Extent | None) -> bool:

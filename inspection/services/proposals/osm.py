@@ -1,0 +1,59 @@
+"""OpenStreetMap files as proposals."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from django.contrib.gis.geos import GEOSGeometry
+
+from inspection.models import ChangeAction, DataImport
+from inspection.osm.file_gate import OsmFileError
+from inspection.services.facts import differing
+from inspection.services.osm_import import OsmDifference, difference_of_osm, import_osm
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from workspace.models import User
+
+_FOR_PROGRAMS = {"node_osm_ids", "parts", "content_hash", "osm_type", "osm_id"}
+
+
+def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
+    """What the file would change. Raises FileRefused."""
+    try:
+        found = difference_of_osm(path=_file(path), progress=progress, **_options(parameters))
+    except OsmFileError as error:
+        raise FileRefused([Fault("", str(error))]) from error
+    return Reading(found.counts, found.numbers, tuple(_changes(found)))
+
+
+def apply(
+    *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
+) -> DataImport:
+    """Bring the assets to what the file says. Raises FileRefused."""
+    try:
+        return import_osm(path=_file(path), imported_by=applied_by, progress=progress, provenance=provenance, **_options(parameters))
+    except OsmFileError as error:
+        raise FileRefused([Fault("", str(error))]) from error
+
+
+def _file(path: Path | None) -> Path:
+    if path is None:
+        raise FileRefused([Fault("", "There is no file.")])
+    return path
+
+
+def _options(parameters: dict[str, Any]) -> dict[str, bool]:
+    return {name: bool(parameters.get(name)) for name in ("replace_edited", "replace_region")}
+
+
+def _changes(found: OsmDifference) -> Iterator[Change]:
+    for action, rows in found.samples.items():
+        for kind, key, label, wkb, was, will_be in rows:
+            before, after = differing(_facts(was), _facts(will_be))
+            geometry = GEOSGeometry(memoryview(bytes(wkb)), srid=4326)
+            yield Change(ChangeAction(action), kind, label, key, geometry, before, after)
+
+
+def _facts(text: str | None) -> dict[str, Any] | None:
+    """What people read of the facts; the cursor gives jsonb as text."""
+    return None if text is None else {name: value for name, value in json.loads(text).items() if name not in _FOR_PROGRAMS}
