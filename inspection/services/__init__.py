@@ -1,5 +1,7 @@
 """Writes of the ground: what the other apps, commands and tasks call."""
 
+from inspection.asset_files.rows import AssetFileError
+from inspection.services.asset_import import UnfinishedMapping, import_assets
 from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
 from inspection.services.gaps import find_gaps
 from inspection.services.graph import build_graph, refresh_graph
@@ -11,8 +13,10 @@ from inspection.terrain.errors import TerrainFileError
 from inspection.zones.zone_file import ZoneFileError
 
 __all__ = [
+    "AssetFileError",
     "StaleRevision",
     "TerrainFileError",
+    "UnfinishedMapping",
     "WrongGeometry",
     "ZoneFileError",
     "build_graph",
@@ -20,6 +24,7 @@ __all__ = [
     "delete_zone",
     "find_gaps",
     "geometry_fault",
+    "import_assets",
     "import_osm",
     "import_terrain",
     "import_zones",

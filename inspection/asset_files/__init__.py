@@ -1,0 +1,1 @@
+"""Files about assets that are not OpenStreetMap's, as rows of properties and one geometry each; pure Python."""

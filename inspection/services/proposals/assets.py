@@ -1,0 +1,150 @@
+"""Asset files that are not OpenStreetMap's as proposals: first what is in them, then, once their columns are explained, the difference."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from django.db import transaction
+
+from inspection.asset_files.asset_file import AssetFile
+from inspection.asset_files.mapping import Tally
+from inspection.asset_files.rows import AssetFileError
+from inspection.asset_files.suggestion import suggested_mapping
+from inspection.asset_files.survey import Survey, survey_of
+from inspection.models import Asset, AssetSet, ChangeAction, DataImport
+from inspection.services.asset_import import (
+    MAPPING_PARAMETERS,
+    UNCHANGED,
+    Difference,
+    UnfinishedMapping,
+    counts_of,
+    import_assets,
+    opened,
+    row_faults,
+    set_name_of,
+    staged,
+    with_what_is_known,
+)
+from inspection.services.facts import ASSET_FACTS, asset_facts, differing
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from workspace.models import User
+
+MOST_CHANGES = 2_000  # of each action
+NOTHING = dict.fromkeys((*ChangeAction.values, UNCHANGED), 0)
+
+
+def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
+    """What is in the file and, once the mapping says enough, what it would change in its set. Raises FileRefused."""
+    with _faults_as_refusal():
+        file_path = _file(path)
+        name = set_name_of(file_path, parameters.get("set_name"))
+        asset_set = AssetSet.objects.filter(name=name).first()
+        stated = with_what_is_known(parameters, asset_set)
+        progress("reading the rows", 0.1)
+        with opened(file_path, stated) as file:
+            faults = row_faults(stated)
+            survey = survey_of(file.rows(faults), file.source.columns)
+            faults.refuse_if_any()
+            summary = _summary(file, survey, name, stated, file_path)
+            if words := _nothing_to_read(file, survey):
+                return Reading(summary | {"needs_mapping": True, "words": words}, dict(NOTHING))
+            progress("comparing", 0.5)
+            return _compared(file, stated, asset_set, summary, replace_edited=parameters.get("replace_edited") is True)
+
+
+def apply(
+    *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
+) -> DataImport:
+    """Make the set what the file says. Raises FileRefused."""
+    with _faults_as_refusal():
+        return import_assets(
+            path=_file(path), parameters=parameters, imported_by=applied_by, provenance=provenance,
+            replace_edited=parameters.get("replace_edited") is True, progress=progress,
+        )  # fmt: skip
+
+
+def _compared(
+    file: AssetFile, stated: dict[str, Any], asset_set: AssetSet | None, summary: dict[str, Any], *, replace_edited: bool
+) -> Reading:
+    tally, faults = Tally(), row_faults(stated)
+    columns = [column["name"] for column in summary["columns"]]
+    try:
+        with (
+            transaction.atomic(),
+            staged(file, stated, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, columns=columns) as found,
+        ):
+            changes = tuple(_changes(found))
+    except UnfinishedMapping as error:
+        return Reading(summary | {"needs_mapping": True, "words": str(error)}, dict(NOTHING))
+    return Reading(summary | counts_of(file, tally, faults), found.numbers, changes)
+
+
+def _nothing_to_read(file: AssetFile, survey: Survey) -> str:
+    if survey.geometries:
+        return ""
+    if file.source.file_format == "csv" and not file.source.geometry_columns:
+        return "Say which columns hold longitude and latitude, or which one the geometry as WKT."
+    return "None of the rows has a geometry."
+
+
+def _summary(file: AssetFile, survey: Survey, name: str, stated: dict[str, Any], path: Path) -> dict[str, Any]:
+    suggested = suggested_mapping(survey, file_name=path.stem, geometry_columns=file.source.geometry_columns)
+    role_of = {column: role for role, column in (suggested["columns"] | file.source.geometry_columns).items()}
+    columns = [
+        {
+            "name": column.name, "type": column.type, "samples": column.samples or _first_cell(file, column.name),
+            "suggestion": role_of.get(column.name), "values": dict(column.values.most_common()) if column.values else None,
+        }
+        for column in survey.columns.values()
+    ]  # fmt: skip
+    return {
+        "set": name, "format": file.source.file_format, "crs": file.crs_name, "layer": file.source.layer,
+        "layers": list(file.source.layers), "rows": survey.rows, "without_geometry": survey.without_geometry,
+        "geometry_types": dict(survey.geometries),
+        "extent": list(survey.extent) if survey.extent else None, "notes": file.notes, "columns": columns,
+        "suggested_mapping": suggested, "mapping": {key: stated[key] for key in MAPPING_PARAMETERS if stated.get(key)},
+        "needs_mapping": False, "preview": {"type": "FeatureCollection", "features": survey.preview},
+    }  # fmt: skip
+
+
+def _first_cell(file: AssetFile, name: str) -> list[str]:
+    cell = file.source.first_cells.get(name, "")
+    return [cell[:60]] if cell else []
+
+
+def _changes(found: Difference) -> Iterator[Change]:
+    for action in ChangeAction:
+        for asset, stated in found.pairs(action, MOST_CHANGES):
+            before, after = differing(asset and _shown(asset), stated and _shown(stated))
+            one = stated or asset
+            if one is not None:
+                yield Change(action, one.kind, _label(one), asset and asset.pk, one.geometry, before, after)
+
+
+def _shown(asset: Asset) -> dict[str, Any]:
+    facts = asset_facts(asset)
+    return {name: facts[name] for name in (*ASSET_FACTS, "geometry")}
+
+
+def _label(asset: Asset) -> str:
+    return asset.ref or asset.name or f"{asset.get_kind_display()} {asset.source_key}"
+
+
+def _file(path: Path | None) -> Path:
+    if path is None:
+        raise FileRefused([Fault("", "There is no file.")])
+    return path
+
+
+@contextmanager
+def _faults_as_refusal() -> Iterator[None]:
+    try:
+        yield
+    except AssetFileError as error:
+        raise FileRefused(
+            Fault(fault.place, fault.message, (fault.position.lon, fault.position.lat) if fault.position else None)
+            for fault in error.faults
+        ) from error
+    except UnfinishedMapping as error:
+        raise FileRefused([Fault("kind", str(error))]) from error
