@@ -10,6 +10,7 @@ from inspection.graph.nearness import nearest_within
 
 JOIN_M = 6.0  # "a few metres": a mapper's slip; gantries of a substation stand 10 m and more apart
 TERMINAL_M = 150.0  # a substation's reach, as in the graph's rule for crossings
+ASKED_AT_ONCE = 2_000_000  # neighbours, so that memory stays bounded
 REACH_M = 2_000.0  # how far an end may be from the network that it could belong to
 
 
@@ -130,22 +131,21 @@ def _nearest_other_component(network: Network, node: IntArray) -> tuple[IntArray
     volts = _node_volts(network)
     on_lines = np.flatnonzero(network.degree > 0)
     partner, best = np.full(len(node), -1, dtype=np.int64), np.full(len(node), np.nan)
-    waiting = np.arange(len(node))
-    count = 16
+    waiting, count = np.arange(len(node)), 16
     while len(waiting):
-        row, other, metres = nearest_within(network.node_position[node[waiting]], network.node_position[on_lines], REACH_M, count=count)
-        found = on_lines[other]
-        asking = node[waiting[row]]
-        apart = network.component[found] != network.component[asking]
-        apart &= (volts[found] == volts[asking]) | (volts[found] == 0) | (volts[asking] == 0)
-        settled, first = np.unique(row[apart], return_index=True)
-        partner[waiting[settled]] = found[apart][first]
-        best[waiting[settled]] = metres[apart][first]
-        is_full = np.bincount(row, minlength=len(waiting)) >= min(count, len(on_lines))
-        is_full[settled] = False
-        if count >= len(on_lines):
-            break
-        waiting, count = waiting[is_full], count * 4  # only where all that were asked for hang together with the node
+        still = []
+        for part in np.array_split(waiting, 1 + len(waiting) * count // ASKED_AT_ONCE):
+            row, other, metres = nearest_within(network.node_position[node[part]], network.node_position[on_lines], REACH_M, count=count)
+            found, asking = on_lines[other], node[part[row]]
+            apart = network.component[found] != network.component[asking]
+            apart &= (volts[found] == volts[asking]) | (volts[found] == 0) | (volts[asking] == 0)
+            settled, first = np.unique(row[apart], return_index=True)
+            partner[part[settled]] = found[apart][first]
+            best[part[settled]] = metres[apart][first]
+            is_full = np.bincount(row, minlength=len(part)) >= count
+            is_full[settled] = False
+            still.append(part[is_full])
+        waiting, count = np.concatenate(still), count * 4  # only where all that were asked for hang together with the node
     return partner, best
 
 

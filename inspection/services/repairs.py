@@ -119,7 +119,9 @@ def _offers_of_missing_supports(details: dict[str, Any]) -> list[Offer]:
 
 def _offers_of_lone_tower(details: dict[str, Any]) -> list[Offer]:
     many = details["towers"] > 1
-    offers = [Offer("leave_out", "Leave them out of the graph" if many else "Leave it out of the graph")]
+    offers = []
+    if details["towers"] == len(details["assets"]):  # of a long row the details name the first towers alone
+        offers.append(Offer("leave_out", "Leave them out of the graph" if many else "Leave it out of the graph"))
     if details["nearest_line_m"] is not None:
         offers.insert(0, Offer("attach", "Join the nearest tower to the line" if many else "Join it to the nearest line"))
     return offers

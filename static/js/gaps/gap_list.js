@@ -1,7 +1,6 @@
 /** The side of the page: which gaps, and the list of them. */
 
 import { byId, h, icon, keyedList } from "../dom.js";
-import { countText } from "../units.js";
 import { cutOffText, KINDS, STATES } from "./kinds.js";
 
 const TYPED_MS = 250;
@@ -103,7 +102,7 @@ export function mountGapList(on) {
       draw(gaps);
       end.replaceChildren(
         ...(gaps.length ? [] : [h("div", { class: "empty" }, empty(hasSearched))]),
-        ...(hasMore ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, `Show more than ${countText(gaps.length, "gap")}`)] : []),
+        ...(hasMore ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, "Show more")] : []),
       );
     },
     /** kinds: number by kind, then state. */
