@@ -1,6 +1,6 @@
 /** The lines of a difference: counts as filters, what was and what would be, linked with the map. */
 
-import { byId, h, icon, keyedList } from "../dom.js";
+import { byId, h, keyedList } from "../dom.js";
 import { ACTIONS, factLines } from "./words.js";
 
 const SUBJECTS = { tower: "Tower", line: "Line", railway: "Railway", bridge: "Bridge", zone: "Zone", terrain: "Terrain" };
@@ -38,11 +38,11 @@ export function mountChanges(store, acts) {
 
 function row(change, acts) {
   const { action, label, subject } = change.properties;
-  const { words, icon: name } = ACTIONS[action];
+  const { words, sign } = ACTIONS[action];
   const button = h(
     "button",
     { type: "button", class: "change", "aria-expanded": "false", onclick: () => acts.show(change) },
-    h("span", { class: `change-mark ${action}` }, icon(name, "small")),
+    h("span", { class: `change-mark ${action}`, "aria-hidden": "true" }, sign),
     h("span", { class: "change-what" }, h("strong", {}, label || SUBJECTS[subject] || subject), h("span", { class: "caption" }, `${SUBJECTS[subject] ?? subject}, ${words}${shortOf(change.properties)}`)),
   );
   const element = h("li", {}, button);
@@ -83,16 +83,16 @@ function drawFilters(current, action, acts) {
   const counted = Object.keys(ACTIONS).filter((name) => current?.difference[name] > 0);
   place.hidden = counted.length === 0;
   const all = counted.reduce((sum, name) => sum + current.difference[name], 0);
-  const choices = [["", null, "All", all], ...counted.map((name) => [name, ACTIONS[name].icon, name === "kept" ? "Kept" : ACTIONS[name].words.replace(/^./, (letter) => letter.toUpperCase()), current.difference[name]])];
+  const choices = [["", "", "All", all], ...counted.map((name) => [name, ACTIONS[name].sign, ACTIONS[name].short, current.difference[name]])];
   const had = place.contains(document.activeElement) ? document.activeElement.value : null;
   place.replaceChildren(
     h("legend", { class: "unseen" }, "Which changes"),
-    ...choices.map(([value, name, words, count]) =>
+    ...choices.map(([value, sign, words, count]) =>
       h(
         "label",
         {},
         h("input", { type: "radio", name: "change-filter", value, checked: action === value, onchange: () => acts.filter(value) }),
-        h("span", { class: "segment" }, h("span", { class: `change-word ${value}` }, name && icon(name, "small"), words), h("small", {}, count.toLocaleString("en-GB"))),
+        h("span", { class: "segment" }, h("span", { class: "change-word" }, sign && h("b", { class: value, "aria-hidden": "true" }, sign), words), h("small", {}, count.toLocaleString("en-GB"))),
       ),
     ),
   );

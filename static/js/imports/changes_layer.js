@@ -3,9 +3,10 @@
 import { ACTIONS, isGeometry } from "./words.js";
 
 const NOTHING = { type: "FeatureCollection", features: [] };
-const REACH_PX = matchMedia("(pointer: coarse)").matches ? 16 : 6;
+const reach_px = () => (matchMedia("(pointer: coarse)").matches ? 16 : 6);
 const SOURCE = "import-changes";
 const BEFORE = "import-before";
+const SIGNS = "import-signs";
 const SHAPES = ["import-fill", "import-line", "import-line-vanished", "import-line-kept", "import-dot"];
 const FILTERED = [...SHAPES, "import-casing", "import-sign", "import-before-line", "import-before-dot"];
 
@@ -18,8 +19,8 @@ function colours() {
   const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
   return {
     casing: read("--map-casing"),
-    actions: { new: read("--accent"), changed: read("--warning-mark"), vanished: read("--critical"), kept: read("--advisory") },
-    before: read("--ink-2"),
+    actions: { new: read("--accent"), changed: read("--warning"), vanished: read("--critical"), kept: read("--advisory") },
+    before: read("--ink"),
   };
 }
 
@@ -29,7 +30,6 @@ const baseFilters = {
   "import-line": ["all", ["!", isShape("Point")], actionIs("new", "changed")],
   "import-line-vanished": ["all", ["!", isShape("Point")], actionIs("vanished")],
   "import-line-kept": ["all", ["!", isShape("Point")], actionIs("kept")],
-  "import-dot": isShape("Point"),
   "import-before-line": ["!", isShape("Point")],
   "import-before-dot": isShape("Point"),
 };
@@ -39,18 +39,18 @@ function layers({ casing, actions, before }, fonts) {
   const round = { "line-cap": "round", "line-join": "round" };
   const line = { "line-color": colour, "line-width": 3 };
   return [
-    { id: "import-before-line", type: "line", source: BEFORE, paint: { "line-color": before, "line-width": 1.5, "line-dasharray": [3, 2.5] } },
+    { id: "import-before-line", type: "line", source: BEFORE, paint: { "line-color": before, "line-width": 2.5, "line-dasharray": [2.5, 2] } },
     { id: "import-before-dot", type: "circle", source: BEFORE, paint: { "circle-radius": 5, "circle-opacity": 0, "circle-stroke-color": before, "circle-stroke-width": 1.5 } },
     { id: "import-fill", type: "fill", source: SOURCE, paint: { "fill-color": colour, "fill-opacity": 0.12 } },
     { id: "import-casing", type: "line", source: SOURCE, layout: round, paint: { "line-color": casing, "line-width": 6 } },
     { id: "import-line", type: "line", source: SOURCE, layout: round, paint: line },
     { id: "import-line-vanished", type: "line", source: SOURCE, paint: { ...line, "line-dasharray": [2.4, 1.8] } },
     { id: "import-line-kept", type: "line", source: SOURCE, layout: round, paint: { ...line, "line-dasharray": [0.1, 2] } },
-    { id: "import-dot", type: "circle", source: SOURCE, paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 8, 4, 13, 8], "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": 2 } },
+    { id: "import-dot", type: "circle", source: SIGNS, paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 8, 4, 13, 8], "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": 2 } },
     {
       id: "import-sign",
       type: "symbol",
-      source: SOURCE,
+      source: SIGNS,
       layout: {
         "text-field": byAction(Object.fromEntries(Object.entries(ACTIONS).map(([action, { sign }]) => [action, sign]))),
         "text-font": fonts,
@@ -67,7 +67,7 @@ export function createChangesLayer({ map, view }) {
   let shownAction = "";
 
   function addTo() {
-    for (const id of [BEFORE, SOURCE]) map.addSource(id, { type: "geojson", data: NOTHING });
+    for (const id of [BEFORE, SOURCE, SIGNS]) map.addSource(id, { type: "geojson", data: NOTHING });
     for (const layer of layers(colours(), view.palette().fonts)) map.addLayer(layer);
     filter();
   }
@@ -93,6 +93,7 @@ export function createChangesLayer({ map, view }) {
       const drawn = changes.filter((change) => change.geometry);
       const feature = (change, geometry) => ({ type: "Feature", geometry, properties: { id: change.id, action: change.properties.action } });
       map.getSource(SOURCE).setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, change.geometry)) });
+      map.getSource(SIGNS).setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) })) });
       const moved = changes.filter((change) => change.properties.action !== "vanished" && isGeometry(change.properties.before?.geometry));
       map.getSource(BEFORE).setData({ type: "FeatureCollection", features: moved.map((change) => feature(change, change.properties.before.geometry)) });
       filter();
@@ -101,11 +102,19 @@ export function createChangesLayer({ map, view }) {
     at(point) {
       const shown = SHAPES.filter((id) => map.getLayer(id));
       if (!shown.length || !point) return null;
-      const found = map.queryRenderedFeatures([[point.x - REACH_PX, point.y - REACH_PX], [point.x + REACH_PX, point.y + REACH_PX]], { layers: shown });
+      const reach = reach_px();
+      const found = map.queryRenderedFeatures([[point.x - reach, point.y - reach], [point.x + reach, point.y + reach]], { layers: shown });
       const rank = ({ layer }) => -SHAPES.indexOf(layer.id);
       return found.sort((a, b) => rank(a) - rank(b))[0]?.properties.id ?? null;
     },
   };
+}
+
+/** Where a geometry's sign stands: on a line its middle vertex, on an area its northernmost one, where no name is drawn. */
+export function placeOfSign(geometry) {
+  const positions = positionsOf(geometry);
+  if (geometry.type.endsWith("Polygon")) return positions.reduce((best, position) => (position[1] > best[1] ? position : best));
+  return positions[Math.floor(positions.length / 2)];
 }
 
 /** All positions of a geometry. */

@@ -47,8 +47,9 @@ export function stateChip({ state }) {
 function content(proposal) {
   return [
     h("span", { class: "import-kind", title: KINDS[proposal.kind].words }, icon(KINDS[proposal.kind].icon)),
-    h("span", { class: "import-what" }, h("strong", {}, titleOf(proposal)), h("span", { class: "caption" }, secondLine(proposal))),
+    h("strong", {}, titleOf(proposal)),
     stateChip(proposal),
+    h("span", { class: "caption" }, secondLine(proposal)),
   ];
 }
 
@@ -61,8 +62,8 @@ function secondLine(proposal) {
     reading: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
     applying: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
     refused: () => proposal.faults[0]?.message ?? "",
-    ready: () => differenceSentence(proposal.difference),
-    applied: () => differenceSentence(proposal.difference),
+    ready: () => differenceSentence(proposal.difference).replace(/\.$/, ""),
+    applied: () => differenceSentence(proposal.difference).replace(/\.$/, ""),
     discarded: () => "",
   }[proposal.state]();
   return [what, [isOpen(proposal) ? "" : who, when].filter(Boolean).join(", ")].filter(Boolean).join(" · ");

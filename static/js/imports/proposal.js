@@ -53,7 +53,7 @@ export function mountProposal(store, acts) {
       line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
       state === "ready" || state === "applied" || state === "applying" ? h("p", { class: "import-sentence", id: "import-sentence", role: "status" }, sentenceOf(proposal)) : null,
-      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, `${difference.unchanged.toLocaleString("en-GB")} are as they were.`),
+      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, difference.unchanged === 1 ? "1 is as it was." : `${difference.unchanged.toLocaleString("en-GB")} are as they were.`),
       ...notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       mapping(proposal),
       overwriteChoice(proposal),

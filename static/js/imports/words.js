@@ -20,12 +20,12 @@ export const STATES = {
   discarded: { words: "Discarded", icon: "circle-x", chip: "draft" },
 };
 
-/** In the order in which they are said. `sign` stands on the map, `icon` in the list. */
+/** In the order in which they are said; the sign stands in the list and on the map. */
 export const ACTIONS = {
-  new: { words: "new", sign: "+", icon: "plus" },
-  changed: { words: "changed", sign: "≠", icon: "pencil" },
-  vanished: { words: "vanished", sign: "−", icon: "minus" },
-  kept: { words: "kept as edited by hand", sign: "=", icon: "hand" },
+  new: { words: "new", short: "New", sign: "+" },
+  changed: { words: "changed", short: "Changed", sign: "≠" },
+  vanished: { words: "vanished", short: "Vanished", sign: "−" },
+  kept: { words: "kept as edited by hand", short: "Kept", sign: "=" },
 };
 
 export const ORIGINS = { upload: "", overpass: "from Overpass", subscription: "from a subscription", roll_back: "roll-back" };
@@ -61,6 +61,7 @@ const UNITS = { m: "m", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: 
 
 /** "height_m" → { words: "height", unit: "m" } */
 export function factName(name) {
+  if (name === "geometry") return { words: "shape", unit: "" };
   const parts = name.split("_");
   const unit = parts.length > 1 ? (UNITS[parts.at(-1)] ?? "") : "";
   if (unit) parts.pop();

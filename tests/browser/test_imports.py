@@ -1,0 +1,222 @@
+"""A curator brings data in: sends files, also over a bad connection, sees what they would change, and decides."""
+
+import json
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, Route, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks, place_of, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+PART = 1024 * 1024
+SIDE_DEG = 0.02
+SETS = ("Works", "Long works", "Phone works")
+TAKE_AWAY = """async (path) => { const api = await import("/static/js/api.js"); await api.remove(path); }"""
+WHERE_IT_OPENS = (-83.0, 39.96)
+
+
+def square(west: float, south: float) -> dict[str, Any]:
+    east, north = west + SIDE_DEG, south + SIDE_DEG
+    return {"type": "Polygon", "coordinates": [[[west, south], [east, south], [east, north], [west, north], [west, south]]]}
+
+
+def zone_file(*zones: tuple[str, float, float], padding: str = "") -> bytes:
+    features = [
+        {"type": "Feature", "id": name, "properties": {"name": name, "note": padding}, "geometry": square(west, south)}
+        for name, west, south in zones
+    ]
+    return json.dumps({"type": "FeatureCollection", "features": features}).encode()
+
+
+def written(folder: Path, name: str, content: bytes) -> Path:
+    path = folder / name
+    path.write_bytes(content)
+    return path
+
+
+@pytest.fixture
+def curator(visitor: Visitor) -> Iterator[Page]:
+    """Cora on the page; the sets that a test brings in are off the ground afterwards."""
+    page = visitor.signs_in("cora")
+    opens_imports(page)
+    yield page
+    for zone_set in asks(page, "/zone-sets?limit=1000")["results"]:
+        if zone_set["name"] in SETS:
+            page.evaluate(TAKE_AWAY, f"/zone-sets/{zone_set['id']}")
+
+
+def opens_imports(page: Page) -> None:
+    page.goto("/imports")
+    wait_for_map(page)
+
+
+def sends(page: Page, path: Path, *, set_name: str) -> None:
+    page.locator("#choose-file").set_input_files(path)
+    expect(page.get_by_label("What it is")).to_have_value("zones")
+    page.get_by_label("Name of the set").fill(set_name)
+    page.get_by_role("button", name="Read the file").click()
+
+
+def sentence(page: Page) -> Any:
+    return page.locator("#import-sentence")
+
+
+def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_can_be_rolled_back(
+    curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]
+) -> None:
+    page = curator
+    first = written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("South", -83.0, 39.93), ("East", -82.93, 39.95)))
+    sends(page, first, set_name="Works")
+    expect(sentence(page)).to_have_text("3\u00a0new.")
+    assert not [found for found in asks(page, "/zone-sets")["results"] if found["name"] == "Works"]
+    page.get_by_role("button", name="Apply 3 changes").click()
+    expect(page.locator("#proposal .chip")).to_have_text("Applied")
+    expect(page.get_by_text("Applied by cora")).to_be_visible()
+
+    page.get_by_role("link", name="All imports").click()
+    second = written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.985), ("West", -83.06, 39.94), ("East", -82.93, 39.95)))
+    sends(page, second, set_name="Works")
+    expect(sentence(page)).to_have_text("1\u00a0new, 1\u00a0changed, 1\u00a0vanished.")
+    expect(page.get_by_text("1 is as it was.")).to_be_visible()
+    expect(page.get_by_role("list", name="Changes").get_by_role("listitem")).to_have_count(3)
+    page.locator("#map[data-idle]").wait_for(state="attached")
+    place = place_of(page, [-83.06 + SIDE_DEG / 4, 39.94 + SIDE_DEG / 4])
+    page.mouse.move(place["x"], place["y"])
+    expect(page.locator("#changes li", has_text="West")).to_have_attribute("data-lit", "true")
+    page.mouse.move(0, 0)
+    page.get_by_role("radio", name="Changed").check(force=True)
+    expect(page.get_by_role("list", name="Changes").get_by_role("listitem")).to_have_count(1)
+    page.get_by_role("button", name="North").click()
+    expect(page.get_by_text("dashed on the map")).to_be_visible()
+    page.get_by_role("radio", name="All").check(force=True)
+    page.get_by_role("button", name="Fit everything").click()
+    page.locator("#map[data-idle]").wait_for(state="attached")
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        page.wait_for_timeout(200)
+        picture(page, f"imports-difference-{theme}")
+    page.emulate_media(color_scheme="light")
+    page.get_by_role("button", name="Apply 3 changes").click()
+    expect(page.locator("#proposal .chip")).to_have_text("Applied")
+
+    page.get_by_text("Roll the set back").click()
+    page.get_by_role("listitem").filter(has_text="Version 1").get_by_role("button", name="Roll back").click()
+    expect(page.locator("#proposal .chip")).to_have_text("To be decided")
+    expect(sentence(page)).to_have_text("1\u00a0new, 1\u00a0changed, 1\u00a0vanished.")
+    page.get_by_role("button", name="Discard").click()
+    expect(page.get_by_text("is discarded. Nothing of it counts.")).to_be_visible()
+    expect(page.get_by_role("list", name="What has come in").get_by_role("listitem").first).to_contain_text("Discarded")
+
+
+def test_a_cut_connection_goes_on_where_it_was_also_after_a_reload(visitor: Visitor, curator: Page, tmp_path: Path) -> None:
+    page = curator
+    path = written(tmp_path, "long.geojson", zone_file(("Long", -83.0, 39.98), padding="x" * (3 * PART)))
+    sent: list[int] = []
+    page.on("request", lambda request: request.method == "PUT" and sent.append(int(request.url.rsplit("/", 1)[1])))
+    asked: list[str] = []
+
+    def cut(route: Route) -> None:
+        route.abort()
+
+    page.route(f"**/bytes/{PART}", cut)
+    sends(page, path, set_name="Long works")
+    expect(page.get_by_text("The connection was cut.")).to_be_visible()
+    page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
+    page.reload()
+    wait_for_map(page)
+    assert asked == ["beforeunload"]
+    expect(page.get_by_text(re.compile(r"33.% is there already"))).to_be_visible()
+    page.unroute(f"**/bytes/{PART}", cut)
+    page.locator("#choose-file").set_input_files(path)
+    expect(sentence(page)).to_have_text("1\u00a0new.")
+    assert sent.count(0) == 1
+    assert sent[-1] == 3 * PART
+    visitor.complaints[:] = [complaint for complaint in visitor.complaints if "net::ERR_FAILED" not in complaint]  # the cut one
+    page.get_by_role("button", name="Discard").click()
+
+
+def test_a_connection_that_comes_back_is_used_without_a_word_from_anybody(visitor: Visitor, curator: Page, tmp_path: Path) -> None:
+    page = curator
+    path = written(tmp_path, "again.geojson", zone_file(("Again", -83.0, 39.98), padding="x" * PART))
+    cuts = iter([True, True, False])
+    page.route(f"**/bytes/{PART}", lambda route: route.abort() if next(cuts, False) else route.continue_())
+    sends(page, path, set_name="Long works")
+    expect(sentence(page)).to_have_text("1\u00a0new.")
+    visitor.complaints[:] = [complaint for complaint in visitor.complaints if "net::ERR_FAILED" not in complaint]
+    page.get_by_role("button", name="Discard").click()
+
+
+def test_a_file_with_a_fault_is_refused_and_the_place_is_one_click_away(curator: Page, tmp_path: Path) -> None:
+    page = curator
+    west, south = WHERE_IT_OPENS
+    ring = [[west, south], [west + 0.02, south + 0.02], [west + 0.02, south], [west, south + 0.02], [west, south]]
+    sends(page, written(tmp_path, "bowtie.json", json.dumps({"type": "Polygon", "coordinates": [ring]}).encode()), set_name="Works")
+    alert = page.get_by_role("alert")
+    expect(alert).to_contain_text("self-intersection")
+    expect(alert).to_contain_text("Nothing was imported.")
+    page.get_by_role("button", name="Fit everything").click()
+    page.get_by_role("button", name="See the place").click()
+    page.locator("#map[data-idle]").wait_for(state="attached")
+    frame = page.locator("#map").bounding_box()
+    assert frame
+    place = place_of(page, [west + 0.01, south + 0.01])
+    assert abs(place["x"] - frame["x"] - frame["width"] / 2) < 5
+    assert abs(place["y"] - frame["y"] - frame["height"] / 2) < 5
+    page.get_by_role("button", name="Discard").click()
+
+
+def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, tmp_path: Path) -> None:
+    sends(curator, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98))), set_name="Works")
+    expect(curator.get_by_role("button", name="Apply 1 change")).to_be_visible()
+    other = visitor.signs_in("cora")
+    other.goto(curator.url.split("#")[0])
+    other.get_by_role("button", name="Discard").click()
+    expect(other.get_by_text("is discarded.")).to_be_visible()
+    curator.get_by_role("button", name="Apply 1 change").click()
+    expect(curator.get_by_role("alert")).to_contain_text("cora")
+    expect(curator.locator("#proposal .chip")).to_have_text("Discarded")
+    visitor.complaints[:] = [complaint for complaint in visitor.complaints if "409" not in complaint]
+
+
+def test_the_keyboard_is_enough_to_decide(curator: Page, tmp_path: Path) -> None:
+    page = curator
+    page.locator("#choose-file").set_input_files(
+        written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("East", -82.93, 39.95)))
+    )
+    expect(page.get_by_label("What it is")).to_be_focused()
+    page.get_by_label("Name of the set").press("Enter")
+    expect(sentence(page)).to_have_text("2\u00a0new.")
+    page.get_by_role("button", name="North").focus()
+    page.keyboard.press("ArrowUp")
+    expect(page.get_by_role("button", name="East")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="East")).to_have_attribute("aria-expanded", "true")
+    page.get_by_role("button", name="Discard").press("Enter")
+    expect(page.get_by_text("is discarded.")).to_be_visible()
+
+
+@pytest.mark.parametrize("name", ["opal", "vera"])
+def test_only_curators_have_the_tools_the_others_a_sentence(visitor: Visitor, name: str) -> None:
+    page = visitor.signs_in(name)
+    opens_imports(page)
+    expect(page.get_by_text("Only curators bring data in.")).to_be_visible()
+    expect(page.locator("#choose-file")).to_have_count(0)
+
+
+def test_a_phone_has_it_all_in_the_sheet(visitor: Visitor, curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]) -> None:
+    sends(curator, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("East", -82.93, 39.95))), set_name="Phone works")
+    expect(sentence(curator)).to_be_visible()
+    page = visitor.signs_in("cora", size=(390, 844), touch=True, theme="dark")
+    page.goto(curator.url.split("#")[0])
+    wait_for_map(page)
+    expect(sentence(page)).to_have_text("2\u00a0new.")
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    expect(page.get_by_role("button", name="Apply 2 changes")).to_be_in_viewport()
+    picture(page, "imports-phone-dark")
+    curator.get_by_role("button", name="Discard").click()
