@@ -287,6 +287,10 @@ FLIGHT_RULES = FlightRules(
 )
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 
+# Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
+OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")
+OVERPASS_MOST_KM2 = _float("SPANWISE_OVERPASS_MOST_KM2", 5_000.0)
+
 # Raster tiles under the map: addresses only; the page works without them on a quiet background.
 BASE_MAP_TILES = os.environ.get("SPANWISE_BASE_MAP_TILES", "https://tile.openstreetmap.org/{z}/{x}/{y}.png")
 BASE_MAP_ATTRIBUTION = os.environ.get("SPANWISE_BASE_MAP_ATTRIBUTION", "© OpenStreetMap contributors")

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from django.conf import settings
+
 from inspection.selectors import ground_extent
 from workspace.pages import SignedInPage, raster_maps
 
@@ -37,7 +39,8 @@ class ImportsPage(GroundPage):
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         proposal = kwargs.get("proposal_id")
-        return super().page(**kwargs) | {"proposal": str(proposal) if proposal else None}
+        overpass = {"most_km2": settings.OVERPASS_MOST_KM2} if settings.OVERPASS_ADDRESS else None
+        return super().page(**kwargs) | {"proposal": str(proposal) if proposal else None, "overpass": overpass}
 
 
 class TerrainPage(GroundPage):

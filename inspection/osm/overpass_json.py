@@ -12,8 +12,10 @@ import osmium
 from osmium.osm import mutable
 
 from inspection.osm.file_gate import OsmFileError, OsmFormat, open_unpacked
+from inspection.osm.overpass import complaint
 
 MAX_ELEMENT_CHARACTERS = 16 * 1024 * 1024
+MAX_REMARK_CHARACTERS = 10_000
 _CHUNK = 1024 * 1024
 _MEMBER_TYPES = {"node": "n", "way": "w", "relation": "r"}
 _SPACE = " \t\r\n"
@@ -42,6 +44,8 @@ def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | 
             timestamp = _timestamp(scanner.text_before_elements())
             for index, element in enumerate(scanner.elements()):
                 _write(writer, element, f"elements[{index}]")
+            if fault := complaint(scanner.text_after_elements()):
+                raise OsmFileError(f"Overpass did not give all of it: {fault}. Take a smaller area.")
     except UnicodeDecodeError as error:
         raise OsmFileError("The JSON is not UTF-8.") from error
     finally:
@@ -77,6 +81,12 @@ class _Scanner:
                 return
             if mark != ",":
                 raise OsmFileError(f"The JSON breaks off or is damaged after elements[{index - 1}].")
+
+    def text_after_elements(self) -> str:
+        """What follows the list, as far as a remark may stand there."""
+        while len(self.window) < MAX_REMARK_CHARACTERS and self._read_on():
+            pass
+        return self.window[:MAX_REMARK_CHARACTERS]
 
     def _read_on(self) -> bool:
         text = self.file.read(max(_CHUNK, len(self.window)))

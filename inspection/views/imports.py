@@ -3,6 +3,7 @@
 from typing import Any
 from uuid import UUID
 
+from django.conf import settings
 from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
@@ -11,7 +12,8 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalState, Upload
+from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
+from inspection.osm.overpass import WrongArea
 from inspection.selectors.imports import NEWEST_FIRST, changes_of_proposal, proposal_of_id, proposals, upload_of_id
 from inspection.serializers.imports import (
     ChangeCollectionSerializer,
@@ -22,6 +24,7 @@ from inspection.serializers.imports import (
     change_feature,
     proposal_json,
 )
+from inspection.services.overpass import area_of
 from inspection.services.proposals import pipeline
 from inspection.services.uploads import UploadTooLarge, check_size_for
 from inspection.views.parameters import invalid
@@ -103,6 +106,14 @@ class ImportList(APIView):
         return response
 
     def _where_from(self, values: dict[str, Any]) -> dict[str, Any]:
+        if values["kind"] == ImportKind.OSM and "overpass_bbox" in values.get("parameters", {}):
+            if not settings.OVERPASS_ADDRESS:
+                raise invalid("overpass_bbox", "No Overpass server is named in the settings.")
+            try:
+                area_of(values["parameters"])
+            except WrongArea as error:
+                raise invalid("overpass_bbox", str(error)) from error
+            return {"upload": None, "file_name": "overpass.json", "origin": ProposalOrigin.OVERPASS}
         if "upload" not in values:
             raise invalid("upload", "Send the file first, then name its upload.")
         try:

@@ -18,7 +18,8 @@ from django.utils.dateparse import parse_datetime
 from inspection.models import DataImport, ImportKind, ImportProposal, ProposalOrigin, ProposalState, ProposedChange, Upload
 from inspection.selectors import ground_revision
 from inspection.services.ground import hold_ground
-from inspection.services.proposals import assets, zones
+from inspection.services.overpass import fetch_area
+from inspection.services.proposals import assets, osm, zones
 from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading
 from inspection.services.uploads import UploadRefused, upload_as_file
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
@@ -110,12 +111,21 @@ def read_proposal(*, job: Job, progress: Progress) -> None:
         return
     revision = ground_revision()
     try:
+        if proposal.origin == ProposalOrigin.OVERPASS and proposal.upload is None:
+            _fetch(proposal, progress)
         reading = _with_file(proposal, lambda path, provenance: _module(proposal).read(
             path=path, parameters=proposal.parameters, provenance=provenance, progress=progress
         ))  # fmt: skip
         _store_reading(proposal, job, reading, revision)
     except FileRefused as error:
         refuse_proposal(proposal=proposal, faults=error.faults, job=job)
+
+
+def _fetch(proposal: ImportProposal, progress: Progress) -> None:
+    """Fetch what is to be read, and keep it: read again, it is the same."""
+    upload, provenance = fetch_area(parameters=proposal.parameters, created_by=proposal.created_by, progress=progress)
+    proposal.upload, proposal.provenance, proposal.file_name = upload, provenance, upload.file_name
+    proposal.save(update_fields=["upload", "provenance", "file_name"])
 
 
 def apply_proposal(*, job: Job, progress: Progress) -> None:

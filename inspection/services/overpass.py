@@ -1,0 +1,88 @@
+"""Takes an area's infrastructure from Overpass, as if somebody had sent a file. The one place that talks to it."""
+
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlencode
+
+from django.conf import settings
+from django.utils import timezone
+
+from inspection.models import ImportKind, Upload
+from inspection.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
+from inspection.osm.records import Extent
+from inspection.services.proposals.reading import Fault, FileRefused, Progress
+from inspection.services.uploads import store_upload, upload_folder
+from workspace.models import User
+from workspace.outgoing import OutgoingError, OutgoingFailed, fetch
+
+TRIES = 3
+PAUSES_S = (5, 20)  # a question cannot be gone on with: after a cut it is asked again, whole
+LONGEST_PAUSE_S = 60
+BUSY = {429, 502, 503, 504}
+ATTRIBUTION = "© OpenStreetMap contributors, ODbL 1.0"
+_TAIL_BYTES = 4_096
+_BLOCK_BYTES = 1024 * 1024
+
+
+def area_of(parameters: dict[str, Any]) -> Extent:
+    """The box that parameters ask for. Raises WrongArea."""
+    return checked_box(parameters.get("overpass_bbox"), settings.OVERPASS_MOST_KM2)
+
+
+def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress: Progress) -> tuple[Upload, dict[str, Any]]:
+    """What Overpass has of the area, and where it comes from. Raises FileRefused."""
+    try:
+        box = area_of(parameters)
+    except WrongArea as error:
+        raise FileRefused([Fault("overpass_bbox", str(error))]) from error
+    with tempfile.TemporaryDirectory(dir=upload_folder()) as folder:
+        answer = Path(folder) / "overpass.json"
+        try:
+            _ask(question(box, most_bytes=settings.LARGEST_FILE_BYTES[ImportKind.OSM]), answer, progress)
+        except OutgoingError as error:
+            raise FileRefused([Fault("", f"Overpass: {error}")]) from error
+        if fault := complaint(_tail(answer)):
+            raise FileRefused([Fault("", f"Overpass did not give all of it: {fault}. Take a smaller area.")])
+        upload = store_upload(file_name="overpass.json", chunks=_blocks(answer), created_by=created_by)
+    now = timezone.now().isoformat()
+    return upload, {"source_address": settings.OVERPASS_ADDRESS, "attribution": ATTRIBUTION, "licence": "ODbL 1.0", "fetched_at": now}
+
+
+def _ask(text: str, to: Path, progress: Progress) -> None:
+    for attempt in range(1, TRIES + 1):
+        progress("asking Overpass", 0.02)
+        try:
+            fetch(
+                settings.OVERPASS_ADDRESS, to=to, max_bytes=settings.LARGEST_FILE_BYTES[ImportKind.OSM], timeout_s=QUERY_TIMEOUT_S + 20,
+                total_s=2 * QUERY_TIMEOUT_S, method="POST", data=urlencode({"data": text}).encode(),
+                headers={"Content-Type": "application/x-www-form-urlencoded"},
+                progress=lambda size: progress(f"{size / 2**20:.1f} MiB from Overpass", 0.05),
+            )  # fmt: skip
+            return
+        except OutgoingFailed as error:
+            if attempt == TRIES or (error.status is not None and error.status not in BUSY):
+                raise
+            _wait(min(error.retry_after_s or PAUSES_S[attempt - 1], LONGEST_PAUSE_S), progress)
+
+
+def _wait(pause_s: float, progress: Progress) -> None:
+    """With an ear for whoever wants to stop."""
+    end_s = time.monotonic() + pause_s
+    while (left_s := end_s - time.monotonic()) > 0:
+        progress(f"Overpass is busy; next try in {left_s:.0f} s", 0.02)
+        time.sleep(min(left_s, 0.5))
+
+
+def _tail(path: Path) -> str:
+    with path.open("rb") as file:
+        file.seek(max(path.stat().st_size - _TAIL_BYTES, 0))
+        return file.read().decode(errors="replace")
+
+
+def _blocks(path: Path) -> Iterator[bytes]:
+    with path.open("rb") as file:
+        while block := file.read(_BLOCK_BYTES):
+            yield block
