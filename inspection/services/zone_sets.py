@@ -123,7 +123,7 @@ def keep_what_was(zone_set: ZoneSet) -> None:
     """Before a set is changed: store it as a version if its present state is in none."""
     if not zone_set.zones.exists():
         return
-    last = zone_set.versions.first()
+    last = zone_set.versions.defer("content").first()
     if last is None or zone_set.zones.filter(updated_at__gt=last.created_at).exists() or zone_set.zones.count() != last.zones:
         store_version(zone_set, data_import=zone_set.data_import, created_by=None)
 

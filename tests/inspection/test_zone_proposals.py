@@ -1,6 +1,5 @@
 """Zone files as proposals: what they state is kept, what was said of them is checked, and two curators at once lose nothing."""
 
-import json
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -16,20 +15,11 @@ from inspection.services.proposals.reading import FileRefused, Provenance
 from inspection.services.proposals.zones import apply, read
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
+from tests.inspection.zone_sets import zone_file
 from tests.workspace.people import somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db
-
-
-def square(west: float, south: float = 47.0, side: float = 0.1) -> dict[str, Any]:
-    east, north = west + side, south + side
-    return {"type": "Polygon", "coordinates": [[[west, south], [east, south], [east, north], [west, north], [west, south]]]}
-
-
-def zone_file(*zones: tuple[str, float], south: float = 47.0) -> bytes:
-    features = [{"type": "Feature", "id": name, "properties": {"name": name}, "geometry": square(west, south)} for name, west in zones]
-    return json.dumps({"type": "FeatureCollection", "features": features}).encode()
 
 
 def written(folder: Path, *zones: tuple[str, float], south: float = 47.0) -> Path:

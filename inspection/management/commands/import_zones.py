@@ -1,4 +1,4 @@
-"""manage.py import_zones: reads no-fly zones from a GeoJSON or ED-269 file, all of them or none."""
+"""manage.py import_zones: reads no-fly zones from a file of an authority or of your own, all of them or none."""
 
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,9 @@ from inspection.services.proposals.reading import Provenance
 
 class Command(ImportCommand):
     help = (
-        "Read no-fly zones from a GeoJSON or ED-269 file. The zones become one set, named after the file; the next file of that name "
-        "replaces it. A file with a fault is refused as a whole, and each fault is printed with its place."
+        "Read no-fly zones from an ED-269, ED-318, OpenAir or GeoJSON file. The zones become one set, named after the file; the next "
+        "file of that name replaces it, and zones that a curator edited stay. "
+        "A file with a fault is refused as a whole, and each fault is printed with its place."
     )
 
     def add_arguments(self, parser: CommandParser) -> None:
