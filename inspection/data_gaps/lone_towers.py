@@ -2,12 +2,12 @@
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import minimum_spanning_tree
+from scipy.sparse.csgraph import depth_first_order, minimum_spanning_tree
 from shapely import MultiPoint, Point
 
 from inspection.data_gaps.gap import Gap
 from inspection.data_gaps.ground import asset_key
-from inspection.data_gaps.network import FloatArray, IntArray, Network, metres_by
+from inspection.data_gaps.network import BoolArray, FloatArray, IntArray, Network, metres_by
 from inspection.geodesy import distance_m
 from inspection.graph.edges import component_labels
 from inspection.graph.nearness import nearest_within, pairs_within
@@ -26,7 +26,7 @@ def lone_towers(network: Network) -> list[Gap]:
     position = supports.position[lone]
     pairs = _nearest_pairs(position)
     _, row = component_labels(len(lone), pairs)
-    length = _row_lengths_m(position, pairs, row)
+    length, is_path = _trees(position, pairs, row)
     near = network.legs_near(position, LINE_REACH_M)
     place, first = np.unique(near.place, return_index=True)
     leg = np.full(len(lone), -1, dtype=np.int64)
@@ -36,7 +36,7 @@ def lone_towers(network: Network) -> list[Gap]:
     order = np.lexsort((_sorting_key(network, lone), row))
     start = np.searchsorted(row[order], np.arange(row.max() + 2))
     return [
-        _gap_of_row(network, lone, order[start[index] : start[index + 1]], leg, metres, float(length[index]))
+        _gap_of_row(network, lone, order[start[index] : start[index + 1]], leg, metres, float(length[index]), bool(is_path[index]))
         for index in range(len(start) - 1)
     ]
 
@@ -51,13 +51,37 @@ def _nearest_pairs(position: FloatArray) -> IntArray:
     return pairs.astype(np.int64)
 
 
-def _row_lengths_m(position: FloatArray, pairs: IntArray, row: IntArray) -> FloatArray:
-    """Metres of the shortest tree through each row."""
+def course_of_row(position: FloatArray) -> IntArray | None:
+    """The towers of a row in the order of their line, or None where they branch or stand too far apart for one row."""
+    pairs = pairs_within(position, ROW_M)
+    tree = _shortest_tree(position, pairs)
+    degree = np.bincount(tree.ravel(), minlength=len(position))
+    if len(tree) != len(position) - 1 or degree.max(initial=0) > 2:
+        return None
+    links = csr_array((np.ones(len(tree)), (tree[:, 0], tree[:, 1])), shape=(len(position), len(position)))
+    order: IntArray = depth_first_order(links, int(np.flatnonzero(degree == 1)[0]), directed=False, return_predecessors=False).astype(
+        np.int64
+    )
+    return order
+
+
+def _trees(position: FloatArray, pairs: IntArray, row: IntArray) -> tuple[FloatArray, BoolArray]:
+    """Of each row the metres of the shortest tree through it, and whether that is a path without a branch."""
+    count = int(row.max()) + 1
+    tree = _shortest_tree(position, pairs)
+    metres = metres_by(row[tree[:, 0]], distance_m(position[tree[:, 0]], position[tree[:, 1]]), count)
+    is_path = np.ones(count, dtype=bool)
+    is_path[row[np.bincount(tree.ravel(), minlength=len(position)) > 2]] = False
+    return metres, is_path
+
+
+def _shortest_tree(position: FloatArray, pairs: IntArray) -> IntArray:
+    """The pairs of the shortest trees, one tree for each row."""
     if not len(pairs):
-        return np.zeros(int(row.max()) + 1)
+        return np.zeros((0, 2), dtype=np.int64)
     metres = np.maximum(distance_m(position[pairs[:, 0]], position[pairs[:, 1]]), 1e-3)
     tree = minimum_spanning_tree(csr_array((metres, (pairs[:, 0], pairs[:, 1])), shape=(len(position), len(position)))).tocoo()
-    return metres_by(row[tree.row], tree.data, int(row.max()) + 1)
+    return np.column_stack([tree.row, tree.col]).astype(np.int64)
 
 
 def _sorting_key(network: Network, lone: IntArray) -> IntArray:
@@ -66,7 +90,9 @@ def _sorting_key(network: Network, lone: IntArray) -> IntArray:
     return np.where(osm_id >= 0, osm_id, np.int64(2) ** 61 + network.ground.supports.asset[lone])
 
 
-def _gap_of_row(network: Network, lone: IntArray, members: IntArray, leg: IntArray, metres: FloatArray, length_m: float) -> Gap:
+def _gap_of_row(
+    network: Network, lone: IntArray, members: IntArray, leg: IntArray, metres: FloatArray, length_m: float, is_path: bool
+) -> Gap:
     ground = network.ground
     towers = lone[members]
     positions = ground.supports.position[towers]
@@ -85,6 +111,7 @@ def _gap_of_row(network: Network, lone: IntArray, members: IntArray, leg: IntArr
         details={
             "towers": len(members),
             "row_m": round(length_m, 1),
+            "is_path": is_path and 2 < len(members) <= NAMED,
             "nearest_line_m": round(float(metres[nearest]), 1) if nearest >= 0 else None,
             "assets": ground.supports.asset[towers[:NAMED]].tolist(),
         },

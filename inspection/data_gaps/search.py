@@ -23,7 +23,7 @@ from inspection.data_gaps.missing_supports import missing_supports
 from inspection.data_gaps.network import Network
 from inspection.data_gaps.voltages import impossible_voltages
 
-RECIPE = 1  # counted up when the rules change, so that the next search looks at a ground that it has seen
+RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
 
 
 def search(ground: GapGround, progress: Callable[[str], None] | None = None) -> list[Gap]:

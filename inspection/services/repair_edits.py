@@ -8,6 +8,7 @@ import numpy as np
 from django.contrib.gis.geos import LineString, Point, Polygon
 from django.db.models import QuerySet
 
+from inspection.data_gaps.lone_towers import course_of_row
 from inspection.data_gaps.mending import (
     NoSuchVertex,
     end_moved_to,
@@ -86,6 +87,26 @@ def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
         raise CannotRepair("No line is near to the tower any more.")
     line.geometry = LineString(through(course, place, _taken_places(line, course)), srid=4326)
     return [Change(line)]
+
+
+def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+    """A new line from tower to tower of a row, of the voltage that all that state one agree on."""
+    towers = list(
+        Asset.objects.filter(pk__in=gap.details["assets"], vanished_at=None, kind=AssetKind.TOWER, is_flyable=True).order_by("pk")
+    )
+    places = np.array([tower.geometry.coords for tower in towers], dtype=np.float64).reshape(-1, 2)
+    order = course_of_row(places) if len(towers) > 1 else None
+    if order is None or len(towers) != len(gap.details["assets"]):
+        raise CannotRepair("The towers stand in no row any more. The ground is being searched again.")
+    stated = {tuple(tower.voltages_v) for tower in towers if tower.voltages_v}
+    line = Asset(
+        kind=AssetKind.LINE,
+        subtype="minor_line" if all(tower.subtype == "pole" for tower in towers) else "line",
+        geometry=LineString(places[order].tolist(), srid=4326),
+        voltages_v=list(stated.pop()) if len(stated) == 1 else [],
+        tags={PLACED: "by hand"},
+    )
+    return [Change(line, is_new=True)]
 
 
 def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:

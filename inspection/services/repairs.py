@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from inspection.models import DataGap, GapKind, GapState
+from inspection.models import AssetKind, DataGap, GapKind, GapState
 from inspection.services.curation import many_edits, save_asset
 from inspection.services.facts import geojson
 from inspection.services.gaps import mark_repaired, reopen_gap
@@ -17,6 +17,7 @@ from inspection.services.repair_edits import (
     join_to_network,
     joined_ends,
     leave_out,
+    line_along_towers,
     towers_along_span,
     towers_at_vertices,
     with_voltages,
@@ -97,14 +98,15 @@ def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap
 
 
 def _said(changes: Sequence[Change]) -> str:
-    """What was done, for the toast: "9 towers placed, 1 line changed." """
-    new = sum(change.asset.kind == "tower" and change.is_new for change in changes)
-    parts = [f"{new:,} tower{'' if new == 1 else 's'} placed"] if new else []
-    for kind, word in (("line", "line"), ("tower", "tower"), ("bridge", "bridge"), ("railway", "railway")):
-        number = sum(change.asset.kind == kind and not change.is_new for change in changes)
-        if number:
-            parts.append(f"{number:,} {word}{'' if number == 1 else 's'} changed")
-    return ", ".join(parts).capitalize() + "."
+    """What was done, for the toast: "9 towers placed, 1 line changed"."""
+    parts = []
+    for is_new, done in ((True, "placed"), (False, "changed")):
+        for kind in AssetKind:
+            number = sum(change.asset.kind == kind and change.is_new == is_new for change in changes)
+            if number:
+                word = kind.value if number == 1 else f"{kind.value}s"
+                parts.append(f"{number:,} {word} {'drawn' if is_new and kind == AssetKind.LINE else done}")
+    return ", ".join(parts) + "."
 
 
 def _offers_of_long_span(details: dict[str, Any]) -> list[Offer]:
@@ -122,6 +124,8 @@ def _offers_of_lone_tower(details: dict[str, Any]) -> list[Offer]:
     offers = []
     if details["towers"] == len(details["assets"]):  # of a long row the details name the first towers alone
         offers.append(Offer("leave_out", "Leave them out of the graph" if many else "Leave it out of the graph"))
+    if details["is_path"]:
+        offers.insert(0, Offer("draw_line", f"Draw a line along the {details['towers']} towers"))
     if details["nearest_line_m"] is not None:
         offers.insert(0, Offer("attach", "Join the nearest tower to the line" if many else "Join it to the nearest line"))
     return offers
@@ -160,6 +164,7 @@ _BUILDERS: dict[str, Callable[[DataGap, dict[str, Any]], list[Change]]] = {
     "place_towers": towers_along_span,
     "make_towers": towers_at_vertices,
     "attach": attach_towers,
+    "draw_line": line_along_towers,
     "leave_out": leave_out,
     "join": joined_ends,
     "join_to_network": join_to_network,

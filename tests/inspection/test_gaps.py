@@ -257,6 +257,23 @@ def test_a_lone_tower_joins_the_line_beside_it(curator):
     assert state_of(gap) == GapState.REPAIRED
 
 
+def test_a_line_is_drawn_along_a_row_of_towers_and_taken_back(curator):
+    places = [(10.0, 56.0 + 0.0027 * step) for step in (2, 0, 3, 1)]
+    for place in places:
+        tower(place, voltages_v=[132_000])
+    drawn_search()
+    gap = DataGap.objects.get(kind="tower_on_no_line")
+    repaired = mend(gap, curator, "draw_line")
+    assert repaired.said == "1 line drawn."
+    row = Asset.objects.get(kind="line")
+    assert sorted(places) in (list(row.geometry.coords), list(reversed(row.geometry.coords)))
+    assert (row.max_voltage_v, row.supports.count()) == (132_000, 4)
+    drawn_search()
+    assert state_of(gap) == GapState.REPAIRED
+    undo_repair(gap=gap, entries=repaired.entries, actor=curator)
+    assert not Asset.objects.filter(kind="line").exists()
+
+
 def test_what_is_left_out_is_no_gap_any_more(curator):
     lone = tower((10.0, 56.0))
     drawn_search()

@@ -5,11 +5,12 @@ import pytest
 
 from inspection.data_gaps.gap import Gap
 from inspection.data_gaps.ground import GapGround
+from inspection.data_gaps.lone_towers import course_of_row
 from inspection.data_gaps.network import Network
 from inspection.data_gaps.search import search
 from inspection.data_gaps.words import sentence, title
 from inspection.graph.edges import component_labels
-from tests.inspection.data_gaps.drawn import ground, row
+from tests.inspection.data_gaps.drawn import at, ground, row
 
 
 def found(kind: str, drawn: GapGround) -> list[Gap]:
@@ -110,6 +111,20 @@ def test_lone_towers_in_a_row_are_one_gap_and_a_single_one_cuts_off_nothing() ->
     assert [gap.details["towers"] for gap in gaps] == [5, 1]
     assert [gap.cut_off_m for gap in gaps] == [pytest.approx(1_200, rel=1e-3), 0.0]
     assert gaps[0].details["assets"] == [101, 102, 103, 104, 105]
+
+
+def test_towers_that_branch_are_no_path() -> None:
+    """o-o-o-o with a branch of two at the third."""
+    path = row(0, 1_200, 300)
+    assert found("tower_on_no_line", ground(towers=path))[0].details["is_path"]
+    assert not found("tower_on_no_line", ground(towers=[*path, (600.0, 300.0), (600.0, 600.0)]))[0].details["is_path"]
+
+
+def test_a_row_is_put_in_order_wherever_its_towers_come_in_the_list() -> None:
+    order = course_of_row(at((600.0, 0.0), (0.0, 0.0), (900.0, 40.0), (300.0, 0.0)))
+    assert order is not None
+    assert order.tolist() in ([1, 3, 0, 2], [2, 0, 3, 1])
+    assert course_of_row(at((0.0, 0.0), (300.0, 0.0), (5_000.0, 0.0))) is None
 
 
 def test_a_lone_tower_knows_the_line_beside_it() -> None:
