@@ -117,8 +117,10 @@ def upload_json(upload: Upload) -> dict[str, Any]:
     }
 
 
-def proposal_json(proposal: ImportProposal) -> dict[str, Any]:
+def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[str, Any]:
+    """In a list without what only the open one needs, such as the samples and the preview of an asset file."""
     job = proposal.job
+    summary = {name: value for name, value in proposal.summary.items() if not (is_brief and isinstance(value, dict | list))}
     return {
         "id": str(proposal.pk),
         "kind": proposal.kind,
@@ -129,7 +131,7 @@ def proposal_json(proposal: ImportProposal) -> dict[str, Any]:
         "parameters": proposal.parameters,
         "provenance": proposal.provenance,
         "faults": proposal.faults,
-        "summary": proposal.summary,
+        "summary": summary,
         "difference": proposal.difference,
         "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": job.message},
         "created_by": _name(proposal.created_by),

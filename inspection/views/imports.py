@@ -79,7 +79,7 @@ class ImportList(APIView):
     def get(self, request: Request) -> Response:
         kind, state = _one_of(request, "kind", ImportKind.values), _one_of(request, "state", ProposalState.values)
         page = page_of(request, proposals(kind=kind, states=[state] if state else None), order=NEWEST_FIRST, default_limit=50)
-        return Response({"results": [proposal_json(proposal) for proposal in page.rows], "next": page.next})
+        return Response({"results": [proposal_json(proposal, is_brief=True) for proposal in page.rows], "next": page.next})
 
     @extend_schema(
         operation_id="propose_import",

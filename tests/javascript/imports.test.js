@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { placeOfSign } from "../../static/js/imports/changes_layer.js";
+import { mappingOf, meaningsOf, withMeaning } from "../../static/js/imports/column_mapping.js";
 import { guessKind, setNameOf } from "../../static/js/imports/kinds.js";
 import { areaKm2 } from "../../static/js/imports/overpass_box.js";
 import { createRememberedUploads, markOf } from "../../static/js/imports/remembered_uploads.js";
@@ -105,4 +106,22 @@ test("a browser that keeps nothing, or garbles it, is no fault", () => {
   const uploads = createRememberedUploads(1, broken);
   uploads.keep("m", {});
   assert.deepEqual(uploads.all(), []);
+});
+
+test("a mapping of columns is the same after being shown as meanings", () => {
+  const mapping = { kind: { column: "art", values: { Mast: "tower", Zaun: "" } }, columns: { ref: "Nr", voltage: "U" }, units: { voltage: "kV" }, geometry: { lon: "x", lat: "y" } };
+  const meanings = meaningsOf(mapping);
+  assert.deepEqual(meanings, { Nr: "ref", U: "voltage:kV", x: "lon", y: "lat", art: "kind" });
+  assert.deepEqual(mappingOf(meanings, "column", mapping.kind.values), mapping);
+});
+
+test("a kind that is chosen wins over a column, and none is none", () => {
+  assert.equal(mappingOf({ art: "kind" }, "line", {}).kind, "line");
+  assert.equal(mappingOf({}, "", {}).kind, null);
+  assert.equal(mappingOf({}, "column", {}).kind, null);
+});
+
+test("a role belongs to one column alone", () => {
+  assert.deepEqual(withMeaning({ a: "voltage:V", b: "ref" }, "c", "voltage:kV"), { b: "ref", c: "voltage:kV" });
+  assert.deepEqual(withMeaning({ a: "name" }, "a", ""), {});
 });

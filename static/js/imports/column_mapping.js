@@ -2,54 +2,143 @@
 
 import { h, icon } from "../dom.js";
 
-const FIELD_WORDS = {
+const KINDS = { tower: "Towers", line: "Power lines", railway: "Railways", bridge: "Bridges" };
+const BY_GEOMETRY = "by_geometry";
+const BY_COLUMN = "column";
+const MEANINGS = {
+  key: "Key: tells them apart",
   kind: "Kind of asset",
-  subtype: "Type in its kind",
-  name: "Name",
   ref: "Reference",
+  name: "Name",
   operator: "Operator",
-  voltage_v: "Voltage in V",
-  voltage_kv: "Voltage in kV",
-  voltage: "Voltage",
+  "voltage:V": "Voltage in V",
+  "voltage:kV": "Voltage in kV",
   circuits: "Circuits",
-  height_m: "Height in m",
-  height: "Height",
-  key: "Key, to know it again",
+  "height:m": "Height in m",
+  "height:ft": "Height in feet",
+  subtype: "Type within its kind",
 };
-const KIND_WORDS = { tower: "Towers", line: "Lines", railway: "Railways", bridge: "Bridges" };
-const wordsOf = (field) => FIELD_WORDS[field] ?? field.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
+const PLACES = { lon: "Longitude, or x", lat: "Latitude, or y", wkt: "Geometry as WKT" };
+
+/** "voltage:kV" → "voltage": a meaning that only one column can have. */
+const roleOf = (meaning) => meaning.split(":")[0];
+
+/** The meaning of each column by name, as a mapping of the API says it. */
+export function meaningsOf({ kind, columns = {}, units = {}, geometry = {} }) {
+  const found = {};
+  for (const [role, name] of Object.entries(columns)) {
+    if (role === "voltage" || role === "height") found[name] ??= `${role}:${units[role] ?? (role === "voltage" ? "V" : "m")}`;
+    else found[name] ??= role;
+  }
+  for (const [role, name] of Object.entries(geometry)) found[name] = role;
+  if (kind?.column) found[kind.column] = "kind";
+  return found;
+}
+
+/** The same backwards. `kind`: one of the kinds, "by_geometry", or "column" with what its values mean. */
+export function mappingOf(meanings, kind, kindValues) {
+  const mapping = { kind: kind || null, columns: {}, units: {}, geometry: {} };
+  for (const [name, meaning] of Object.entries(meanings)) {
+    const role = roleOf(meaning);
+    if (meaning === "kind") {
+      if (kind === BY_COLUMN) mapping.kind = { column: name, values: kindValues };
+    } else if (role in PLACES) mapping.geometry[role] = name;
+    else if (meaning) {
+      mapping.columns[role] = name;
+      const unit = meaning.split(":")[1];
+      if (unit) mapping.units[role] = unit;
+    }
+  }
+  if (mapping.kind === BY_COLUMN) mapping.kind = null;
+  return mapping;
+}
+
+/** Each role once: what another column had of it is taken from that one. */
+export function withMeaning(meanings, name, meaning) {
+  const rest = Object.entries(meanings).filter(([other, known]) => other !== name && (!meaning || roleOf(known) !== roleOf(meaning)));
+  return meaning ? { ...Object.fromEntries(rest), [name]: meaning } : Object.fromEntries(rest);
+}
+
 let count = 0;
 
-/** proposal.summary: { columns: [{ name, samples, becomes }], fields: [names], kinds: [...] }. readAgain({ columns, kind }). */
-export function columnMapping(proposal, readAgain) {
+/** readAgain(parameters) has the file read with this mapping. */
+export function columnMapping({ summary, parameters, state }, readAgain) {
+  if (state !== "ready") return null;
   const id = `columns-${(count += 1)}`;
-  const { columns, fields = Object.keys(FIELD_WORDS) } = proposal.summary;
-  const kind = h("select", { class: "input", id: `${id}-kind` }, h("option", { value: "" }, "As a column says"), Object.entries(KIND_WORDS).map(([value, words]) => h("option", { value }, words)));
-  kind.value = proposal.parameters.kind ?? proposal.summary.kind ?? "";
-  const choices = columns.map((column, place) => {
-    const choice = h("select", { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` }, h("option", { value: "" }, "Kept as a tag"), fields.map((field) => h("option", { value: field }, wordsOf(field))));
-    choice.value = column.becomes ?? "";
-    return { column, choice };
+  const stated = Object.keys(summary.mapping ?? {}).length ? summary.mapping : (summary.suggested_mapping ?? {});
+  const isTable = summary.format === "csv";
+  let meanings = meaningsOf(stated);
+  const kindValues = { ...(stated.kind?.values ?? {}) };
+  const option = ([value, words]) => h("option", { value }, words);
+  const field = (words, control, hint) => h("div", { class: "field" }, h("label", { for: control.id }, words), control, hint && h("span", { class: "caption" }, hint));
+
+  const kind = h(
+    "select",
+    { class: "input", id: `${id}-kind` },
+    [["", "Choose"], [BY_GEOMETRY, "Points towers, lines power lines, areas bridges"], ...Object.entries(KINDS), [BY_COLUMN, "What a column says"]].map(option),
+  );
+  kind.value = stated.kind?.column ? BY_COLUMN : (stated.kind ?? "");
+  const values = h("div", { class: "kind-values" });
+  const choices = new Map();
+
+  function drawValues() {
+    const name = Object.keys(meanings).find((known) => meanings[known] === "kind");
+    const column = kind.value === BY_COLUMN && summary.columns.find((known) => known.name === name);
+    if (kind.value === BY_COLUMN && !column) return values.replaceChildren(h("p", { class: "caption" }, "Say below which column has the kind."));
+    values.replaceChildren(
+      ...Object.entries((column && column.values) || {}).map(([value, rows], place) => {
+        const choice = h("select", { class: "input", id: `${id}-value-${place}` }, [["", "Left out"], ...Object.entries(KINDS)].map(option));
+        choice.value = kindValues[value] ?? "";
+        kindValues[value] = choice.value;
+        choice.addEventListener("change", () => (kindValues[value] = choice.value));
+        return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, value), h("span", { class: "caption" }, `${rows.toLocaleString("en-GB")} rows`)), choice);
+      }),
+    );
+  }
+
+  function show() {
+    for (const [name, choice] of choices) choice.value = meanings[name] ?? "";
+    drawValues();
+  }
+
+  kind.addEventListener("change", () => {
+    if (kind.value !== BY_COLUMN) meanings = Object.fromEntries(Object.entries(meanings).filter(([, meaning]) => meaning !== "kind"));
+    show();
   });
+
+  const rows = summary.columns.map((column, place) => {
+    const can = Object.entries(MEANINGS).filter(([meaning]) => meaning !== "kind" || column.values);
+    const choice = h("select", { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` }, [["", "Kept as a tag"], ...can, ...(isTable ? Object.entries(PLACES) : [])].map(option));
+    choices.set(column.name, choice);
+    choice.addEventListener("change", () => {
+      meanings = withMeaning(meanings, column.name, choice.value);
+      if (choice.value === "kind") kind.value = BY_COLUMN;
+      show();
+    });
+    const samples = (column.samples ?? []).map(String).join(" · ") || "always empty";
+    return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, column.name), h("span", { class: "caption", id: `${id}-${place}-samples`, title: samples }, samples)), choice);
+  });
+
+  const system = h("input", { class: "input", id: `${id}-crs`, placeholder: summary.crs || "EPSG:4326", value: parameters.crs ?? "", maxlength: "40" });
+  const layer = h("select", { class: "input", id: `${id}-layer` }, (summary.layers ?? []).map((name) => option([name, name])));
+  layer.value = summary.layer ?? "";
   const form = h(
     "form",
-    { class: "column-form" },
-    h("div", { class: "field" }, h("label", { for: `${id}-kind` }, "These are"), kind),
-    choices.map(({ column, choice }, place) =>
-      h(
-        "div",
-        { class: "column-row" },
-        h("div", { class: "column-name" }, h("label", { for: choice.id }, column.name), h("span", { class: "caption", id: `${id}-${place}-samples` }, (column.samples ?? []).map(String).join(" · ") || "always empty")),
-        choice,
-      ),
-    ),
-    h("div", { class: "row-acts" }, h("button", { type: "submit", class: "button" }, icon("rotate-ccw", "small"), "Read again with these columns")),
+    { class: "column-form", "aria-label": "What the columns are" },
+    (summary.layers ?? []).length > 1 && field("Layer", layer),
+    field("These are", kind),
+    values,
+    rows,
+    field("Coordinate system", system, "Only where the file does not say it."),
+    h("div", { class: "row-acts" }, h("button", { type: "submit", class: summary.needs_mapping ? "button primary" : "button" }, icon("eye", "small"), "Show what would change")),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    readAgain({ kind: kind.value || null, columns: Object.fromEntries(choices.filter(({ choice }) => choice.value).map(({ column, choice }) => [column.name, choice.value])) });
+    const mapping = mappingOf(meanings, kind.value, kindValues);
+    if (!isTable) delete mapping.geometry;
+    const crs = system.value.trim();
+    readAgain({ ...mapping, ...(crs || parameters.crs ? { crs: crs || null } : {}), ...(layer.options.length > 1 ? { layer: layer.value } : {}) });
   });
-  const isDecided = proposal.state !== "ready" && proposal.state !== "refused";
-  if (isDecided) return null;
-  return h("details", { class: "import-facts", open: true }, h("summary", {}, "What the columns are"), form);
+  show();
+  return h("details", { class: "import-facts", open: Boolean(summary.needs_mapping) }, h("summary", {}, "What the columns are"), form);
 }

@@ -114,11 +114,19 @@ async function loadChanges({ more = false, fit = false } = {}) {
   if (store.state.current?.id !== current.id || store.state.action !== action) return; // somebody has gone on
   store.update({ changes: more ? [...store.state.changes, ...data.features] : data.features, changesNext: data.next });
   showChanges();
-  if (fit) map.fit(boxAround(store.state.changes.flatMap((change) => positionsOf(change.geometry))));
+  if (fit) map.fit(boxAround(drawn().flatMap((change) => positionsOf(change.geometry))));
 }
 
+/** A file whose columns nobody has explained yet has no changes, but shapes. */
+function previewOf(proposal) {
+  const features = proposal?.summary.needs_mapping ? (proposal.summary.preview?.features ?? []) : [];
+  return features.map((feature, place) => ({ ...feature, id: -1 - place, properties: { action: "new", before: null, after: null } }));
+}
+
+const drawn = () => [...store.state.changes, ...previewOf(store.state.current)];
+
 function showChanges() {
-  changesLayer?.show(store.state.changes, store.state.action);
+  changesLayer?.show(drawn(), store.state.action);
 }
 
 const geometriesOf = (change) => (change?.geometry ? [change.geometry] : []);

@@ -47,7 +47,7 @@ export function mountProposal(store, acts) {
 
   function body(proposal) {
     const { state, difference, summary, job } = proposal;
-    if (state === "refused") return [refusal(proposal, acts), mapping(proposal)];
+    if (state === "refused") return [refusal(proposal, acts), leaveOut(proposal)];
     const isNew = job?.message && state === "ready" && job.state === "done" && job.message !== "Read";
     return [
       line?.element,
@@ -68,6 +68,12 @@ export function mountProposal(store, acts) {
     return columnMapping(proposal, (parameters) => acts.readAgain(parameters));
   }
 
+  function leaveOut({ kind, faults, parameters, size_bytes }) {
+    if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
+    const again = () => acts.readAgain({ leave_out_faulty: true });
+    return h("button", { type: "button", class: "button", id: "leave-out", onclick: again }, "Read again without the faulty rows");
+  }
+
   function overwriteChoice(proposal) {
     const kept = proposal.difference.kept ?? 0;
     if (proposal.state !== "ready" || !kept) return null;
@@ -84,9 +90,10 @@ export function mountProposal(store, acts) {
     if (proposal.state === "refused") return [h("div", { class: "foot-buttons" }, discard(busy))];
     if (proposal.state !== "ready") return [];
     const count = touched(proposal.difference, { overwrites });
-    const isIdle = count === 0 && Object.keys(proposal.difference).length > 0;
+    const needsMapping = Boolean(proposal.summary.needs_mapping);
+    const isIdle = needsMapping || (count === 0 && Object.keys(proposal.difference).length > 0);
     const words = busy === "apply" ? "Applying" : count ? `Apply ${count.toLocaleString("en-GB")} ${count === 1 ? "change" : "changes"}` : "Apply";
-    const apply = h("button", { type: "button", class: "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: isIdle ? "Nothing would change" : null }, words);
+    const apply = h("button", { type: "button", class: needsMapping ? "button" : "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: needsMapping ? "Say first what the columns are" : isIdle ? "Nothing would change" : null }, words);
     apply.addEventListener("click", () => (overwrites ? askFirst(proposal) : acts.apply(false)));
     return [h("div", { class: "foot-buttons" }, discard(busy), apply)];
   }
@@ -116,10 +123,10 @@ export function mountProposal(store, acts) {
   return { forgetOverwrite: () => (overwrites = false) };
 }
 
-function sentenceOf({ state, difference, kind, summary }) {
+function sentenceOf({ state, difference, summary }) {
   const sentence = Object.keys(difference).length ? differenceSentence(difference) : "";
-  if (state !== "ready" || sentence) return sentence;
-  return kind === "assets" && Array.isArray(summary.columns) ? "Say what the columns are." : "Ready to be applied.";
+  if (summary.needs_mapping) return summary.words || "Say what the columns are.";
+  return state === "ready" && !sentence ? "Ready to be applied." : sentence;
 }
 
 function head(proposal, acts) {

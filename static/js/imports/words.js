@@ -103,10 +103,12 @@ export function factLines({ before, after }) {
 
 const isEmpty = (value) => value === null || value === undefined || value === "" || (typeof value === "object" && Object.keys(value).length === 0);
 
+const NOT_SAID = new Set(["words", "needs_mapping"]); // said elsewhere
+
 /** Figures of a file, for people: numbers and short texts alone. */
 export function summaryLines(summary) {
   return Object.entries(summary)
-    .filter(([name, value]) => name !== "columns" && (typeof value === "number" || typeof value === "string" || typeof value === "boolean") && value !== "")
+    .filter(([name, value]) => !NOT_SAID.has(name) && (typeof value === "number" || typeof value === "string" || typeof value === "boolean") && value !== "")
     .map(([name, value]) => {
       const { words, unit } = factName(name);
       return { words, value: `${factText(name, value)}${unit ? `${SPACE}${unit}` : ""}` };
