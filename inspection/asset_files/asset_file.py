@@ -83,11 +83,18 @@ class AssetFile:
             return None
         if isinstance(geometry, GeometryFault):
             raise geometry
-        place = f"{raw.place}.geometry" if self.source.file_format == "geojson" else raw.place
-        if self._to_wgs84 is not None:
-            geometry = self._to_wgs84.geometry(geometry, place)
-        shape = checked_shape(geometry, place)
-        budget.take(int(shapely.get_num_coordinates(shape)), place)
+        is_json = self.source.file_format == "geojson"
+        place = f"{raw.place}.geometry" if is_json else raw.place
+        try:
+            if self._to_wgs84 is not None:
+                geometry = self._to_wgs84.geometry(geometry, place)
+            shape = checked_shape(geometry, place)
+            budget.take(int(shapely.get_num_coordinates(shape)), place)
+        except GeometryFault as fault:
+            if is_json:
+                raise
+            where = fault.place.removesuffix(".coordinates").replace(".coordinates", ", coordinates ")
+            raise GeometryFault(where, fault.message, fault.position) from fault
         return shape
 
 

@@ -1,6 +1,7 @@
 """GeoPackage: an SQLite file, opened so that nothing in it runs: read-only, plain tables alone, no views, functions or triggers."""
 
 import sqlite3
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +26,7 @@ _UNDEFINED = {-1, 0}
 @contextmanager
 def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[Source]:
     """has_system says that the user names the reference system, so that an undefined one is no fault. Raises AssetFileError."""
+    _refuse_if_cut_off(path)
     database = sqlite3.connect(f"file:{quote(str(path))}?mode=ro&immutable=1", uri=True)
     try:
         _lock_down(database)
@@ -48,6 +50,15 @@ def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[S
         database.close()
 
 
+def _refuse_if_cut_off(path: Path) -> None:
+    """SQLite reads what is there of a file without telling (file format, 1.3.2 and 1.3.7: size and number of pages)."""
+    with path.open("rb") as file:
+        head = file.read(100)
+    page_bytes, pages = (struct.unpack_from(">H", head, 16)[0], struct.unpack_from(">I", head, 28)[0]) if len(head) == 100 else (1, 2**32)
+    if path.stat().st_size < (65_536 if page_bytes == 1 else page_bytes) * pages:
+        raise refused("", "the GeoPackage is damaged or cut off: pages are missing")
+
+
 def _lock_down(database: sqlite3.Connection) -> None:
     for pragma in (
         "trusted_schema=OFF",
@@ -58,7 +69,7 @@ def _lock_down(database: sqlite3.Connection) -> None:
         f"cache_size=-{_CACHE_KIB}",
     ):
         database.execute(f"PRAGMA {pragma}")
-    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, 2 * MAX_ROW_CHARACTERS)
+    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, 4 * MAX_ROW_CHARACTERS)
     database.setlimit(sqlite3.SQLITE_LIMIT_COLUMN, 500)
     database.setlimit(sqlite3.SQLITE_LIMIT_EXPR_DEPTH, 20)
     database.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)

@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager
 from typing import IO, Any
 from xml.parsers import expat
 
-from inspection.asset_files.rows import MAX_ROW_CHARACTERS, Columns, RawRow, Source, plain_cell, refused
+from inspection.asset_files.rows import MAX_ROW_CHARACTERS, AssetFileError, Columns, RawRow, Source, plain_cell, refused
 from inspection.zones.geometry_gate import GeometryFault
 
 _CHUNK = 64 * 1024
@@ -62,6 +62,8 @@ class _Reader:
             self.parser.Parse(chunk, is_last)
         except expat.ExpatError as error:
             raise refused(f"line {error.lineno}", f"this is no KML: {expat.ErrorString(error.code)}") from error
+        except AssetFileError:
+            raise
         except (LookupError, ValueError) as error:
             raise refused("line 1", f"the encoding that the KML states is not known: {error}") from error
 

@@ -12,7 +12,7 @@ MAX_ROWS = 200_000
 MAX_COLUMNS = 200
 MAX_COLUMN_NAME = 100
 MAX_TEXT = 1_000  # characters of one value; what is longer is cut
-MAX_ROW_CHARACTERS = 2 * 1024 * 1024  # of a row as it stands in a text file; 10,000 vertices need a quarter of it
+MAX_ROW_CHARACTERS = 1024 * 1024  # of a row as it stands in a text file; 10,000 vertices need half of it
 
 Cell = str | int | float | bool | None
 
