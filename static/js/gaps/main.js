@@ -75,7 +75,7 @@ async function load({ more = false } = {}) {
 }
 
 function draw() {
-  list.show(gaps, { hasMore: next !== null, hasSearched: Boolean(summary?.searched_at) });
+  list.show(gaps, { hasMore: next !== null, hasSearched: Boolean(summary?.searched_at || summary?.is_current) });
   if (summary) list.counts(summary.kinds);
   layer.showAll(map.map, gaps);
 }
