@@ -26,7 +26,7 @@ from inspection.zones.geometry_gate import GeometryFault
 _CHUNK = 64 * 1024
 _SAMPLE_ROWS = 20
 _DELIMITERS = ";,\t|"
-_NUMBER = re.compile(r"[+-]?\d{1,12}(?:\.\d{0,20})?(?:[eE][+-]?\d{1,2})?")
+_NUMBER = re.compile(r"[+-]?\d{1,12}(?:\.\d{0,20})?(?:[eE][+-]?\d{1,2})?", re.ASCII)
 _WKT = re.compile(r"\s*(?:SRID=\d{1,6};)?\s*((MULTI)?(POINT|LINESTRING|POLYGON))(\s+Z?M?)?\s*\(", re.IGNORECASE)
 _DEEPEST_WKT = 3
 _LON = ("lon", "lng", "long", "longitude", "longitud", "lon_wgs84", "laenge", "länge", "x", "x_coord", "easting", "ost", "rechtswert", "e")

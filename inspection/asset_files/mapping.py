@@ -239,5 +239,5 @@ def _object(parameters: dict[str, Any], name: str) -> dict[str, Any]:
 
 
 def _check_column(place: str, name: Any, known: set[str]) -> None:
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise refused(place, f"the file has no column {str(name)[:60]!r}")
