@@ -22,9 +22,10 @@ export function mountChanges(store, acts) {
   }
 
   store.listen(["current", "action"], ({ current, action }) => drawFilters(current, action, acts));
-  store.listen(["changes", "changesNext", "lit", "selected"], ({ changes, changesNext }) => {
-    draw(changes);
-    byId("more-changes").hidden = changesNext === null;
+  store.listen(["changes", "action", "listed", "lit", "selected"], ({ changes, action, listed }) => {
+    const wanted = action ? changes.filter((change) => change.properties.action === action) : changes;
+    draw(wanted.slice(0, listed));
+    byId("more-changes").hidden = wanted.length <= listed;
   });
   byId("more-changes").addEventListener("click", acts.more);
   list.addEventListener("keydown", (event) => {

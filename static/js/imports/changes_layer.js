@@ -46,15 +46,16 @@ function layers({ casing, actions, before }, fonts) {
     { id: "import-line", type: "line", source: SOURCE, layout: round, paint: line },
     { id: "import-line-vanished", type: "line", source: SOURCE, paint: { ...line, "line-dasharray": [2.4, 1.8] } },
     { id: "import-line-kept", type: "line", source: SOURCE, layout: round, paint: { ...line, "line-dasharray": [0.1, 2] } },
-    { id: "import-dot", type: "circle", source: SIGNS, paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 8, 4, 13, 8], "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": 2 } },
+    { id: "import-dot", type: "circle", source: SIGNS, paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 8, 2.5, 11, 6, 13, 8], "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": 2 } },
     {
       id: "import-sign",
       type: "symbol",
       source: SIGNS,
+      minzoom: 10,
       layout: {
         "text-field": byAction(Object.fromEntries(Object.entries(ACTIONS).map(([action, { sign }]) => [action, sign]))),
         "text-font": fonts,
-        "text-size": ["interpolate", ["linear"], ["zoom"], 8, 12, 13, 17],
+        "text-size": ["interpolate", ["linear"], ["zoom"], 10, 11, 13, 17],
         "text-allow-overlap": true,
         "text-ignore-placement": true,
       },

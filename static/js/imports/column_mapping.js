@@ -128,6 +128,7 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
     (summary.layers ?? []).length > 1 && field("Layer", layer),
     field("These are", kind),
     values,
+    h("p", { class: "field-label" }, "Columns"),
     rows,
     field("Coordinate system", system, "Only where the file does not say it."),
     h("div", { class: "row-acts" }, h("button", { type: "submit", class: summary.needs_mapping ? "button primary" : "button" }, icon("eye", "small"), "Show what would change")),

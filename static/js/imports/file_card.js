@@ -29,7 +29,7 @@ export function fileCard(item, acts) {
   );
   const form = h(
     "form",
-    { class: "stack", "aria-label": item.name, onsubmit: (event) => (event.preventDefault(), acts.start(item)) },
+    { class: "stack", id: `${id}-form`, "aria-label": item.name, onsubmit: (event) => (event.preventDefault(), acts.start(item)) },
     h("div", { class: "field" }, h("label", { for: `${id}-kind` }, "What it is"), kind),
     fields,
   );
@@ -91,7 +91,7 @@ export function fileCard(item, acts) {
     form.hidden = !isIdle;
     if (shown !== item.phase) {
       shown = item.phase;
-      status.replaceChildren(...statusOf(item, acts));
+      status.replaceChildren(...statusOf(item, acts, form.id));
     }
     const share = item.size ? item.received / item.size : 0;
     for (const place of status.querySelectorAll("[data-share]")) place.textContent = percentText(share * 100);
@@ -106,7 +106,7 @@ export function fileCard(item, acts) {
   return { element, refresh };
 }
 
-function statusOf(item, acts) {
+function statusOf(item, acts, formId) {
   const share = () => h("span", { dataset: { share: "" } });
   const button = (words, act, look = "") => h("button", { type: "button", class: `button ${look}`.trim(), onclick: act }, words);
   const bar = () => h("div", { class: "progress", role: "progressbar", "aria-label": `Sending ${item.name}`, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
@@ -127,5 +127,6 @@ function statusOf(item, acts) {
     ];
   }
   const problem = item.phase === "failed" && h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", { dataset: { problem: "" } }));
-  return [problem, h("div", { class: "row-acts" }, button("Read the file", () => acts.start(item), "primary"))].filter(Boolean);
+  const submit = h("button", { type: "submit", form: formId, class: "button primary" }, "Read the file"); // Enter in a field does the same
+  return [problem, h("div", { class: "row-acts" }, submit)].filter(Boolean);
 }

@@ -18,9 +18,11 @@ import { isOpen, STATES } from "./words.js";
 const LOOK_MS = 1_000; // while the open one is worked on
 const LIST_MS = 4_000; // while another one is
 const LIST_PAGE = 50;
-const CHANGES_PAGE = 200;
+const CHANGES_PAGE = 1_000;
+const LISTED = 200; // rows of a long difference at a time; the map has them all
 
-const store = createStore({ proposals: null, next: null, current: null, busy: null, changes: [], changesNext: null, action: "", lit: null, selected: null });
+const NO_CHANGES = { changes: [], listed: LISTED, action: "", lit: null, selected: null };
+const store = createStore({ proposals: null, next: null, current: null, busy: null, ...NO_CHANGES });
 let changesLayer = null;
 let lookedAt = 0;
 
@@ -89,7 +91,7 @@ async function openProposal(id, { isNew = true, focus = true } = {}) {
   try {
     const { data } = await get(`/imports/${id}`);
     if (isNew) history.pushState({}, "", `/imports/${id}`);
-    store.update({ current: data, changes: [], changesNext: null, action: "", lit: null, selected: null });
+    store.update({ current: data, ...NO_CHANGES });
     byId("side-scroll").scrollTop = 0;
     if (focus) byId("proposal-title").focus({ preventScroll: true });
     await loadChanges({ fit: true });
@@ -101,18 +103,26 @@ async function openProposal(id, { isNew = true, focus = true } = {}) {
 function closeProposal({ isNew = true } = {}) {
   const id = store.state.current?.id;
   if (isNew) history.pushState({}, "", "/imports");
-  store.update({ current: null, changes: [], changesNext: null, action: "", lit: null, selected: null });
+  store.update({ current: null, ...NO_CHANGES });
   showChanges();
   map.ring([]);
   if (id) document.querySelector(`a[href="/imports/${id}"]`)?.focus();
 }
 
-async function loadChanges({ more = false, fit = false } = {}) {
-  const { current, action } = store.state;
+/** All of them, page by page: the map shows each. */
+async function loadChanges({ fit = false } = {}) {
+  const { current } = store.state;
   if (!current || current.state === "reading") return;
-  const { data } = await get(more ? store.state.changesNext : `/imports/${current.id}/changes?limit=${CHANGES_PAGE}${action ? `&action=${action}` : ""}`);
-  if (store.state.current?.id !== current.id || store.state.action !== action) return; // somebody has gone on
-  store.update({ changes: more ? [...store.state.changes, ...data.features] : data.features, changesNext: data.next });
+  let changes = [];
+  let next = `/imports/${current.id}/changes?limit=${CHANGES_PAGE}`;
+  while (next) {
+    const { data } = await get(next);
+    if (store.state.current?.id !== current.id || store.state.current.state === "reading") return; // somebody has gone on
+    changes = [...changes, ...data.features];
+    next = data.next;
+    store.update({ changes });
+    showChanges();
+  }
   showChanges();
   if (fit) map.fit(boxAround(drawn().flatMap((change) => positionsOf(change.geometry))));
 }
@@ -174,7 +184,7 @@ const acts = {
   },
   async readAgain(parameters) {
     await decide("read", "Not read again.", () => patch(`/imports/${store.state.current.id}`, { parameters }));
-    store.update({ changes: [], changesNext: null, action: "", selected: null });
+    store.update(NO_CHANGES);
     showChanges();
   },
   place(position) {
@@ -200,13 +210,13 @@ const acts = {
 mountProposal(store, acts);
 mountList(store, { open: (id) => openProposal(id), more: () => attempt("Not loaded.", () => loadList({ more: true })) });
 mountChanges(store, {
-  async filter(action) {
-    store.update({ action, selected: null });
-    await attempt("Not loaded.", () => loadChanges());
+  filter(action) {
+    store.update({ action, selected: null, listed: LISTED });
+    showChanges();
   },
   point: (change) => light(change?.id ?? null),
   show: select,
-  more: () => attempt("Not loaded.", () => loadChanges({ more: true })),
+  more: () => store.update({ listed: store.state.listed + LISTED }),
 });
 
 /** Looks again while something is worked on; what has ended is said once. */
