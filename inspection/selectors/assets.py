@@ -47,9 +47,15 @@ def asset_with_geometry(asset_id: int) -> Asset:
     )
 
 
-def zones(*, box: Box | None = None) -> QuerySet[NoFlyZone]:
-    """All zones, with their geometry as GeoJSON text in `geometry_json`."""
+def zones(*, box: Box | None = None, text: str = "", zone_set: int | None = None) -> QuerySet[NoFlyZone]:
+    """All zones, with their geometry as GeoJSON text in `geometry_json`; with the words of the text in name, identifier or reason."""
     found = NoFlyZone.objects.select_related("zone_set__data_import")
+    for word in text.split():
+        found = found.filter(
+            Q(name__icontains=word) | Q(identifier__icontains=word) | Q(reason__icontains=word) | Q(restriction__icontains=word)
+        )
+    if zone_set is not None:
+        found = found.filter(zone_set=zone_set)
     if box is not None:
         found = found.filter(geometry__intersects=area_of(box))
     return found.defer("geometry").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))

@@ -2,7 +2,7 @@
 
 from django.http import Http404
 from django.urls import reverse
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -14,7 +14,7 @@ from inspection.serializers.zones import ZoneCollectionSerializer, ZoneDetailFea
 from inspection.services import delete_zone, save_zone
 from inspection.views.edits import edits
 from inspection.views.history import answer, zone_now
-from inspection.views.parameters import BOX, box_of
+from inspection.views.parameters import BOX, box_of, invalid, text_of
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.permissions import CURATORS
@@ -28,11 +28,16 @@ class ZoneList(APIView):
     @extend_schema(
         operation_id="list_zones",
         summary="No-fly zones",
-        parameters=[BOX, *PAGE_PARAMETERS],
+        parameters=[
+            BOX,
+            OpenApiParameter("text", str, description="words in name, identifier, restriction or reason"),
+            OpenApiParameter("zone_set", int, description="the id of a set"),
+            *PAGE_PARAMETERS,
+        ],
         responses=ZoneCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
-        page = page_of(request, selectors.zones(box=box_of(request)))
+        page = page_of(request, selectors.zones(box=box_of(request), text=text_of(request), zone_set=_set_of(request)))
         features = [zone_feature(zone) for zone in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 
@@ -95,3 +100,10 @@ class ZoneDetail(APIView):
             return NoFlyZone.objects.get(pk=zone_id)
         except NoFlyZone.DoesNotExist as error:
             raise Http404 from error
+
+
+def _set_of(request: Request) -> int | None:
+    text = request.query_params.get("zone_set", "")
+    if text and not (text.isascii() and text.isdigit() and len(text) < 10):
+        raise invalid("zone_set", "The id of a set is a whole number.")
+    return int(text) if text else None

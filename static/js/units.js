@@ -13,6 +13,12 @@ export function lengthText(length_m) {
   return `${grouped(length_km, length_km < 999.95 ? 1 : 0)}${SPACE}km`;
 }
 
+export function areaText(area_m2) {
+  if (area_m2 < 100_000) return `${grouped(Math.round(area_m2))}${SPACE}m²`;
+  const area_km2 = area_m2 / 1e6;
+  return `${grouped(area_km2, area_km2 < 10 ? 2 : area_km2 < 999.95 ? 1 : 0)}${SPACE}km²`;
+}
+
 export function durationText(duration_s) {
   if (duration_s === null || duration_s === undefined) return "—";
   const minutes = Math.round(duration_s / 60);
