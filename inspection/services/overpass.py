@@ -1,6 +1,5 @@
 """Takes an area's infrastructure from Overpass, as if somebody had sent a file. The one place that talks to it."""
 
-import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,7 +13,7 @@ from inspection.models import ImportKind, Upload
 from inspection.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
 from inspection.osm.records import Extent
 from inspection.services.proposals.reading import Fault, FileRefused, Progress
-from inspection.services.uploads import store_upload, upload_folder
+from inspection.services.uploads import private_folder, store_upload
 from workspace.models import User
 from workspace.outgoing import OutgoingError, OutgoingFailed, fetch
 
@@ -38,8 +37,8 @@ def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress:
         box = area_of(parameters)
     except WrongArea as error:
         raise FileRefused([Fault("overpass_bbox", str(error))]) from error
-    with tempfile.TemporaryDirectory(dir=upload_folder()) as folder:
-        answer = Path(folder) / "overpass.json"
+    with private_folder() as folder:
+        answer = folder / "overpass.json"
         try:
             _ask(question(box, most_bytes=settings.LARGEST_FILE_BYTES[ImportKind.OSM]), answer, progress)
         except OutgoingError as error:

@@ -102,7 +102,7 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
     """The upload as a file of its own name that only this user may read, gone afterwards. Raises UploadRefused if it is not whole."""
     if not upload.is_complete:
         raise UploadRefused("The file has not arrived whole.")
-    with _private_folder() as folder:
+    with private_folder() as folder:
         path = folder / plain_name(upload.file_name)
         digest = hashlib.sha256()
         with path.open("wb") as file:
@@ -112,6 +112,24 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
         if digest.hexdigest() != upload.sha256:
             raise UploadRefused("The stored file is damaged. Send it again.")
         yield path
+
+
+@contextmanager
+def private_folder() -> Iterator[Path]:
+    """A folder that is gone afterwards: removed here, or, after a kill -9, by the next one who makes a folder.
+
+    The process that uses a folder holds a lock on it, and the system takes the lock back with the process.
+    """
+    with _folder_lock():
+        _remove_left_folders()
+        folder = Path(tempfile.mkdtemp(prefix=_FOLDER_PREFIX, dir=upload_folder()))  # mode 0700
+        held = os.open(folder, os.O_RDONLY)
+        fcntl.flock(held, fcntl.LOCK_EX)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        os.close(held)
 
 
 def upload_folder() -> Path:
@@ -136,24 +154,6 @@ def forget_old_uploads() -> int:
     is_old = Q(updated_at__lt=timezone.now() - KEPT) | Q(pk__in=states.filter(state__in=_DECIDED_STATES).values("upload"))
     deleted, _ = Upload.objects.filter(is_old).exclude(pk__in=open_ones).delete()
     return deleted
-
-
-@contextmanager
-def _private_folder() -> Iterator[Path]:
-    """A folder that is gone afterwards: removed here, or, after a kill -9, by the next one who makes a folder.
-
-    The process that uses a folder holds a lock on it, and the system takes the lock back with the process.
-    """
-    with _folder_lock():
-        _remove_left_folders()
-        folder = Path(tempfile.mkdtemp(prefix=_FOLDER_PREFIX, dir=upload_folder()))  # mode 0700
-        held = os.open(folder, os.O_RDONLY)
-        fcntl.flock(held, fcntl.LOCK_EX)
-    try:
-        yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        os.close(held)
 
 
 @contextmanager

@@ -18,6 +18,11 @@ PART = 1024 * 1024
 SIDE_DEG = 0.02
 SETS = ("Works", "Long works", "Phone works")
 TAKE_AWAY = """async (path) => { const api = await import("/static/js/api.js"); await api.remove(path); }"""
+EDIT = """async (path) => {
+    const api = await import("/static/js/api.js");
+    const { etag } = await api.get(path);
+    await api.patch(path, { reason: "Checked on site" }, { headers: { "If-Match": etag } });
+}"""
 WHERE_IT_OPENS = (-83.0, 39.96)
 
 
@@ -40,10 +45,21 @@ def written(folder: Path, name: str, content: bytes) -> Path:
     return path
 
 
+@pytest.fixture(scope="module")
+def session() -> list[Any]:
+    """Cora's cookies, once she has signed in."""
+    return []
+
+
 @pytest.fixture
-def curator(visitor: Visitor) -> Iterator[Page]:
+def curator(visitor: Visitor, session: list[Any]) -> Iterator[Page]:
     """Cora on the page; the sets that a test brings in are off the ground afterwards."""
-    page = visitor.signs_in("cora")
+    if session:
+        page = visitor.opens()
+        page.context.add_cookies(session)
+    else:
+        page = visitor.signs_in("cora")
+        session.extend(page.context.cookies())
     opens_imports(page)
     yield page
     for zone_set in asks(page, "/zone-sets?limit=1000")["results"]:
@@ -171,10 +187,11 @@ def test_a_file_with_a_fault_is_refused_and_the_place_is_one_click_away(curator:
     page.get_by_role("button", name="Discard").click()
 
 
-def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, tmp_path: Path) -> None:
+def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, session: list[Any], tmp_path: Path) -> None:
     sends(curator, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98))), set_name="Works")
     expect(curator.get_by_role("button", name="Apply 1 change")).to_be_visible()
-    other = visitor.signs_in("cora")
+    other = visitor.opens()
+    other.context.add_cookies(session)
     other.goto(curator.url.split("#")[0])
     other.get_by_role("button", name="Discard").click()
     expect(other.get_by_text("is discarded.")).to_be_visible()
@@ -193,12 +210,100 @@ def test_the_keyboard_is_enough_to_decide(curator: Page, tmp_path: Path) -> None
     page.get_by_label("Name of the set").press("Enter")
     expect(sentence(page)).to_have_text("2\u00a0new.")
     page.get_by_role("button", name="North").focus()
-    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowDown")
     expect(page.get_by_role("button", name="East")).to_be_focused()
     page.keyboard.press("Enter")
     expect(page.get_by_role("button", name="East")).to_have_attribute("aria-expanded", "true")
     page.get_by_role("button", name="Discard").press("Enter")
     expect(page.get_by_text("is discarded.")).to_be_visible()
+
+
+def test_what_was_edited_by_hand_is_kept_or_overwritten_with_a_word(curator: Page, tmp_path: Path) -> None:
+    page = curator
+    sends(page, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98))), set_name="Works")
+    page.get_by_role("button", name="Apply 1 change").click()
+    expect(page.locator("#proposal .chip")).to_have_text("Applied")
+    [zone] = asks(page, "/zones?limit=1000")["features"][-1:]
+    assert zone["properties"]["name"] == "North"
+    page.evaluate(EDIT, f"/zones/{zone['id']}")
+    page.get_by_role("link", name="All imports").click()
+    sends(page, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.985))), set_name="Works")
+    expect(sentence(page)).to_have_text("1\u00a0kept as edited by hand.")
+    apply = page.locator("#apply")
+    expect(apply).to_be_disabled()
+    page.get_by_label("Overwrite what was edited by hand (1)").check()
+    apply.click()
+    expect(page.get_by_role("button", name="Keep the edits")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(page.locator("#proposal .chip")).to_have_text("To be decided")
+    apply.click()
+    page.get_by_role("button", name="Overwrite and apply").click()
+    expect(page.locator("#proposal .chip")).to_have_text("Applied")
+    assert asks(page, f"/zones/{zone['id']}")["properties"]["reason"] == ""
+
+
+def test_the_columns_of_a_table_are_explained_before_it_is_compared(
+    curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]
+) -> None:
+    page = curator
+    rows = "".join(
+        f"{number};{'Mast' if number % 7 else 'Zaun'};{-83.05 + number * 0.003:.5f};{39.94 + number * 0.0007:.5f};{30 + number % 5}\n"
+        for number in range(40)
+    )
+    page.locator("#choose-file").set_input_files(written(tmp_path, "masts.csv", f"Nr;art;x;y;Hoehe\n{rows}".encode()))
+    expect(page.get_by_label("What it is")).to_have_value("assets")
+    page.get_by_role("button", name="Read the file").click()
+    expect(sentence(page)).to_contain_text("Say what the rows are")
+    expect(page.locator("#apply")).to_be_disabled()
+    expect(page.get_by_label("Mast", exact=True)).to_have_value("tower")
+    expect(page.get_by_label("Zaun", exact=True)).to_have_value("")
+    page.get_by_label("Hoehe", exact=True).select_option(label="Height in feet")
+    page.locator("#map[data-idle]").wait_for(state="attached")
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        picture(page, f"imports-columns-{theme}")
+    page.get_by_role("button", name="Show what would change").click()
+    expect(sentence(page)).to_have_text("34\u00a0new.")
+    page.locator("#changes button").first.click()
+    expect(page.locator(".change-facts")).to_contain_text(re.compile(r"height\s*9\.4\d*\u00a0m"))
+    page.get_by_role("button", name="Discard").click()
+
+
+def test_a_file_on_its_way_says_how_far_it_is_and_what_is_read_can_be_stopped(
+    curator: Page, tmp_path: Path, shared_data: Callable[[str], Path], picture: Callable[[Page, str], None]
+) -> None:
+    page = curator
+    held: list[Route] = []
+    page.route(f"**/bytes/{2 * PART}", lambda route: held.append(route))
+    whole = shared_data("osm/liechtenstein-2021.osm.pbf")
+    page.locator("#choose-file").set_input_files(whole)
+    expect(page.get_by_label("What it is")).to_have_value("osm")
+    page.get_by_role("button", name="Read the file").click()
+    bar = page.get_by_role("progressbar")
+    expect(bar).to_have_attribute("aria-valuenow", str(round(2 * PART / whole.stat().st_size * 100)))
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        picture(page, f"imports-progress-{theme}")
+    [route] = held
+    route.continue_()
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#proposal .chip")).to_have_text("Discarded")
+
+
+def test_an_area_that_is_too_large_is_not_asked_of_overpass(curator: Page) -> None:
+    page = curator
+    button = page.get_by_role("button", name="Take the visible area from Overpass")
+    expect(button).to_have_attribute("aria-disabled", "false")
+    for _ in range(3):
+        page.get_by_role("button", name="Zoom out").click()
+        page.locator("#map[data-idle]").wait_for(state="attached")
+    expect(button).to_have_attribute("aria-disabled", "true")
+    expect(page.locator("#area-words")).to_contain_text("Zoom in.")
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.method))
+    button.click(force=True)
+    page.wait_for_timeout(200)
+    assert "POST" not in asked
 
 
 @pytest.mark.parametrize("name", ["opal", "vera"])
@@ -209,10 +314,13 @@ def test_only_curators_have_the_tools_the_others_a_sentence(visitor: Visitor, na
     expect(page.locator("#choose-file")).to_have_count(0)
 
 
-def test_a_phone_has_it_all_in_the_sheet(visitor: Visitor, curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]) -> None:
+def test_a_phone_has_it_all_in_the_sheet(
+    visitor: Visitor, curator: Page, session: list[Any], tmp_path: Path, picture: Callable[[Page, str], None]
+) -> None:
     sends(curator, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("East", -82.93, 39.95))), set_name="Phone works")
     expect(sentence(curator)).to_be_visible()
-    page = visitor.signs_in("cora", size=(390, 844), touch=True, theme="dark")
+    page = visitor.opens(size=(390, 844), touch=True, theme="dark")
+    page.context.add_cookies(session)
     page.goto(curator.url.split("#")[0])
     wait_for_map(page)
     expect(sentence(page)).to_have_text("2\u00a0new.")

@@ -10,6 +10,8 @@ const SIGNS = "import-signs";
 const SHAPES = ["import-fill", "import-line", "import-line-vanished", "import-line-kept", "import-dot"];
 const FILTERED = [...SHAPES, "import-casing", "import-sign", "import-before-line", "import-before-dot"];
 
+/** Far off a point is a small dot, and a shape needs none; near by each carries its sign. */
+const byZoom = (far, near) => ["interpolate", ["linear"], ["zoom"], 8, ["case", ["get", "isPoint"], far, 0], 11, ["case", ["get", "isPoint"], (far + near) / 2, 0], 13, near];
 const isShape = (type) => ["==", ["geometry-type"], type];
 const actionIs = (...actions) => ["in", ["get", "action"], ["literal", actions]];
 const byAction = (values) => ["match", ["get", "action"], ...Object.entries(values).flat(), values.changed];
@@ -46,18 +48,16 @@ function layers({ casing, actions, before }, fonts) {
     { id: "import-line", type: "line", source: SOURCE, layout: round, paint: line },
     { id: "import-line-vanished", type: "line", source: SOURCE, paint: { ...line, "line-dasharray": [2.4, 1.8] } },
     { id: "import-line-kept", type: "line", source: SOURCE, layout: round, paint: { ...line, "line-dasharray": [0.1, 2] } },
-    { id: "import-dot", type: "circle", source: SIGNS, paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 8, 2.5, 11, 6, 13, 8], "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": 2 } },
+    { id: "import-dot", type: "circle", source: SIGNS, paint: { "circle-radius": byZoom(2.5, 8), "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": byZoom(1.5, 2) } },
     {
       id: "import-sign",
       type: "symbol",
       source: SIGNS,
-      minzoom: 10,
       layout: {
         "text-field": byAction(Object.fromEntries(Object.entries(ACTIONS).map(([action, { sign }]) => [action, sign]))),
         "text-font": fonts,
-        "text-size": ["interpolate", ["linear"], ["zoom"], 10, 11, 13, 17],
-        "text-allow-overlap": true,
-        "text-ignore-placement": true,
+        "text-size": ["interpolate", ["linear"], ["zoom"], 9, 13, 13, 17],
+        "text-padding": 0,
       },
       paint: { "text-color": colour, "text-halo-color": casing, "text-halo-width": 2 },
     },
@@ -92,7 +92,7 @@ export function createChangesLayer({ map, view }) {
     show(changes, action) {
       shownAction = action;
       const drawn = changes.filter((change) => change.geometry);
-      const feature = (change, geometry) => ({ type: "Feature", geometry, properties: { id: change.id, action: change.properties.action } });
+      const feature = (change, geometry) => ({ type: "Feature", geometry, properties: { id: change.id, action: change.properties.action, isPoint: change.geometry.type === "Point" } });
       map.getSource(SOURCE).setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, change.geometry)) });
       map.getSource(SIGNS).setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) })) });
       const moved = changes.filter((change) => change.properties.action !== "vanished" && isGeometry(change.properties.before?.geometry));

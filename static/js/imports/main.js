@@ -173,7 +173,16 @@ async function decide(busy, title, act) {
 
 const acts = {
   back: () => closeProposal(),
-  cancel: (proposal) => post(`/jobs/${proposal.job.id}/cancel`, {}).catch((error) => (tell(error, "Not stopped."), Promise.reject(error))),
+  /** What is read is thrown away; what is applied goes back to be decided, once its worker has heard of it. */
+  async cancel(proposal) {
+    try {
+      if (proposal.state === "reading") put((await post(`/imports/${proposal.id}/discard`, {})).data);
+      else await post(`/jobs/${proposal.job.id}/cancel`, {});
+    } catch (error) {
+      tell(error, "Not stopped.");
+      throw error;
+    }
+  },
   apply: (overwrites) => decide("apply", "Not applied.", () => post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } })),
   async discard() {
     const { current } = store.state;

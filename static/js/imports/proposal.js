@@ -23,6 +23,7 @@ export function mountProposal(store, acts) {
     panel.hidden = foot.hidden = byId("changes-panel").hidden = current === null;
     if (!current) {
       drawn = "";
+      panel.replaceChildren();
       return;
     }
     const { job, ...rest } = current;
@@ -86,7 +87,6 @@ export function mountProposal(store, acts) {
   }
 
   function decision(proposal, busy) {
-    if (proposal.state === "reading") return [h("div", { class: "foot-buttons" }, discard(busy))];
     if (proposal.state === "refused") return [h("div", { class: "foot-buttons" }, discard(busy))];
     if (proposal.state !== "ready") return [];
     const count = touched(proposal.difference, { overwrites });

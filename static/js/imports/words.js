@@ -57,7 +57,7 @@ export function sizeText(bytes) {
   return `${(bytes / 1024 / 1024).toLocaleString("en-GB", { maximumFractionDigits: 1 })}${SPACE}MiB`;
 }
 
-const UNITS = { m: "m", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: "m²", bytes: "bytes", s: "s" };
+const UNITS = { m: "m", km: "km", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: "m²", bytes: "bytes", s: "s" };
 
 /** "height_m" → { words: "height", unit: "m" } */
 export function factName(name) {
