@@ -1,5 +1,97 @@
-/** The page "Assets": composes its panel and the map. */
+/** The page "Assets": find, look, draw, correct. */
 
-import { mountGroundPage } from "../ground/ground_page.js";
+import { byId, h } from "../dom.js";
+import { mountRecordPage } from "../ground/record_page.js";
+import { coordinateText, lengthText, voltageText, whenText } from "../units.js";
+import { assetForm } from "./form.js";
 
-mountGroundPage().open();
+const KINDS = [["tower", "Towers"], ["line", "Lines"], ["railway", "Railways"], ["bridge", "Bridges"]];
+const NAMES = { tower: "Power tower", line: "Power line", railway: "Railway", bridge: "Bridge" };
+const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
+const PAGE = 60;
+const TYPING_MS = 250;
+
+const filter = { text: "", kind: "", inView: false };
+const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const FACTS = ["subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable"];
+const factsOf = ({ properties, geometry }) => ({ ...Object.fromEntries(FACTS.map((name) => [name, properties[name]])), geometry });
+
+function sourceWords({ properties }) {
+  const { source, osm, asset_set: set } = properties;
+  if (osm) {
+    const kind = { n: "node", w: "way", r: "relation" }[osm[0]];
+    return [h("a", { href: `https://www.openstreetmap.org/${kind}/${osm.slice(1)}`, rel: "noreferrer", target: "_blank" }, `OpenStreetMap ${kind} ${osm.slice(1)}`), source ? `, ${source.file_name}` : ""];
+  }
+  return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : ["Drawn here"];
+}
+
+function details(feature) {
+  const { properties } = feature;
+  const tags = Object.entries(properties.tags ?? {});
+  return [
+    h("p", { class: "caption" }, [NAMES[properties.kind], properties.detail].filter(Boolean).join(" · ")),
+    properties.vanished_at && h("div", { class: "notice warning" }, h("p", {}, h("strong", {}, "Off the ground. "), `Since ${whenText(properties.vanished_at)}; missions still know it.`)),
+    properties.is_edited && h("p", { class: "caption" }, "Edited by hand: imports leave it alone."),
+    h(
+      "dl",
+      { class: "facts" },
+      term("Ref", properties.ref), term("Name", properties.name), term("Operator", properties.operator),
+      term("Voltages", properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")), term("Circuits", properties.circuits && String(properties.circuits)),
+      term("Height", properties.height_m && `${properties.height_m}\u00a0m above ground`), term("Length", properties.length_m && lengthText(properties.length_m)),
+      term("Network", properties.is_flyable ? "" : "Not part of the flying network"), term("Place", coordinateText(properties.centre)),
+      term("Source", sourceWords(feature)), term("Attribution", properties.source?.attribution), term("Changed", whenText(properties.updated_at)),
+    ),
+    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, `${tags.length} tags of the source`), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
+  ].filter(Boolean);
+}
+
+const records = mountRecordPage({
+  path: "/assets",
+  key: "asset",
+  findWords: "Find an asset",
+  backWords: "All assets",
+  pickKinds: ["tower", "line", "railway", "bridge"],
+  newChoices: [
+    { value: "tower", icon: "tower", words: "Tower" }, { value: "line", icon: "line", words: "Power line" }, { value: "railway", icon: "railway", words: "Railway" }, { value: "bridge", icon: "bridge", words: "Bridge" },
+  ],
+  newTitle: (kind) => `New ${NAMES[kind].toLowerCase()}`,
+  choiceOf: (feature) => feature.properties.kind,
+  shapeKind: (kind) => SHAPES[kind],
+  checkKind: (kind) => kind,
+  fixedFacts: (kind) => ({ kind, tags: kind === "tower" ? { power: "tower" } : {} }),
+  factsOf,
+  factsOfBody: (body) => body,
+  title: (feature) => feature.properties.label,
+  details,
+  form: assetForm,
+  followsView: () => filter.inView,
+  row: ({ properties }) => ({ icon: properties.kind, name: properties.label, detail: properties.detail || NAMES[properties.kind], chip: properties.is_flyable ? "" : "not flown" }),
+  listQuery(map) {
+    const query = new URLSearchParams({ limit: PAGE });
+    if (filter.text) query.set("text", filter.text);
+    if (filter.kind) query.set("kind", filter.kind);
+    if (filter.inView) query.set("bbox", map.box().map((degrees) => degrees.toFixed(6)).join(","));
+    return `/assets?${query}`;
+  },
+  nothing: () =>
+    filter.text || filter.kind || filter.inView
+      ? [h("strong", {}, "Nothing found."), h("span", {}, "Other words, another kind, or a larger part of the map may have it.")]
+      : [h("strong", {}, "No assets yet."), h("span", {}, "Bring in an OpenStreetMap file, or take the visible area from Overpass."), h("a", { class: "button", href: "/imports" }, "Import a file")],
+});
+
+let timer = 0;
+byId("record-text").addEventListener("input", (event) => {
+  filter.text = event.target.value.trim();
+  clearTimeout(timer);
+  timer = setTimeout(() => records.load(), TYPING_MS);
+});
+byId("record-in-view").addEventListener("change", (event) => {
+  filter.inView = event.target.checked;
+  records.load();
+});
+byId("asset-kinds").append(
+  ...[["", "All"], ...KINDS].map(([value, words]) =>
+    h("label", {}, h("input", { type: "radio", name: "kind", value, checked: value === "", onchange: () => ((filter.kind = value), records.load()) }), h("span", { class: "segment" }, words)),
+  ),
+);
+records.start();

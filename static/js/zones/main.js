@@ -1,5 +1,116 @@
-/** The page "No-fly zones": composes its panel and the map. */
+/** The page "No-fly zones": find, look, draw, correct; sets and their sources. */
 
-import { mountGroundPage } from "../ground/ground_page.js";
+import { byId, h, icon } from "../dom.js";
+import { mountRecordPage } from "../ground/record_page.js";
+import { plainWords } from "../map/furniture.js";
+import { coordinateText, lengthText, whenText } from "../units.js";
+import { zoneForm } from "./form.js";
+import { bandDrawing, limitText } from "./heights.js";
+import { weekDrawing } from "./schedule_editor.js";
+import { mountSetsPanel } from "./sets_panel.js";
 
-mountGroundPage().open();
+const PAGE = 60;
+const TYPING_MS = 250;
+const filter = { text: "", set: null, inView: false };
+const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const heights = ({ lower_limit: lower, upper_limit: upper }) => (lower || upper ? `From ${limitText(lower, "lower")} to ${limitText(upper, "upper")}` : "Heights not stated");
+
+function factsOf({ properties, geometry }) {
+  const { name, restriction, reason, schedule, circle, lower_limit: lower, upper_limit: upper } = properties;
+  return { name, restriction, reason, schedule, circle, lower_limit_m: lower?.value_m ?? null, lower_reference: lower?.reference ?? "", upper_limit_m: upper?.value_m ?? null, upper_reference: upper?.reference ?? "", geometry };
+}
+
+function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
+  return { ...rest, lower_limit_m: lower?.value_m ?? null, lower_reference: lower?.reference ?? "", upper_limit_m: upper?.value_m ?? null, upper_reference: upper?.reference ?? "" };
+}
+
+function details({ properties }) {
+  const { source } = properties;
+  return [
+    h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || "Restriction not stated"),
+    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heights(properties)), h("p", {}, properties.schedule_words), properties.schedule && h("p", { class: "caption" }, "Counts at all heights and times for now"))),
+    ...(properties.schedule ?? []).slice(0, 3).filter((period) => Array.isArray(period.schedule)).map(weekDrawing),
+    properties.is_edited && h("p", { class: "caption" }, "Edited by hand: imports leave it alone."),
+    h(
+      "dl",
+      { class: "facts" },
+      term("Circle", properties.circle && `${lengthText(properties.circle.radius_m)} round ${coordinateText(properties.circle.centre)}`), term("Identifier", properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
+      term("Set", properties.zone_set ?? "Drawn here"), term("File", source?.file_name), term("Licence", source ? source.licence || "not stated" : ""), term("Attribution", source?.attribution),
+      term("Fetched", source?.fetched_at && whenText(source.fetched_at)), term("Imported", source?.imported_at && whenText(source.imported_at)), term("Changed", whenText(properties.updated_at)),
+    ),
+    h("p", { class: "caption" }, "Facts as the source states them; whether you may fly is for you to judge."),
+  ].filter(Boolean);
+}
+
+const records = mountRecordPage({
+  path: "/zones",
+  key: "zone",
+  findWords: "Find a zone",
+  backWords: "All zones",
+  pickKinds: ["zone"],
+  newChoices: [{ value: "area", icon: "pentagon", words: "Area" }, { value: "circle", icon: "circle", words: "Circle" }],
+  newTitle: () => "New no-fly zone",
+  choiceOf: (feature) => (feature.properties.circle ? "circle" : "area"),
+  shapeKind: (choice) => choice,
+  checkKind: () => "zone",
+  fixedFacts: () => ({}),
+  factsOf,
+  factsOfBody,
+  title: (feature) => feature.properties.name,
+  details,
+  form: zoneForm,
+  followsView: () => filter.inView,
+  row: ({ properties }) => ({ icon: "zone", name: properties.name, detail: heights(properties), chip: properties.schedule ? "at times" : "" }),
+  listQuery(map) {
+    const query = new URLSearchParams({ limit: PAGE });
+    if (filter.text) query.set("text", filter.text);
+    if (filter.set) query.set("zone_set", filter.set.id);
+    if (filter.inView) query.set("bbox", map.box().map((degrees) => degrees.toFixed(6)).join(","));
+    return `/zones?${query}`;
+  },
+  nothing: () =>
+    filter.text || filter.set || filter.inView
+      ? [h("strong", {}, "Nothing found."), h("span", {}, "Other words, or a larger part of the map may have it.")]
+      : [h("strong", {}, "No zones yet."), h("span", {}, "Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file."), h("a", { class: "button", href: "/imports" }, "Import a file")],
+});
+
+let timer = 0;
+byId("record-text").addEventListener("input", (event) => {
+  filter.text = event.target.value.trim();
+  clearTimeout(timer);
+  timer = setTimeout(() => records.load(), TYPING_MS);
+});
+byId("record-in-view").addEventListener("change", (event) => {
+  filter.inView = event.target.checked;
+  records.load();
+});
+
+function showSet() {
+  byId("zone-set-filter").replaceChildren(
+    ...(filter.set ? [h("span", { class: "chip" }, filter.set.name, h("button", { type: "button", class: "icon-button tight", "aria-label": `No longer only ${filter.set.name}`, onclick: () => ((filter.set = null), showSet(), records.load()) }, icon("x", "small")))] : []),
+  );
+}
+
+const sets = mountSetsPanel({
+  canCurate: records.page.canCurate,
+  showZones(set) {
+    filter.set = set;
+    showSet();
+    turnTo("zones");
+    records.load();
+  },
+});
+
+const TABS = [["zones", "Zones"], ["sets", "Sets and sources"]];
+function turnTo(tab) {
+  byId("zone-sets").hidden = tab !== "sets";
+  if (tab === "sets") {
+    for (const id of ["record-find", "record-show"]) byId(id).hidden = true;
+    sets.load();
+  } else records.go("find");
+  document.querySelector(`input[name=zone-tab][value=${tab}]`).checked = true;
+}
+byId("zone-tabs").append(
+  ...TABS.map(([value, words]) => h("label", {}, h("input", { type: "radio", name: "zone-tab", value, checked: value === "zones", onchange: () => turnTo(value) }), h("span", { class: "segment" }, words))),
+);
+records.start();

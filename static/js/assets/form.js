@@ -1,0 +1,55 @@
+/** The facts of an asset as fields. */
+
+import { h } from "../dom.js";
+
+const SUBTYPES = {
+  tower: [["tower", "Tower"], ["pole", "Pole"], ["portal", "Portal"]],
+  line: [["line", "Line"], ["minor_line", "Minor line"], ["cable", "Cable"]],
+  railway: [["rail", "Railway"], ["light_rail", "Light rail"], ["tram", "Tramway"], ["subway", "Subway"]],
+  bridge: [["area", "Bridge"]],
+};
+
+const field = (id, words, input, unit) => h("div", { class: "field" }, h("label", { for: id }, words), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input);
+const text = (id, value, longest = 255) => h("input", { class: "input", id, type: "text", maxlength: longest, value: value ?? "", autocomplete: "off", spellcheck: "false" });
+const number = (id, value, rest) => h("input", { class: "input", id, type: "number", value: value ?? "", ...rest });
+
+/** "110, 20" or "110 kV; 20 kV" → volts, highest first. */
+export function voltsOf(words) {
+  const found = words.split(/[;,/]/).map((part) => Number(part.replace(/kV/i, "").trim().replace(",", "."))).filter((kilovolts) => kilovolts > 0 && Number.isFinite(kilovolts));
+  return [...new Set(found.map((kilovolts) => Math.round(kilovolts * 1000)))].sort((a, b) => b - a);
+}
+
+const numberOrNull = (input) => (input.value === "" ? null : Number(input.value));
+
+export function assetForm(feature, kind, kept) {
+  const facts = { ...(feature?.properties ?? {}), ...kept };
+  const isPower = kind === "tower" || kind === "line";
+  const subtypes = SUBTYPES[kind];
+  const isOther = facts.subtype && !subtypes.some(([value]) => value === facts.subtype);
+  const subtype = h("select", { class: "input", id: "asset-subtype" }, [...subtypes, ...(isOther ? [[facts.subtype, facts.subtype]] : [])].map(([value, words]) => h("option", { value, selected: value === (facts.subtype || subtypes[0][0]) }, words)));
+  const [ref, name, operator] = ["ref", "name", "operator"].map((key) => text(`asset-${key}`, facts[key]));
+  const voltages = text("asset-voltages", (facts.voltages_v ?? []).map((volts) => volts / 1000).join(", "), 60);
+  const circuits = number("asset-circuits", facts.circuits, { min: 1, max: 100, step: 1 });
+  const height = number("asset-height", facts.height_m, { min: 0.1, max: 1000, step: "any" });
+  const flyable = h("input", { class: "check", id: "asset-flyable", type: "checkbox", checked: facts.is_flyable ?? true });
+  const element = h(
+    "form",
+    { class: "record-form", onsubmit: (event) => event.preventDefault() },
+    field("asset-subtype", "Type", subtype),
+    h("div", { class: "pair" }, field("asset-ref", "Ref", ref), field("asset-name", "Name", name)),
+    field("asset-operator", "Operator", operator),
+    isPower && h("div", { class: "pair" }, field("asset-voltages", "Voltages, highest first", voltages, "kV"), kind === "line" ? field("asset-circuits", "Circuits", circuits) : field("asset-height", "Height above ground", height, "m")),
+    !isPower && field("asset-height", "Height above ground", height, "m"),
+    h("label", { class: "switch-line" }, flyable, "Part of the flying network"),
+  );
+  return {
+    element,
+    read() {
+      const read = { subtype: subtype.value, ref: ref.value.trim(), name: name.value.trim(), operator: operator.value.trim(), is_flyable: flyable.checked };
+      if (isPower) read.voltages_v = voltsOf(voltages.value);
+      if (kind === "line") read.circuits = numberOrNull(circuits);
+      else read.height_m = numberOrNull(height);
+      return read;
+    },
+  };
+}

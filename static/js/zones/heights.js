@@ -1,0 +1,57 @@
+/** Height limits of a zone: words, a small drawing of the band, and the fields that edit them. */
+
+import { h, svg } from "../dom.js";
+
+export const REFERENCES = [["AGL", "above ground"], ["AMSL", "above sea level"], ["STD", "flight level"], ["WGS84", "above the ellipsoid"]];
+const WORDS = Object.fromEntries(REFERENCES);
+const FOOT_M = 0.3048;
+const FLIGHT_LEVEL_M = 100 * FOOT_M;
+
+export function limitText(limit, side) {
+  if (!limit) return side === "lower" ? "lower limit not stated" : "upper limit not stated";
+  if (limit.reference === "STD") return `FL\u00a0${Math.round(limit.value_m / FLIGHT_LEVEL_M)}`;
+  if (limit.value_m === 0 && limit.reference === "AGL") return "ground";
+  return `${Math.round(limit.value_m).toLocaleString("en-GB")}\u00a0m ${WORDS[limit.reference] ?? ""}`.trim();
+}
+
+/** A column of air with the band in it; what is not stated is open, drawn as a dashed end. */
+export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
+  const [width, height, ground] = [34, 64, 58];
+  const top = upper ? 16 : 4;
+  const bottom = lower && lower.value_m > 0 ? 40 : ground;
+  return svg(
+    "svg",
+    { width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true" },
+    svg("rect", { x: 8, y: top, width: 18, height: bottom - top, fill: "var(--zone-fill)", stroke: "none" }),
+    ...[0, 6, 12, 18].map((step) => svg("path", { d: `M8 ${Math.min(bottom, top + step + 12)}L26 ${Math.max(top, top + step - 2)}`, stroke: "var(--zone)", "stroke-width": 0.8, "clip-path": "none", opacity: 0.6 })),
+    svg("path", { d: `M6 ${top}H28`, stroke: "var(--zone)", "stroke-width": 1.75, "stroke-dasharray": upper ? "none" : "3 3" }),
+    svg("path", { d: `M6 ${bottom}H28`, stroke: "var(--zone)", "stroke-width": 1.75, "stroke-dasharray": lower ? "none" : "3 3" }),
+    svg("path", { d: `M2 ${ground}H32`, stroke: "var(--ink-2)", "stroke-width": 1.5 }),
+  );
+}
+
+/** { element, read() } for one limit; read gives { value_m, reference } or null for "not stated". */
+export function limitField(side, words, limit) {
+  const isLevel = limit?.reference === "STD";
+  const value = h("input", { class: "input", id: `${side}-value`, type: "number", step: "any", min: -1000, max: 100_000, value: limit ? String(Math.round((isLevel ? limit.value_m / FLIGHT_LEVEL_M : limit.value_m) * 10) / 10) : "", "aria-label": `${words}, value` });
+  const unit = h("select", { class: "input", "aria-label": `${words}, unit` }, [["m", "m"], ["ft", "ft"]].map(([key, text]) => h("option", { value: key }, text)));
+  const reference = h(
+    "select",
+    { class: "input", "aria-label": `${words}, counted from` },
+    [["", "not stated"], ...REFERENCES].map(([key, text]) => h("option", { value: key, selected: key === (limit?.reference ?? "") }, text)),
+  );
+  const adapt = () => {
+    value.disabled = reference.value === "";
+    unit.disabled = reference.value === "" || reference.value === "STD";
+  };
+  reference.addEventListener("change", adapt);
+  adapt();
+  return {
+    element: h("fieldset", {}, h("legend", {}, words), h("div", { class: "limit-row" }, value, unit, reference)),
+    read() {
+      if (!reference.value || value.value === "") return null;
+      const factor = reference.value === "STD" ? FLIGHT_LEVEL_M : unit.value === "ft" ? FOOT_M : 1;
+      return { value_m: Math.round(Number(value.value) * factor * 100) / 100, reference: reference.value };
+    },
+  };
+}

@@ -1,0 +1,105 @@
+/** Edits when a zone applies: periods with dates, days and times, and a week that shows them. */
+
+import { h, icon, svg } from "../dom.js";
+import { DAYS, EVENTS, fromField, newEntry, newPeriod, timeFromField, timeToField, toField, weekOf } from "./schedule.js";
+
+const offsetWords = () => {
+  const minutes = -new Date().getTimezoneOffset();
+  if (!minutes) return "Your clock shows UTC now.";
+  const hours = Math.floor(Math.abs(minutes) / 60);
+  return `08:00 UTC is ${String((8 + Math.trunc(minutes / 60) + 24) % 24).padStart(2, "0")}:${String(Math.abs(minutes) % 60).padStart(2, "0")} on your clock now (UTC${minutes > 0 ? "+" : "−"}${hours}).`;
+};
+
+/** The week as seven rows of 24 hours. */
+export function weekDrawing(period) {
+  const [left, row, width] = [30, 11, 290];
+  const x = (hours) => left + (hours / 24) * width;
+  const stretches = weekOf(period);
+  return svg(
+    "svg",
+    { class: "week", viewBox: `0 0 ${left + width + 4} ${7 * row + 16}`, role: "img", "aria-label": "The week, with the hours in which the zone applies" },
+    ...DAYS.map(([, words], day) => svg("text", { x: 0, y: day * row + 9, "font-size": 9 }, words)),
+    ...DAYS.map((_, day) => svg("rect", { x: left, y: day * row + 1, width, height: row - 3, fill: "var(--pressed)" })),
+    ...stretches.map(({ day, from_h, to_h, softStart, softEnd }) =>
+      svg("rect", { x: x(from_h), y: day * row + 1, width: x(to_h) - x(from_h), height: row - 3, fill: "var(--zone)", opacity: softStart || softEnd ? 0.6 : 0.9, ...(softStart || softEnd ? { stroke: "var(--zone)", "stroke-dasharray": "2 2" } : {}) }),
+    ),
+    ...[0, 6, 12, 18, 24].map((hours) => svg("text", { x: x(hours), y: 7 * row + 12, "text-anchor": hours === 0 ? "start" : hours === 24 ? "end" : "middle", "font-size": 9 }, String(hours).padStart(2, "0"))),
+  );
+}
+
+/** { element, read() }; read gives the periods, or null for "always". */
+export function scheduleEditor(schedule) {
+  let periods = structuredClone(schedule ?? []);
+  const body = h("div", { class: "record-form" });
+  const element = h("fieldset", {}, h("legend", {}, "When it applies"), body);
+  const tell = () => element.dispatchEvent(new Event("input", { bubbles: true }));
+  const change = (act) => () => {
+    act();
+    draw();
+    tell();
+  };
+
+  const moment = (period, side, words, number) =>
+    h("div", { class: "field" }, h("label", { for: `${side}-${number}` }, words), h("input", {
+      class: "input", id: `${side}-${number}`, type: "datetime-local", value: toField(period[side]),
+      onchange: (event) => ((period[side] = fromField(event.target.value)), tell()),
+    }));
+
+  function side(entry, which, words) {
+    const event = h("select", { class: "input", "aria-label": words }, [["", "at a time"], ...EVENTS].map(([key, text]) => h("option", { value: key, selected: key === (entry[`${which}Event`] ?? "") }, text)));
+    const time = h("input", { class: "input", type: "time", "aria-label": `${words}, UTC`, value: timeToField(entry[`${which}Time`]), disabled: Boolean(entry[`${which}Event`]) });
+    event.addEventListener("change", change(() => {
+      entry[`${which}Event`] = event.value || null;
+      entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
+    }));
+    time.addEventListener("change", change(() => (entry[`${which}Time`] = timeFromField(time.value))));
+    return h("div", { class: "field" }, h("span", { class: "field-label" }, words), h("div", { class: "time-row" }, time, event));
+  }
+
+  function days(entry) {
+    const has = (day) => entry.day.includes("ANY") || entry.day.includes(day);
+    return h(
+      "div",
+      { class: "days", role: "group", "aria-label": "Days" },
+      DAYS.map(([key, words]) =>
+        h("label", {}, h("input", {
+          type: "checkbox", checked: has(key),
+          onchange: change(() => {
+            const chosen = DAYS.map(([day]) => day).filter((day) => (day === key ? !has(day) : has(day)));
+            entry.day = chosen.length === 7 || !chosen.length ? ["ANY"] : chosen;
+          }),
+        }), h("span", {}, words)),
+      ),
+    );
+  }
+
+  function draw() {
+    const always = h("label", { class: "switch-line" }, h("input", { class: "switch", type: "checkbox", role: "switch", checked: !periods.length, onchange: change(() => (periods = periods.length ? [] : [newPeriod()])) }), "Always");
+    body.replaceChildren(
+      always,
+      ...periods.map((period, number) =>
+        h(
+          "div",
+          { class: "period" },
+          h("div", { class: "period-head" }, h("strong", {}, periods.length > 1 ? `Period ${number + 1}` : "Period"), h("button", { type: "button", class: "icon-button tight", "aria-label": "Remove the period", onclick: change(() => periods.splice(number, 1)) }, icon("x", "small"))),
+          h("div", { class: "time-row" }, moment(period, "startDateTime", "From, UTC", number), moment(period, "endDateTime", "Until, UTC", number)),
+          weekDrawing(period),
+          ...period.schedule.map((entry, index) =>
+            h(
+              "div",
+              { class: "entry" },
+              days(entry),
+              side(entry, "start", "Begins"),
+              side(entry, "end", "Ends"),
+              h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.splice(index, 1)) }, "Remove these hours"),
+            ),
+          ),
+          h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.push(newEntry())) }, period.schedule.length ? "Add hours" : "Only at certain hours"),
+        ),
+      ),
+      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, "Add a period"), h("p", { class: "caption" }, `Days and hours are UTC. ${offsetWords()}`)] : []),
+    );
+  }
+  draw();
+  return { element, read: () => (periods.length ? structuredClone(periods) : null) };
+}
