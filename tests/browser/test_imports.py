@@ -102,6 +102,10 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
     expect(page.get_by_text("1 is as it was.")).to_be_visible()
     expect(page.get_by_role("list", name="Changes").get_by_role("listitem")).to_have_count(3)
     page.locator("#map[data-idle]").wait_for(state="attached")
+    for theme in ("light", "dark"):
+        page.emulate_media(color_scheme=theme)
+        picture(page, f"imports-difference-{theme}")
+    page.emulate_media(color_scheme="light")
     place = place_of(page, [-83.06 + SIDE_DEG / 4, 39.94 + SIDE_DEG / 4])
     page.mouse.move(place["x"], place["y"])
     expect(page.locator("#changes li", has_text="West")).to_have_attribute("data-lit", "true")
@@ -110,14 +114,6 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
     expect(page.get_by_role("list", name="Changes").get_by_role("listitem")).to_have_count(1)
     page.get_by_role("button", name="North").click()
     expect(page.get_by_text("dashed on the map")).to_be_visible()
-    page.get_by_role("radio", name="All").check(force=True)
-    page.get_by_role("button", name="Fit everything").click()
-    page.locator("#map[data-idle]").wait_for(state="attached")
-    for theme in ("light", "dark"):
-        page.emulate_media(color_scheme=theme)
-        page.wait_for_timeout(200)
-        picture(page, f"imports-difference-{theme}")
-    page.emulate_media(color_scheme="light")
     page.get_by_role("button", name="Apply 3 changes").click()
     expect(page.locator("#proposal .chip")).to_have_text("Applied")
 

@@ -221,6 +221,7 @@ mountList(store, { open: (id) => openProposal(id), more: () => attempt("Not load
 mountChanges(store, {
   filter(action) {
     store.update({ action, selected: null, listed: LISTED });
+    map.ring([]);
     showChanges();
   },
   point: (change) => light(change?.id ?? null),
