@@ -2,13 +2,18 @@
 
 from typing import Any
 
-from django.contrib import admin
+from django.contrib import admin, messages
 from django.contrib.auth.admin import UserAdmin as DjangoUserAdmin
 from django.contrib.auth.models import Group
-from django.http import HttpRequest
+from django.db import transaction
+from django.db.models import Count, QuerySet
+from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.utils import timezone
+from django.utils.safestring import SafeString
 
-from workspace.models import ApiToken, AuditEntry, Job, Organisation, User
+from workspace.admin_history import HistoryAdmin, as_table, what_changed
+from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Job, Organisation, Role, User
+from workspace.services import NoAdministratorLeft, change_people, delete_person, save_person
 
 admin.site.unregister(Group)  # what somebody may do follows from the role
 
@@ -28,15 +33,35 @@ class ReadOnlyAdmin(admin.ModelAdmin):
 
 @admin.register(Organisation)
 class OrganisationAdmin(admin.ModelAdmin):
-    list_display = ["name", "created_at"]
+    """One that has anything is renamed, not deleted: its missions and its history hang on it."""
+
+    list_display = ["name", "people", "created_at"]
     search_fields = ["name"]
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[Organisation]:
+        return super().get_queryset(request).annotate(people=Count("users"))
+
+    @admin.display(ordering="people")
+    def people(self, organisation: Any) -> int:
+        return int(organisation.people)
+
+    def has_delete_permission(self, request: HttpRequest, obj: Any = None) -> bool:
+        if obj is None:
+            return super().has_delete_permission(request)
+        return obj.pk != DEFAULT_ORGANISATION_ID and not any(
+            relation.related_model._base_manager.filter(**{relation.field.name: obj}).exists() for relation in obj._meta.related_objects
+        )
 
 
 @admin.register(User)
-class UserAdmin(DjangoUserAdmin):
-    list_display = ["username", "first_name", "last_name", "role", "organisation", "is_active", "last_login"]
-    list_filter = ["role", "is_active", "organisation"]
+class UserAdmin(HistoryAdmin, DjangoUserAdmin):
+    """Accounts, their roles and organisations. One administrator who can sign in is always left."""
+
+    history_subject = "user"
+    list_display = ["username", "first_name", "last_name", "email", "role", "organisation", "is_active", "last_login"]
+    list_filter = ["role", "is_active", "organisation", "last_login"]
     list_select_related = ["organisation"]
+    search_fields = ["username", "first_name", "last_name", "email", "organisation__name"]
     filter_horizontal = []
     readonly_fields = ["last_login", "date_joined"]
     fieldsets = [
@@ -44,7 +69,63 @@ class UserAdmin(DjangoUserAdmin):
         ("Person", {"fields": ["first_name", "last_name", "email"]}),
         ("Times", {"fields": ["last_login", "date_joined"]}),
     ]
-    add_fieldsets = [(None, {"fields": ["username", "usable_password", "password1", "password2", "role", "organisation"]})]
+    add_fieldsets = [(None, {"fields": ["username", "email", "usable_password", "password1", "password2", "role", "organisation"]})]
+    actions = ["let_in", "keep_out", "make_viewers", "make_operators", "make_curators", "make_administrators"]
+
+    def changeform_view(self, request: HttpRequest, *args: Any, **options: Any) -> HttpResponse:
+        return self._unless_last(request, super().changeform_view, *args, **options)
+
+    def delete_view(self, request: HttpRequest, *args: Any, **options: Any) -> HttpResponse:
+        return self._unless_last(request, super().delete_view, *args, **options)
+
+    def changelist_view(self, request: HttpRequest, *args: Any, **options: Any) -> HttpResponse:
+        return self._unless_last(request, super().changelist_view, *args, **options)
+
+    def save_model(self, request: HttpRequest, obj: User, form: Any, change: bool) -> None:
+        save_person(user=obj, actor=request.user)
+
+    def delete_model(self, request: HttpRequest, obj: User) -> None:
+        delete_person(user=obj, actor=request.user)
+
+    def delete_queryset(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        with transaction.atomic():
+            for user in queryset:
+                delete_person(user=user, actor=request.user)
+
+    @admin.action(description="Let the chosen sign in", permissions=["change"])
+    def let_in(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        self._change(request, queryset, "may sign in", is_active=True)
+
+    @admin.action(description="Keep the chosen out", permissions=["change"])
+    def keep_out(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        self._change(request, queryset, "can no longer sign in", is_active=False)
+
+    @admin.action(description="Make the chosen viewers", permissions=["change"])
+    def make_viewers(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        self._change(request, queryset, "made viewers", role=Role.VIEWER)
+
+    @admin.action(description="Make the chosen operators", permissions=["change"])
+    def make_operators(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        self._change(request, queryset, "made operators", role=Role.OPERATOR)
+
+    @admin.action(description="Make the chosen curators", permissions=["change"])
+    def make_curators(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        self._change(request, queryset, "made curators", role=Role.CURATOR)
+
+    @admin.action(description="Make the chosen administrators", permissions=["change"])
+    def make_administrators(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
+        self._change(request, queryset, "made administrators", role=Role.ADMINISTRATOR)
+
+    def _change(self, request: HttpRequest, queryset: QuerySet[User], words: str, **change: Any) -> None:
+        changed = change_people(users=queryset, actor=request.user, **change)
+        self.message_user(request, f"{changed} {words}.")
+
+    def _unless_last(self, request: HttpRequest, view: Any, *args: Any, **options: Any) -> HttpResponse:
+        try:
+            return view(request, *args, **options)
+        except NoAdministratorLeft as error:
+            messages.error(request, f"{error} Nothing was changed.")
+            return HttpResponseRedirect(request.get_full_path())
 
 
 @admin.register(ApiToken)
@@ -80,7 +161,13 @@ class JobAdmin(ReadOnlyAdmin):
 @admin.register(AuditEntry)
 class AuditEntryAdmin(ReadOnlyAdmin):
     list_display = ["recorded_at", "actor", "action", "subject_type", "subject_id", "organisation"]
-    list_filter = ["action", "subject_type", "organisation"]
+    list_filter = ["subject_type", "action", "organisation"]
     list_select_related = ["actor", "organisation"]
-    search_fields = ["subject_id", "actor__username"]
+    search_fields = ["=subject_id", "actor__username", "actor__first_name", "actor__last_name"]
+    fields = ["recorded_at", "actor", "action", "subject_type", "subject_id", "organisation", "changes"]
+    readonly_fields = ["changes"]
     date_hierarchy = "recorded_at"
+
+    @admin.display(description="what changed")
+    def changes(self, entry: AuditEntry) -> SafeString:
+        return as_table(what_changed(entry))

@@ -2,24 +2,33 @@
 
 import hashlib
 import secrets
+from collections.abc import Iterable
 from datetime import datetime, timedelta
 from typing import Any
 from uuid import UUID
 
-from django.db import transaction
+from django.db import connection, transaction
 from django.db.models import Q
 from django.utils import timezone
 
-from workspace.models import ApiToken, AuditEntry, IdempotencyKey, Job, JobState, Organisation, User
+from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, IdempotencyKey, Job, JobState, Organisation, Role, User
 
 LEASE_S = 60  # a worker that says nothing for so long is taken for dead
 QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
 MAX_ATTEMPTS = 3
 IDEMPOTENCY_KEPT = timedelta(hours=48)
+ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: one at a time takes the role away, or an administrator's access
 
 
 class JobCancelled(Exception):
     """The job was cancelled by a user, or another worker finished it."""
+
+
+class NoAdministratorLeft(ValueError):
+    """Without an administrator who may sign in nobody could give the role back."""
+
+    def __init__(self) -> None:
+        super().__init__("This would leave no administrator who can sign in. Make somebody else an administrator first.")
 
 
 def hash_token(token: str) -> str:
@@ -168,3 +177,62 @@ def requeue_lost_jobs() -> list[Job]:
 def forget_old_idempotency_keys() -> int:
     deleted, _ = IdempotencyKey.objects.filter(created_at__lt=timezone.now() - IDEMPOTENCY_KEPT).delete()
     return deleted
+
+
+def save_person(*, user: User, actor: User) -> User:
+    """Store a new or changed account. Raises NoAdministratorLeft."""
+    with transaction.atomic():
+        before = User.objects.filter(pk=user.pk).first()
+        user.save()
+        _refuse_without_administrator(before)
+        _record_person(actor, user.pk, before and person_facts(before), person_facts(user))
+    return user
+
+
+def change_people(*, users: Iterable[User], actor: User, role: Role | None = None, is_active: bool | None = None) -> int:
+    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises NoAdministratorLeft."""
+    changed = 0
+    with transaction.atomic():
+        for user in users:
+            wanted = (user.role if role is None else role, user.is_active if is_active is None else is_active)
+            if wanted != (user.role, user.is_active):
+                user.role, user.is_active = wanted
+                save_person(user=user, actor=actor)
+                changed += 1
+    return changed
+
+
+def delete_person(*, user: User, actor: User) -> None:
+    """What they did stays in the history, without their name. Raises NoAdministratorLeft."""
+    with transaction.atomic():
+        before, key = person_facts(user), user.pk
+        held = User(role=user.role, is_active=user.is_active)
+        user.delete()
+        _refuse_without_administrator(held)
+        _record_person(actor if actor.pk != key else None, key, before, None)
+
+
+def person_facts(user: User) -> dict[str, Any]:
+    """What the history says of an account; never its password."""
+    names = ("username", "first_name", "last_name", "email", "role", "is_active")
+    return {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
+
+
+def _refuse_without_administrator(before: User | None) -> None:
+    """After a change, in its transaction. Two that are made at once wait for each other here."""
+    if before is None or before.role != Role.ADMINISTRATOR or not before.is_active:
+        return
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT pg_advisory_xact_lock(%s)", [ADMINISTRATORS_LOCK])
+    if not User.objects.filter(role=Role.ADMINISTRATOR, is_active=True).exists():
+        raise NoAdministratorLeft
+
+
+def _record_person(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
+    if before == after:
+        return
+    organisation_id = actor.organisation_id if actor else DEFAULT_ORGANISATION_ID
+    action = "changed" if before and after else "created" if after else "deleted"
+    AuditEntry.objects.create(
+        organisation_id=organisation_id, actor=actor, action=action, subject_type="user", subject_id=str(key), before=before, after=after
+    )

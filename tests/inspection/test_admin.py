@@ -242,15 +242,16 @@ def test_a_zone_that_was_drawn_anew_is_no_longer_its_sources_circle(client: Clie
     client.post(change_address(stored), form | {"name": "Fair"})
     stored.refresh_from_db()
     assert stored.circle == circle
-    client.post(change_address(stored), form | {"name": "Fair", "geometry": area(SQUARE)})
+    form = form_of(client.get(change_address(stored)))
+    client.post(change_address(stored), form | {"geometry": area(SQUARE)})
     stored.refresh_from_db()
     assert stored.circle is None
 
 
-def test_who_changes_an_imported_zone_is_warned(client: Client) -> None:
+def test_who_changes_an_imported_zone_hears_that_it_stays_so(client: Client) -> None:
     stored = zone(zone_set=ZoneSet.objects.create(name="Denmark"))
     answer = client.post(change_address(stored), form_of(client.get(change_address(stored))) | {"name": "Fair"}, follow=True)
-    assert "the next import of that source replaces it" in answer.content.decode()
+    assert "imports of that source leave it alone from now on" in answer.content.decode()
 
 
 def test_a_uavs_place_is_a_point_that_can_be_dragged() -> None:

@@ -1,0 +1,7 @@
+"""The admin's pages for the ground: curators correct assets and zones here, and look at where data comes from."""
+
+from inspection.admin.assets import AssetAdmin
+from inspection.admin.incoming import ImportProposalAdmin
+from inspection.admin.zones import NoFlyZoneAdmin
+
+__all__ = ["AssetAdmin", "ImportProposalAdmin", "NoFlyZoneAdmin"]

@@ -1,0 +1,79 @@
+"""What the admin's pages of assets and zones share: nobody overwrites what somebody else changed meanwhile, and the history is whole."""
+
+from collections.abc import Callable
+from typing import Any
+
+from django import forms
+from django.contrib import messages
+from django.core.exceptions import ValidationError
+from django.db.models import QuerySet
+from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
+
+from inspection.services import StaleRevision
+from inspection.services.curation import many_edits
+from workspace.admin_history import HistoryAdmin
+from workspace.models import AuditEntry
+
+MOST_AT_ONCE = 500  # rows that one bulk action changes in a request
+
+
+class CuratedForm(forms.ModelForm):
+    """Carries the revision that the page showed; a form from an older one is shown back."""
+
+    history_subject = ""
+    expected_revision = forms.IntegerField(required=False, widget=forms.HiddenInput)
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        if "expected_revision" in self.fields:
+            self.fields["expected_revision"].initial = self.instance.revision if self.instance.pk else None
+
+    def clean(self) -> dict[str, Any]:
+        cleaned: dict[str, Any] = super().clean() or self.cleaned_data
+        expected = cleaned.get("expected_revision")
+        if self.instance.pk and expected is not None:
+            model = type(self.instance)
+            current = model._base_manager.filter(pk=self.instance.pk).values_list("revision", flat=True).first()
+            if current != expected:
+                raise ValidationError(stale_sentence(self.history_subject, self.instance.pk), code="stale")
+        return cleaned
+
+
+class CuratedAdmin(HistoryAdmin):
+    """Saves through the services of curation, with the revision that the form was filled in on."""
+
+    def changeform_view(self, request: HttpRequest, object_id: str | None = None, *args: Any, **options: Any) -> HttpResponse:
+        try:
+            return super().changeform_view(request, object_id, *args, **options)
+        except StaleRevision as error:
+            messages.error(request, stale_sentence(error.subject, error.key))
+            return HttpResponseRedirect(request.get_full_path())
+
+    def change_each(self, request: HttpRequest, queryset: QuerySet[Any], change: Callable[[Any], None]) -> int:
+        """Do it to each of the chosen rows, all or none; more than can be done in a request are refused."""
+        number = queryset.count()
+        if number > MOST_AT_ONCE:
+            self.message_user(
+                request, f"{number} rows are chosen; at most {MOST_AT_ONCE} are changed at once. Nothing was changed.", messages.ERROR
+            )
+            return 0
+        with many_edits():
+            for row in queryset.select_for_update(of=["self"]):
+                change(row)
+        return number
+
+
+def stale_sentence(subject: str, key: int | None) -> str:
+    last = AuditEntry.objects.select_related("actor").filter(subject_type=subject, subject_id=str(key)).order_by("-pk").first()
+    if last is None:
+        return "This has changed in the meantime, and nothing was saved. Open it again to see it as it is now."
+    who = (last.actor.get_full_name() or last.actor.username) if last.actor else "An import"
+    return (
+        f"{who} has changed this in the meantime ({last.action}, {last.recorded_at:%H:%M} UTC), and nothing was saved. "
+        "What you entered is still below; open the page again to see it as it is now."
+    )
+
+
+def expected_revision(form: Any) -> int | None:
+    value: int | None = form.cleaned_data.get("expected_revision")
+    return value

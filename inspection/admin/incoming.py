@@ -1,0 +1,158 @@
+"""The admin's pages for what came in and what it became: uploads, proposals, imports, sets of assets, terrain, graphs, gaps."""
+
+from typing import Any
+
+from django.contrib import admin
+from django.db.models import Count, QuerySet
+from django.http import HttpRequest
+from django.urls import reverse
+from django.utils.html import format_html
+from django.utils.safestring import SafeString
+
+from inspection.models import (
+    AssetSet,
+    DataGap,
+    DataImport,
+    GapState,
+    GraphSnapshot,
+    Ground,
+    ImportProposal,
+    TerrainTile,
+    Upload,
+)
+from inspection.services.gaps import dismiss_gap, reopen_gap
+from workspace.admin import ReadOnlyAdmin
+
+
+@admin.register(ImportProposal)
+class ImportProposalAdmin(ReadOnlyAdmin):
+    """Looked at, applied and discarded on the page of the imports, which each row leads to."""
+
+    list_display = ["file", "kind", "origin", "state", "new", "changed", "vanished", "created_by", "created_at", "decided_by", "page"]
+    list_filter = ["state", "kind", "origin"]
+    list_select_related = ["created_by", "decided_by"]
+    search_fields = ["file_name", "created_by__username"]
+    date_hierarchy = "created_at"
+    fields = [
+        "page", "kind", "origin", "state", "file_name", "parameters", "provenance", "faults", "difference", "ground_revision",
+        "data_import", "created_by", "created_at", "decided_by", "decided_at",
+    ]  # fmt: skip
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[ImportProposal]:
+        return super().get_queryset(request).defer("summary")
+
+    @admin.display(description="file", ordering="file_name")
+    def file(self, proposal: ImportProposal) -> str:
+        return proposal.file_name or proposal.get_origin_display()
+
+    @admin.display(description="new")
+    def new(self, proposal: ImportProposal) -> Any:
+        return proposal.difference.get("new")
+
+    @admin.display(description="changed")
+    def changed(self, proposal: ImportProposal) -> Any:
+        return proposal.difference.get("changed")
+
+    @admin.display(description="vanished")
+    def vanished(self, proposal: ImportProposal) -> Any:
+        return proposal.difference.get("vanished")
+
+    @admin.display(description="on the map")
+    def page(self, proposal: ImportProposal) -> SafeString:
+        return format_html('<a href="{}">Open</a>', reverse("import", args=[proposal.pk]))
+
+
+@admin.register(Upload)
+class UploadAdmin(ReadOnlyAdmin):
+    list_display = ["file_name", "size_bytes", "received_bytes", "whole", "created_by", "created_at"]
+    list_select_related = ["created_by"]
+    search_fields = ["file_name", "created_by__username"]
+
+    @admin.display(boolean=True)
+    def whole(self, upload: Upload) -> bool:
+        return upload.is_complete
+
+
+@admin.register(AssetSet)
+class AssetSetAdmin(ReadOnlyAdmin):
+    list_display = ["name", "number_of_assets", "data_import"]
+    list_select_related = ["data_import"]
+    search_fields = ["name"]
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[AssetSet]:
+        return super().get_queryset(request).annotate(number_of_assets=Count("assets"))
+
+    @admin.display(description="assets", ordering="number_of_assets")
+    def number_of_assets(self, asset_set: Any) -> int:
+        return int(asset_set.number_of_assets)
+
+
+@admin.register(DataGap)
+class DataGapAdmin(ReadOnlyAdmin):
+    """Mended on the page of the gaps; here several are left as they are, or opened again, at once."""
+
+    list_display = ["kind", "asset", "cut_off_m", "state", "note", "decided_by", "decided_at", "found_at"]
+    list_filter = ["state", "kind"]
+    list_select_related = ["asset", "decided_by"]
+    search_fields = ["key", "note", "asset__name", "asset__ref"]
+    actions = ["dismiss", "reopen"]
+    fields = [
+        "kind",
+        "state",
+        "asset",
+        "other_asset",
+        "details",
+        "cut_off_m",
+        "ground_revision",
+        "note",
+        "decided_by",
+        "decided_at",
+        "found_at",
+    ]
+
+    @admin.action(description="Leave the chosen as they are", permissions=["view"])
+    def dismiss(self, request: HttpRequest, queryset: QuerySet[DataGap]) -> None:
+        chosen = list(queryset.filter(state=GapState.OPEN))
+        for gap in chosen:
+            dismiss_gap(gap=gap, note="", actor=request.user)
+        self.message_user(request, f"{len(chosen)} left as they are.")
+
+    @admin.action(description="Open the chosen again", permissions=["view"])
+    def reopen(self, request: HttpRequest, queryset: QuerySet[DataGap]) -> None:
+        chosen = list(queryset.exclude(state=GapState.OPEN))
+        for gap in chosen:
+            reopen_gap(gap=gap, actor=request.user)
+        self.message_user(request, f"{len(chosen)} opened again.")
+
+
+@admin.register(DataImport)
+class DataImportAdmin(ReadOnlyAdmin):
+    list_display = ["file_name", "kind", "is_synthetic", "data_timestamp", "imported_at", "imported_by", "attribution", "licence"]
+    list_filter = ["kind", "is_synthetic"]
+    list_select_related = ["imported_by"]
+    search_fields = ["file_name", "sha256"]
+    date_hierarchy = "imported_at"
+
+
+@admin.register(TerrainTile)
+class TerrainTileAdmin(ReadOnlyAdmin):
+    list_display = ["__str__", "columns", "rows", "step_lon_deg", "step_lat_deg", "vertical_datum"]
+    list_select_related = ["data_import"]
+    exclude = ["heights_amsl_m", "extent"]
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[TerrainTile]:
+        return super().get_queryset(request).defer("heights_amsl_m")
+
+
+@admin.register(GraphSnapshot)
+class GraphSnapshotAdmin(ReadOnlyAdmin):
+    list_display = ["version", "ground_revision", "nodes", "edges", "components", "excluded_nodes", "excluded_edges", "build_s", "built_at"]
+    exclude = ["arrays"]
+
+    def get_queryset(self, request: HttpRequest) -> QuerySet[GraphSnapshot]:
+        return super().get_queryset(request).defer("arrays")
+
+
+@admin.register(Ground)
+class GroundAdmin(ReadOnlyAdmin):
+    list_display = ["revision", "changed_at"]
