@@ -106,7 +106,7 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
         path = folder / plain_name(upload.file_name)
         digest = hashlib.sha256()
         with path.open("wb") as file:
-            for content in upload.parts.order_by("first_byte").values_list("content", flat=True).iterator(chunk_size=4):
+            for content in upload.parts.order_by("first_byte").values_list("content", flat=True).iterator(chunk_size=1):
                 file.write(content)
                 digest.update(content)
         if digest.hexdigest() != upload.sha256:
@@ -190,7 +190,7 @@ def _refuse_more_than(most_bytes: int, size_bytes: int) -> None:
 
 def _sha256(upload: Upload) -> str:
     digest = hashlib.sha256()
-    for content in upload.parts.order_by("first_byte").values_list("content", flat=True).iterator(chunk_size=4):
+    for content in upload.parts.order_by("first_byte").values_list("content", flat=True).iterator(chunk_size=1):
         digest.update(content)
     return digest.hexdigest()
 

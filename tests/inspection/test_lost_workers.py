@@ -23,8 +23,9 @@ from inspection.services.proposals.pipeline import ask_to_apply, start_proposal
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.workspace.people import somebody
+from workspace.job_watch import INTERVAL_S
 from workspace.models import Job, JobState, Role, User
-from workspace.services import requeue_lost_jobs
+from workspace.services import cancel_job, requeue_lost_jobs
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
@@ -148,3 +149,18 @@ def test_a_file_whose_reader_and_applier_were_killed_is_read_and_applied_once_an
     assert [zone.name for zone in NoFlyZone.objects.all()] == ["A"]
     assert left() == []
     assert Job.objects.get(pk=applying.job_id).attempts == 2
+
+
+def test_a_reading_that_is_cancelled_in_the_middle_of_a_long_statement_ends_and_leaves_nothing(tmp_path: Path) -> None:
+    queue = f"lost-{uuid4()}"
+    proposal = proposal_of(somebody(Role.CURATOR))
+    with worker(queue, tmp_path):
+        with table_held(ZoneSet):
+            read_proposal.apply_async([str(proposal.job_id)], queue=queue)
+            wait_until(lambda: someone_waits_for(ZoneSet))
+            cancel_job(job=proposal.job)
+            time.sleep(2 * INTERVAL_S + 0.5)  # the watch looks once a second
+        wait_until(lambda: ImportProposal.objects.get().state == "discarded")
+    assert Job.objects.get().state == JobState.CANCELLED
+    assert not ProposedChange.objects.exists()
+    assert list((tmp_path / "uploads").glob("*/*")) == []

@@ -117,3 +117,36 @@ def test_what_nobody_went_on_with_is_forgotten_after_a_day() -> None:
     Upload.objects.filter(pk=old.pk).update(updated_at=timezone.now() - timedelta(hours=25))
     forget_old_uploads()
     assert [upload.pk for upload in Upload.objects.all()] == [new.pk]
+
+
+def test_each_kind_has_its_own_limit(client: Client, settings: Any) -> None:
+    settings.LARGEST_FILE_BYTES = settings.LARGEST_FILE_BYTES | {"zones": 4}
+    upload = store_upload(file_name="zones.json", chunks=[b"01234"], created_by=None)
+    answer = client.post("/api/v1/imports", {"kind": "zones", "upload": str(upload.pk)}, content_type="application/json")
+    assert answer.status_code == 413
+    assert not upload.proposals.exists()
+
+
+def test_a_file_that_somebody_still_decides_on_cannot_be_deleted_and_one_that_is_decided_on_is_forgotten(client: Client) -> None:
+    upload = store_upload(file_name="zones.json", chunks=[b"{}"], created_by=None)
+    body = {"kind": "zones", "upload": str(upload.pk)}
+    proposal = client.post("/api/v1/imports", body, content_type="application/json").json()["id"]
+    assert client.delete(f"/api/v1/uploads/{upload.pk}").status_code == 409
+    forget_old_uploads()
+    assert Upload.objects.exists()
+    client.post(f"/api/v1/imports/{proposal}/discard")
+    forget_old_uploads()
+    assert not Upload.objects.exists()
+    assert not UploadPart.objects.exists()
+
+
+def test_what_a_killed_reader_left_goes_with_the_next_file_and_what_somebody_reads_stays() -> None:
+    upload = store_upload(file_name="zones.json", chunks=[b"{}"], created_by=None)
+    left = upload_folder() / "spanwise-upload-of-a-killed-one"
+    left.mkdir()
+    (left / "zones.json").write_bytes(b"{}")
+    with upload_as_file(upload) as one:
+        assert not left.exists()
+        with upload_as_file(upload) as other:
+            assert one.exists()
+            assert other.exists()

@@ -57,6 +57,7 @@ export function mountProposal(store, acts) {
       difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, difference.unchanged === 1 ? "1 is as it was." : `${difference.unchanged.toLocaleString("en-GB")} are as they were.`),
       ...notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       mapping(proposal),
+      regionChoice(proposal),
       overwriteChoice(proposal),
       facts(proposal),
       proposal.kind === "zones" && state === "applied" && typeof summary.set === "string" ? versions(summary.set, acts) : null,
@@ -73,6 +74,14 @@ export function mountProposal(store, acts) {
     if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
     const again = () => acts.readAgain({ leave_out_faulty: true });
     return h("button", { type: "button", class: "button", id: "leave-out", onclick: again }, "Read again without the faulty rows");
+  }
+
+  /** Another difference: the file is read again for it. */
+  function regionChoice({ kind, state, parameters }) {
+    if (kind !== "osm" || state !== "ready") return null;
+    const box = h("input", { class: "check", type: "checkbox", id: "replace-region", checked: Boolean(parameters.replace_region) });
+    box.addEventListener("change", () => acts.readAgain({ replace_region: box.checked }));
+    return h("label", { class: "overwrite", title: "Also what another file brought in vanishes where this one covers the ground and does not have it" }, box, h("span", {}, "Replace the whole region with this file"));
   }
 
   function overwriteChoice(proposal) {
