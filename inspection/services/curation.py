@@ -78,6 +78,8 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
             take_asset_facts(asset, asset.source_facts)  # with the OSM nodes of its vertices
             asset.source_facts = None
         asset.is_edited = not follows_source
+        if before is not None and asset_facts(before) == asset_facts(asset):
+            return asset  # saved again as it was: no change
         asset.revision = before.revision + 1 if before else max(asset.revision, 1)
         asset.save(force_insert=before is None)
         _record(actor, before and asset_facts(before), asset_facts(asset), asset, action)
@@ -123,6 +125,8 @@ def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = N
         zone.identifier = zone.identifier or f"drawn-{uuid.uuid4()}"
         if before is not None and before.geometry != zone.geometry and before.circle == zone.circle:
             zone.circle = None  # what was drawn anew is no longer the circle that the source stated
+        if before is not None and zone_facts(before) == zone_facts(zone):
+            return zone  # saved again as it was: no change
         zone.is_edited = zone.zone_set_id is not None
         zone.revision = before.revision + 1 if before else max(zone.revision, 1)
         zone.save(force_insert=before is None)

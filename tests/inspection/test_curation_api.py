@@ -276,3 +276,11 @@ def test_a_schedule_is_kept_in_its_one_form_and_said_in_words(cora: APIClient) -
     assert zone.data["properties"]["schedule_words"] == "Mon, Fri 08:00 to sunset UTC, until 31 Dec 2026"
     wrong = new_zone(cora, schedule=[{"schedule": [{"day": ["FUNDAY"]}]}])
     assert (wrong.status_code, wrong.data["error"]["details"]["place"]) == (400, "schedule[0].schedule[0].day")
+
+
+def test_what_is_saved_again_as_it_was_is_no_change(cora: APIClient) -> None:
+    tower = new_tower(cora, ref="18").data["id"]
+    zone = new_zone(cora).data["id"]
+    assert cora.patch(f"/api/v1/assets/{tower}", {"ref": "18"}, format="json", headers={"If-Match": '"1"'}).headers["ETag"] == '"1"'
+    assert cora.patch(f"/api/v1/zones/{zone}", {"name": "Works"}, format="json", headers={"If-Match": '"1"'}).headers["ETag"] == '"1"'
+    assert AuditEntry.objects.count() == 2

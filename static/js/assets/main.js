@@ -2,7 +2,7 @@
 
 import { byId, h } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
-import { coordinateText, lengthText, voltageText, whenText } from "../units.js";
+import { coordinateText, countText, lengthText, voltageText, whenText } from "../units.js";
 import { assetForm } from "./form.js";
 
 const KINDS = [["tower", "Towers"], ["line", "Lines"], ["railway", "Railways"], ["bridge", "Bridges"]];
@@ -41,7 +41,7 @@ function details(feature) {
       term("Network", properties.is_flyable ? "" : "Not part of the flying network"), term("Place", coordinateText(properties.centre)),
       term("Source", sourceWords(feature)), term("Attribution", properties.source?.attribution), term("Changed", whenText(properties.updated_at)),
     ),
-    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, `${tags.length} tags of the source`), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
+    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, `${countText(tags.length, "tag")} of the source`), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
   ].filter(Boolean);
 }
 

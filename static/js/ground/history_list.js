@@ -38,6 +38,12 @@ export function differences(before, after) {
     .map((name) => [factName(name), name === "geometry" ? "moved" : `${factText(name, before[name])} → ${factText(name, after[name])}`]);
 }
 
+/** The day and the time of day, in the reader's own zone. */
+function momentText(iso) {
+  const words = whenText(iso);
+  return words === "now" || words.includes(",") ? words : `${words}, ${clockText(iso)}`;
+}
+
 /** entries as the API gives them; `revert(entry)` where somebody may. */
 export function historyList(entries, { revert = null } = {}) {
   return h(
@@ -47,7 +53,7 @@ export function historyList(entries, { revert = null } = {}) {
       h(
         "li",
         {},
-        h("div", { class: "history-head" }, h("strong", {}, ACTS[entry.action] ?? entry.action), h("span", { class: "caption", title: new Date(entry.recorded_at).toString() }, [entry.actor ?? (entry.file_name ? `from ${entry.file_name}` : "by a command"), `${whenText(entry.recorded_at)}${whenText(entry.recorded_at).includes(",") ? "" : ` ${clockText(entry.recorded_at)}`}`].join(" · "))),
+        h("div", { class: "history-head" }, h("strong", {}, ACTS[entry.action] ?? entry.action), h("span", { class: "caption", title: new Date(entry.recorded_at).toString() }, [entry.actor ?? (entry.file_name ? `from ${entry.file_name}` : "by a command"), momentText(entry.recorded_at)].join(" · "))),
         h("dl", {}, differences(entry.before, entry.after).map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words)))),
         revert && entry.id && entry.before && h("button", { type: "button", class: "text-button", onclick: () => revert(entry) }, icon("undo-2", "small"), "Bring back what was before"),
       ),
