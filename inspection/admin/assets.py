@@ -15,7 +15,7 @@ from inspection import services
 from inspection.admin.curated import CuratedAdmin, CuratedForm, expected_revision
 from inspection.admin_json import JSONObjectField, StrictJSONField
 from inspection.admin_map import GeoJSONField
-from inspection.models import Asset, AssetKind, Bridge, PowerLine, PowerTower, Railway
+from inspection.models import Asset, AssetKind, Bridge, DataImport, ImportKind, PowerLine, PowerTower, Railway
 from inspection.osm.tags import MAX_HEIGHT_M
 from inspection.selectors import asset_label
 from inspection.services.curation import many_edits
@@ -43,6 +43,22 @@ class AssetForm(CuratedForm):
         return cleaned
 
 
+class ImportFilter(admin.SimpleListFilter):
+    """The newest imports that can have brought assets; looking for those that did would read the whole table."""
+
+    title = "import"
+    parameter_name = "data_import"
+    newest = 20
+
+    def lookups(self, request: HttpRequest, model_admin: Any) -> list[tuple[int, str]]:
+        imports = DataImport.objects.filter(kind__in=[ImportKind.OSM, ImportKind.ASSETS])[: self.newest]
+        return [(row.pk, f"{row.file_name}, {row.imported_at:%d %b %Y}") for row in imports]
+
+    def queryset(self, request: HttpRequest, queryset: QuerySet[Asset]) -> QuerySet[Asset]:
+        chosen = self.value()
+        return queryset.filter(data_import=int(chosen)) if chosen and chosen.isascii() and chosen.isdigit() else queryset
+
+
 @admin.register(Asset)
 class AssetAdmin(CuratedAdmin):
     """A saved asset counts as edited: imports leave it alone from then on."""
@@ -52,7 +68,7 @@ class AssetAdmin(CuratedAdmin):
     formfield_overrides = FORM_FIELDS
     kind: AssetKind | None = None  # of the pages that show one kind
     list_display = ["label", "kind", "subtype", "voltages", "operator", "osm", "is_flyable", "is_edited", "vanished_at"]
-    list_filter = ["kind", "is_flyable", "is_edited", ("vanished_at", admin.EmptyFieldListFilter), "asset_set", "data_import"]
+    list_filter = ["kind", "is_flyable", "is_edited", ("vanished_at", admin.EmptyFieldListFilter), "asset_set", ImportFilter]
     search_fields = ["name", "ref", "operator", "=osm_id", "=source_key"]
     show_full_result_count = False
     actions = ["mark_flyable", "mark_not_flyable"]
