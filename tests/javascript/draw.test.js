@@ -61,6 +61,12 @@ test("a hole that was begun and left is no part of the shape", () => {
   assert.equal(shapes.withoutStubs(shape).parts[0].length, 1);
 });
 
+test("the ring that is not whole is the one to go on with", () => {
+  assert.equal(shapes.stubOf(area(square(0, 0, 4))), null);
+  assert.deepEqual(shapes.stubOf(area(square(0, 0, 4), [[1, 1], [2, 2]])), [0, 1]);
+  assert.deepEqual(shapes.stubOf(shapes.empty("line")), [0, 0]);
+});
+
 test("lengths and areas are those of the sphere", () => {
   assert.ok(Math.abs(distance_m([9, 47], [9, 48]) - 111_195) < 1);
   assert.ok(Math.abs(ringArea_m2(square(0, 0, 1)) / 1.2364e10 - 1) < 1e-3);

@@ -118,6 +118,14 @@ export function createEditor(map, { onChange }) {
     return true;
   }
 
+  /** After a step back or forth: a ring that is not whole is the one that is being drawn. */
+  function goOnWith() {
+    if (chosen && !shapes.positionAt(shape(), chosen)) chosen = null;
+    drawing = shapes.stubOf(shape());
+    pointer = null;
+    tell();
+  }
+
   function handleAt(point) {
     const box = [[point.x - REACH_PX, point.y - REACH_PX], [point.x + REACH_PX, point.y + REACH_PX]];
     const met = map.queryRenderedFeatures(box, { layers: HANDLE_LAYERS.filter((id) => map.getLayer(id)) });
@@ -257,14 +265,12 @@ export function createEditor(map, { onChange }) {
     removeChosen,
     undo() {
       if (!steps?.undo()) return false;
-      if (chosen && !shapes.positionAt(shape(), chosen)) chosen = null;
-      if (shapes.isEmpty(shape())) drawing = [0, 0];
-      tell();
+      goOnWith();
       return true;
     },
     redo() {
       if (!steps?.redo()) return false;
-      tell();
+      goOnWith();
       return true;
     },
     /** One step back: the last vertex while drawing, then what is chosen, then nothing. */

@@ -18,6 +18,18 @@ export function towards([longitude, latitude], bearing_deg, far_m) {
   return [longitude + east / RADIANS, north / RADIANS];
 }
 
+/** The longitude as it is named nearest to another one: -179 beside 180 is 181. */
+export const beside = (other, longitude) => (Math.abs(longitude - other) <= 180 ? longitude : longitude + 360 * Math.round((other - longitude) / 360));
+
+/** A path over the 180th meridian without its jump: longitudes go on beyond ±180. It starts beside `start`. */
+export function continuous(path, start = path[0]?.[0]) {
+  let last = start;
+  return path.map(([longitude, latitude]) => {
+    last = beside(last, longitude);
+    return [last, latitude];
+  });
+}
+
 export const pathLength_m = (path) => path.slice(1).reduce((sum, position, index) => sum + distance_m(path[index], position), 0);
 
 /** Of a ring that does not repeat its first position. */
@@ -25,7 +37,7 @@ export function ringArea_m2(ring) {
   let sum = 0;
   ring.forEach(([longitude, latitude], index) => {
     const [nextLon, nextLat] = ring[(index + 1) % ring.length];
-    sum += (nextLon - longitude) * RADIANS * (2 + Math.sin(latitude * RADIANS) + Math.sin(nextLat * RADIANS));
+    sum += (beside(longitude, nextLon) - longitude) * RADIANS * (2 + Math.sin(latitude * RADIANS) + Math.sin(nextLat * RADIANS));
   });
   return Math.abs((sum * EARTH_RADIUS_M ** 2) / 2);
 }

@@ -6,7 +6,7 @@
  * its holes, none of them repeating the first position; a circle has its centre and `radius_m`.
  */
 
-import { distance_m, towards } from "./measure.js";
+import { beside, distance_m, towards } from "./measure.js";
 
 const LEAST = { point: 1, line: 2, area: 3, circle: 1 };
 
@@ -57,7 +57,7 @@ export function middlesOf(shape) {
       const closes = shape.kind === "area" && ring.length > 2;
       return ring.slice(0, closes ? undefined : -1).map((position, i) => {
         const next = ring[(i + 1) % ring.length];
-        return { after: [p, r, i], position: [(position[0] + next[0]) / 2, (position[1] + next[1]) / 2] };
+        return { after: [p, r, i], position: [round((position[0] + beside(position[0], next[0])) / 2), (position[1] + next[1]) / 2] };
       });
     }),
   );
@@ -77,18 +77,28 @@ export const insertAfter = (shape, at, position) => withRing(shape, at, (ring) =
 export const append = (shape, at, position) => withRing(shape, at, (ring) => [...ring, position]);
 export const dropLast = (shape, at) => withRing(shape, at, (ring) => ring.slice(0, -1));
 
-/** Without the vertex; a hole that is left with two goes with it, an outer ring or a line keeps what it needs: then the same shape. */
+/** Without the vertex; a ring that is left with too few goes with it, except the last of all: then it is the same shape. */
 export function removeVertex(shape, at) {
-  const [p, r] = at;
-  const ring = ringAt(shape, at);
-  if (ring.length > LEAST[shape.kind]) return withRing(shape, at, (old) => old.filter((_, index) => index !== at[2]));
-  if (shape.kind === "area" && r > 0) return { ...shape, parts: shape.parts.map((part, index) => (index === p ? part.filter((_, number) => number !== r) : part)) };
-  if (shape.kind === "area" && shape.parts.length > 1) return { ...shape, parts: shape.parts.filter((_, index) => index !== p) };
-  return shape;
+  if (ringAt(shape, at).length > LEAST[shape.kind]) return withRing(shape, at, (old) => old.filter((_, index) => index !== at[2]));
+  return removeRing(shape, at);
+}
+
+/** Without a hole, or without a part where there are others. */
+export function removeRing(shape, [p, r]) {
+  if (shape.kind !== "area") return shape;
+  if (r > 0) return { ...shape, parts: shape.parts.map((part, index) => (index === p ? part.filter((_, number) => number !== r) : part)) };
+  return shape.parts.length > 1 ? { ...shape, parts: shape.parts.filter((_, index) => index !== p) } : shape;
 }
 
 export const addHole = (shape, p) => ({ ...shape, parts: shape.parts.map((part, index) => (index === p ? [...part, []] : part)) });
 export const addPart = (shape) => ({ ...shape, parts: [...shape.parts, [[]]] });
+/** [part, ring] of a ring that has too few positions yet, or null. */
+export function stubOf(shape) {
+  if (shape.kind === "circle") return shape.parts[0][0].length && shape.radius_m > 0 ? null : [0, 0];
+  for (const [p, part] of shape.parts.entries()) for (const [r, ring] of part.entries()) if (ring.length < LEAST[shape.kind]) return [p, r];
+  return null;
+}
+
 /** Without rings that were begun and not finished. */
 export function withoutStubs(shape) {
   if (shape.kind !== "area") return shape;
@@ -96,9 +106,34 @@ export function withoutStubs(shape) {
   return { ...shape, parts: parts.length ? parts : [[[]]] };
 }
 
+/** A hole that was drawn in another part than it began from belongs to that part. */
+export function seated(shape) {
+  if (shape.kind !== "area" || shape.parts.length < 2) return shape;
+  const homes = shape.parts.map(([outer]) => [outer]);
+  shape.parts.forEach(([outer, ...holes], index) =>
+    holes.forEach((hole) => {
+      const home = isInside(hole[0], outer) ? index : shape.parts.findIndex(([other]) => isInside(hole[0], other));
+      homes[home < 0 ? index : home].push(hole);
+    }),
+  );
+  return { ...shape, parts: homes };
+}
+
+export function isInside([x, y], ring) {
+  let inside = false;
+  ring.forEach(([longitude, ay], index) => {
+    const [nextLon, by] = ring[(index + 1) % ring.length];
+    const ax = beside(x, longitude);
+    const bx = beside(ax, nextLon);
+    if (ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax) inside = !inside;
+  });
+  return inside;
+}
+
+/** The whole shape, by degrees. */
 export const moveAll = (shape, [east, north]) => ({
   ...shape,
-  parts: shape.parts.map((part) => part.map((ring) => ring.map(([longitude, latitude]) => [round(longitude + east), round(latitude + north)]))),
+  parts: shape.parts.map((part) => part.map((ring) => ring.map(([longitude, latitude]) => rounded([longitude + east, latitude + north])))),
 });
 
 export const withRadius = (shape, radius_m) => ({ ...shape, radius_m });
@@ -106,5 +141,7 @@ export const withRadius = (shape, radius_m) => ({ ...shape, radius_m });
 export const radiusHandle = (shape) => (circleOf(shape) ? towards(shape.parts[0][0][0], 90, shape.radius_m) : null);
 export const radiusTo = (shape, position) => withRadius(shape, Math.max(1, Math.round(distance_m(shape.parts[0][0][0], position))));
 
-/** Seven decimals, about a centimetre: what is stored. */
-export const round = (degrees) => Number(degrees.toFixed(7));
+const wrap = (longitude) => (Math.abs(longitude) <= 180 ? longitude : longitude - 360 * Math.round(longitude / 360));
+/** Seven decimals, about a centimetre: what is stored; longitudes of a map that goes on round the earth come back to ±180. */
+export const round = (degrees) => Number(wrap(degrees).toFixed(7));
+export const rounded = ([longitude, latitude]) => [round(longitude), round(Math.max(-90, Math.min(90, latitude)))];

@@ -1,0 +1,56 @@
+/**
+ * Where a drawing stands, as a value: { shape, growing }. `growing` is the ring [part, ring] that the next vertex goes to, null once the
+ * shape is whole. Undo goes through these values, so that a step back is also a step back in what a click means.
+ */
+
+import { addHole, addPart, append, dropLast, leastOf, radiusTo, ringAt, seated, withoutStubs } from "./shape.js";
+
+/** A shape that lacks vertices is drawn on, also one that was left in the middle. */
+export function begin(shape) {
+  if (shape.kind === "circle") return { shape, growing: shape.parts[0][0].length && shape.radius_m > 0 ? null : [0, 0] };
+  for (const [p, part] of shape.parts.entries()) {
+    for (const [r, ring] of part.entries()) if (ring.length < leastOf(shape.kind)) return { shape, growing: [p, r] };
+  }
+  return { shape, growing: null };
+}
+
+export const growingRing = ({ shape, growing }) => (growing ? ringAt(shape, growing) : []);
+
+/** A click. `near`: "first" or "last" where it met that vertex of the growing ring. */
+export function placed(state, position, near = null) {
+  const { shape, growing } = state;
+  if (!growing) return state;
+  const ring = growingRing(state);
+  if (shape.kind === "point") return { shape: append(shape, growing, position), growing: null };
+  if (shape.kind === "circle") {
+    if (!ring.length) return { shape: append(shape, growing, position), growing };
+    return near ? state : { shape: radiusTo(shape, position), growing: null };
+  }
+  if (near === "last" || (near === "first" && shape.kind === "area")) return ring.length >= leastOf(shape.kind) ? ended(state) : state;
+  return { shape: append(shape, growing, position), growing };
+}
+
+/** The growing ring is whole; a hole or part of too few vertices is dropped, and a shape of too few goes on. */
+export function ended(state) {
+  const { shape, growing } = state;
+  if (!growing || shape.kind === "circle" || shape.kind === "point") return state;
+  if (growingRing(state).length >= leastOf(shape.kind)) return { shape: seated(shape), growing: null };
+  return growing.join() === "0,0" ? state : { shape: withoutStubs(shape), growing: null };
+}
+
+/** Without the vertex that was placed last; a hole or part that has none is given up. */
+export function stepBack(state) {
+  const { shape, growing } = state;
+  if (!growing) return state;
+  if (growingRing(state).length) return { shape: dropLast(shape, growing), growing };
+  return growing.join() === "0,0" ? state : { shape: withoutStubs(shape), growing: null };
+}
+
+export const withHole = ({ shape }, part = 0) => ({ shape: addHole(shape, part), growing: [part, shape.parts[part].length] });
+export const withPart = ({ shape }) => ({ shape: addPart(shape), growing: [shape.parts.length, 0] });
+
+/** What it would be if the pointer were clicked: for measures and for a circle that is being drawn out. */
+export function preview(state, position) {
+  const { shape } = state;
+  return position && state.growing && shape.kind !== "point" && growingRing(state).length ? placed(state, position).shape : shape;
+}
