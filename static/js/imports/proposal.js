@@ -6,6 +6,7 @@ import { coordinateText, whenText } from "../units.js";
 import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
+import { otherSystem } from "./other_system.js";
 import { differenceSentence, isOpen, KINDS, notesOf, ORIGINS, sizeText, summaryLines, touched } from "./words.js";
 
 const MOST_LISTED = 2_000; // of each action; the numbers are of all
@@ -48,7 +49,7 @@ export function mountProposal(store, acts) {
 
   function body(proposal) {
     const { state, difference, summary, job } = proposal;
-    if (state === "refused") return [refusal(proposal, acts), leaveOut(proposal)];
+    if (state === "refused") return [refusal(proposal, acts), otherSystem(proposal, acts.readAgain) ?? leaveOut(proposal)];
     const isNew = job?.message && state === "ready" && job.state === "done" && job.message !== "Read";
     return [
       line?.element,
