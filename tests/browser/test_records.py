@@ -20,8 +20,11 @@ def opens(visitor: Visitor, path: str, name: str = "cora", **how: object) -> Pag
 
 
 def finds(page: Page, text: str, row: str) -> None:
-    page.get_by_label("Find", exact=True).fill(text)
-    page.locator(".record-row", has_text=row).first.click()
+    with page.expect_response(lambda answer: "text=" in answer.url):
+        page.get_by_label("Find", exact=True).fill(text)
+    expect(page.locator(".record-row").first).to_contain_text(row)
+    page.locator(".record-row").first.click()
+    expect(page.locator("#record-show .record-title")).to_be_visible()
 
 
 def clicks_on_the_map(page: Page, *places: tuple[float, float]) -> None:

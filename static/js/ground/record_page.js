@@ -232,8 +232,9 @@ export function mountRecordPage(about) {
     clearTimeout(checkTimer);
     if (faults.length || isDrawing || !shape) return;
     checkTimer = setTimeout(async () => {
+      if (!edit || editor.state.shape !== shape) return;
       try {
-        const { data } = await post("/geometry-checks", { kind: about.checkKind(edit?.choice), geometry: geometryOf(shape) ?? undefined, circle: circleOf(shape) });
+        const { data } = await post("/geometry-checks", { kind: about.checkKind(edit.choice), geometry: geometryOf(shape) ?? undefined, circle: circleOf(shape) });
         if (edit && editor.state.shape === shape && !data.valid) panel.serverFault(data.fault);
       } catch {
         /* it is checked again when it is saved */
