@@ -28,7 +28,7 @@ from workspace.admin import ReadOnlyAdmin
 class ImportProposalAdmin(ReadOnlyAdmin):
     """Looked at, applied and discarded on the page of the imports, which each row leads to."""
 
-    list_display = ["file", "kind", "origin", "state", "new", "changed", "vanished", "created_by", "created_at", "decided_by", "page"]
+    list_display = ["file", "page", "kind", "origin", "state", "new", "changed", "vanished", "created_by", "created_at", "decided_by"]
     list_filter = ["state", "kind", "origin"]
     list_select_related = ["created_by", "decided_by"]
     search_fields = ["file_name", "created_by__username"]

@@ -25,7 +25,8 @@ from inspection.services.supports import number_supports
 from inspection.zones.geometry_gate import GeometryFault
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
 
-MAPPING_PARAMETERS = ("kind", "columns", "units", "geometry", "crs", "layer", "leave_out_faulty")
+EXPLANATIONS = ("kind", "columns", "units", "geometry")  # what somebody says of the columns
+MAPPING_PARAMETERS = (*EXPLANATIONS, "crs", "layer", "leave_out_faulty")  # what the set keeps for the next file
 UNCHANGED = "unchanged"
 _BATCH = 1_000
 _COLUMNS = (
@@ -158,9 +159,9 @@ def set_name_of(path: Path, stated: Any) -> str:
 
 def with_what_is_known(parameters: dict[str, Any], asset_set: AssetSet | None) -> dict[str, Any]:
     """The source's next file needs no explanation when nobody gives one: its columns mean what they meant."""
-    if asset_set is None or any(parameters.get(key) for key in MAPPING_PARAMETERS):
+    if asset_set is None or any(parameters.get(key) for key in EXPLANATIONS):
         return parameters
-    return asset_set.mapping | parameters
+    return asset_set.mapping | {key: value for key, value in parameters.items() if key not in EXPLANATIONS}
 
 
 def opened(path: Path, parameters: dict[str, Any]) -> Any:

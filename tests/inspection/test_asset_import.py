@@ -236,6 +236,15 @@ def test_the_next_file_of_a_set_needs_no_explanation(client: Client) -> None:
     assert (before_and_after["before"]["height_m"], before_and_after["after"]["height_m"]) == (45.5, 46)
 
 
+def test_only_another_system_is_no_explanation_of_the_columns(client: Client) -> None:
+    first = propose(client, CSV, "masten.csv", set_name="Masts")
+    seen = change(client, first, crs="EPSG:4258")
+    assert (seen["summary"]["mapping"], seen["summary"]["crs"]) == ({}, "ETRS89 (EPSG:4258)")
+    apply(client, change(client, seen, **first["summary"]["suggested_mapping"]))
+    again = propose(client, CSV, "masten-2027.csv", set_name="Masts", crs="EPSG:4258", columns={}, kind=None)
+    assert (again["summary"]["needs_mapping"], again["difference"]["unchanged"]) == (False, 2)
+
+
 def test_a_table_without_known_columns_says_what_is_missing(client: Client) -> None:
     seen = propose(client, b"a;b;c\n1;47;8\n", "x.csv")
     assert seen["summary"]["needs_mapping"] is True

@@ -14,7 +14,7 @@ from inspection.asset_files.suggestion import suggested_mapping
 from inspection.asset_files.survey import Survey, survey_of
 from inspection.models import Asset, AssetSet, ChangeAction, DataImport
 from inspection.services.asset_import import (
-    MAPPING_PARAMETERS,
+    EXPLANATIONS,
     UNCHANGED,
     Difference,
     UnfinishedMapping,
@@ -103,7 +103,7 @@ def _summary(file: AssetFile, survey: Survey, name: str, stated: dict[str, Any],
         "layers": list(file.source.layers), "rows": survey.rows, "without_geometry": survey.without_geometry,
         "geometry_types": dict(survey.geometries),
         "extent": list(survey.extent) if survey.extent else None, "notes": file.notes, "columns": columns,
-        "suggested_mapping": suggested, "mapping": {key: stated[key] for key in MAPPING_PARAMETERS if stated.get(key)},
+        "suggested_mapping": suggested, "mapping": {key: stated[key] for key in EXPLANATIONS if stated.get(key)},
         "needs_mapping": False, "preview": {"type": "FeatureCollection", "features": survey.preview},
     }  # fmt: skip
 
