@@ -13,7 +13,7 @@ from django.contrib.gis.geos import GEOSGeometry
 from django.db import connection, transaction
 from django.db.backends.utils import CursorWrapper
 
-from inspection.asset_files.asset_file import AssetFile, RowFaults, opened_asset_file
+from inspection.asset_files.asset_file import AssetFile, Row, RowFaults, opened_asset_file
 from inspection.asset_files.mapping import AssetRecord, Mapping, Tally, checked_mapping, records_of
 from inspection.asset_files.rows import AssetFileError
 from inspection.models import Asset, AssetSet, ChangeAction, DataImport, ImportKind
@@ -28,6 +28,7 @@ from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
 EXPLANATIONS = ("kind", "columns", "units", "geometry")  # what somebody says of the columns
 MAPPING_PARAMETERS = (*EXPLANATIONS, "crs", "layer", "leave_out_faulty")  # what the set keeps for the next file
 UNCHANGED = "unchanged"
+ROWS_BETWEEN_WORDS = 2_000
 _BATCH = 1_000
 _COLUMNS = (
     "kind", "subtype", "source_key", "geometry", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits",
@@ -130,7 +131,9 @@ def import_assets(
         asset_set, _ = AssetSet.objects.select_related("data_import").get_or_create(name=name)
         tally = Tally()
         faults = row_faults(parameters)
-        with staged(file, parameters, asset_set, tally=tally, faults=faults, replace_edited=replace_edited) as found:
+        with staged(
+            file, parameters, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, progress=progress
+        ) as found:  # fmt: skip
             tell("writing the assets", 0.6)
             counts: dict[str, Any] = found.numbers | counts_of(file, tally, faults)
             known = asset_set.data_import
@@ -186,6 +189,7 @@ def staged(
     faults: RowFaults,
     replace_edited: bool,
     columns: Iterable[str] | None = None,
+    progress: Progress | None = None,
 ) -> Iterator[Difference]:
     """The file's records in a temporary table, and the difference to the set. Call it in a transaction.
 
@@ -198,7 +202,7 @@ def staged(
     with connection.cursor() as cursor:
         cursor.execute(_STAGING)
         with cursor.copy(_COPY) as copy:
-            for record in records_of(rows, mapping, faults, tally):
+            for record in records_of(told(rows, progress, "comparing", 0.4), mapping, faults, tally):
                 copy.write_row(_row(record))
         faults.refuse_if_any()
         if tally.unknown_kinds:
@@ -210,6 +214,14 @@ def staged(
         yield Difference({fate: found.get(fate, 0) for fate in (*ChangeAction.values, UNCHANGED)})
         cursor.execute("DROP TABLE asset_fate")  # before the end of the transaction: several imports may share one
         cursor.execute("DROP TABLE asset_staging")
+
+
+def told(rows: Iterable[Row], progress: Progress | None, stage: str, share: float) -> Iterator[Row]:
+    """The rows, with a word to whoever watches every few thousand; that is where a cancelled job ends."""
+    for number, row in enumerate(rows, start=1):
+        if progress is not None and number % ROWS_BETWEEN_WORDS == 0:
+            progress(f"{stage}, row {number:,}", share)
+        yield row
 
 
 def unfinished(mapping: Mapping) -> str:

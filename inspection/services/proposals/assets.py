@@ -24,6 +24,7 @@ from inspection.services.asset_import import (
     row_faults,
     set_name_of,
     staged,
+    told,
     with_what_is_known,
 )
 from inspection.services.facts import ASSET_FACTS, asset_facts, differing
@@ -44,13 +45,13 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         progress("reading the rows", 0.1)
         with opened(file_path, stated) as file:
             faults = row_faults(stated)
-            survey = survey_of(file.rows(faults), file.source.columns)
+            survey = survey_of(told(file.rows(faults), progress, "reading the rows", 0.1), file.source.columns)
             faults.refuse_if_any()
             summary = _summary(file, survey, name, stated, file_path)
             if words := _nothing_to_read(file, survey):
                 return Reading(summary | {"needs_mapping": True, "words": words}, dict(NOTHING))
             progress("comparing", 0.5)
-            return _compared(file, stated, asset_set, summary, replace_edited=parameters.get("replace_edited") is True)
+            return _compared(file, stated, asset_set, summary, replace_edited=parameters.get("replace_edited") is True, progress=progress)
 
 
 def apply(
@@ -65,14 +66,22 @@ def apply(
 
 
 def _compared(
-    file: AssetFile, stated: dict[str, Any], asset_set: AssetSet | None, summary: dict[str, Any], *, replace_edited: bool
+    file: AssetFile,
+    stated: dict[str, Any],
+    asset_set: AssetSet | None,
+    summary: dict[str, Any],
+    *,
+    replace_edited: bool,
+    progress: Progress,
 ) -> Reading:
     tally, faults = Tally(), row_faults(stated)
     columns = [column["name"] for column in summary["columns"]]
     try:
         with (
             transaction.atomic(),
-            staged(file, stated, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, columns=columns) as found,
+            staged(
+                file, stated, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, columns=columns, progress=progress
+            ) as found,
         ):
             changes = tuple(_changes(found))
     except UnfinishedMapping as error:
