@@ -3,7 +3,7 @@
 import { h, icon } from "../dom.js";
 import { areaText, lengthText } from "../units.js";
 import { measure } from "./measure.js";
-import { circleOf, verticesOf } from "./shape.js";
+import { circleOf, positionAt, removeRing as removeRingOf, removeVertex, verticesOf } from "./shape.js";
 
 const MOST_ROWS = 200;
 const ASK = {
@@ -16,52 +16,72 @@ const ASK = {
 const button = (words, name, act, rest = {}) => h("button", { type: "button", class: "button", onclick: act, ...rest }, icon(name, "small"), words);
 const tool = (words, name, act) => h("button", { type: "button", class: "icon-button", "aria-label": words, title: words, onclick: act }, icon(name));
 
-/** Returns { element, update(state), serverFault(fault or null) }; show(position) moves the map. */
+/** Returns { element, update(state), preview(shape), serverFault(fault or null) }; show(position) moves the map. */
 export function createDrawPanel(editor, { show }) {
   const undo = tool("Undo (Ctrl+Z)", "undo-2", () => editor.undo());
   const redo = tool("Redo (Ctrl+Shift+Z)", "redo-2", () => editor.redo());
   const finish = button("Finish", "check", () => editor.finish());
   const hole = button("Hole", "circle-dashed", () => editor.startHole(), { title: "Draw a hole in the area" });
   const part = button("Part", "plus", () => editor.startPart(), { title: "Draw another part of the area" });
+  const move = button("Move", "hand", () => editor.moveWhole(!now.isMoving), { title: "Move the whole shape by dragging, or with the arrow keys" });
   const remove = button("Remove point", "trash-2", () => editor.removeChosen());
+  const removeRing = button("Remove hole", "trash-2", () => editor.removeRing());
   const ask = h("p", { class: "caption" });
   const figures = h("p", { class: "draw-figures", role: "status" });
+  const coming = h("p", { class: "draw-figures", "aria-hidden": "true", hidden: true }); // follows the pointer: not read out
   const faults = h("div", { class: "draw-faults" });
   const rows = h("tbody", {});
+  const rest = h("p", { class: "caption", hidden: true });
   const radius = h("input", { class: "input", id: "draw-radius", type: "number", min: 1, max: 500_000, step: 1, onchange: (event) => editor.setRadius(Number(event.target.value)) });
   const radiusField = h("div", { class: "field" }, h("label", { for: "draw-radius" }, "Radius"), h("div", { class: "with-unit" }, radius, h("span", { class: "unit" }, "m")));
   const table = h(
     "details",
     { class: "draw-vertices" },
     h("summary", {}, "Points"),
+    h("p", { class: "caption" }, "Choose a point by its number; the arrow keys then move it, Del removes it."),
     h("table", {}, h("caption", { class: "unseen" }, "Points with longitude and latitude in degrees"), h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Point"), h("th", { scope: "col" }, "Longitude"), h("th", { scope: "col" }, "Latitude"))), rows),
+    rest,
+    h("button", { type: "button", class: "text-button add-point", onclick: () => editor.addInMiddle() }, "Add a point in the middle of the map"),
   );
-  table.addEventListener("toggle", () => table.open && fill());
+  const addPoint = table.querySelector(".add-point");
+  table.addEventListener("toggle", () => table.open && now?.shape && fill());
   let now = null;
   let told = null; // what the server says
 
+  function rowOf(index) {
+    const at = () => verticesOf(now.shape)[index].at;
+    const degrees = (axis) =>
+      h("td", {}, h("input", {
+        class: "input", type: "number", step: "any", "aria-label": `${axis ? "Latitude" : "Longitude"} of point ${index + 1}`,
+        onchange: (event) => {
+          const position = [...positionAt(now.shape, at())];
+          const value = Number(event.target.value);
+          if (event.target.value === "" || !(Math.abs(value) <= (axis ? 90 : 180))) event.target.value = String(position[axis]);
+          else editor.put(at(), axis ? [position[0], value] : [value, position[1]]);
+        },
+      }));
+    const choose = () => {
+      editor.choose(at());
+      show(positionAt(now.shape, at()));
+    };
+    return h("tr", {}, h("th", { scope: "row" }, h("button", { type: "button", class: "text-button", onclick: choose, "aria-label": `Point ${index + 1}` }, String(index + 1))), degrees(0), degrees(1));
+  }
+
+  /** Rows stay while there are as many: focus stays where it is. */
   function fill() {
-    const vertices = now?.shape ? verticesOf(now.shape) : [];
-    rows.replaceChildren(
-      ...vertices.slice(0, MOST_ROWS).map(({ at, position }, index) =>
-        h(
-          "tr",
-          { class: now.chosen?.join() === at.join() ? "chosen" : "" },
-          h("th", { scope: "row" }, h("button", { type: "button", class: "text-button", onclick: () => (editor.choose(at), show(position)) }, String(index + 1))),
-          ...position.map((degrees, axis) =>
-            h("td", {}, h("input", {
-              class: "input", type: "number", step: "0.00001", value: String(degrees), "aria-label": `${axis ? "Latitude" : "Longitude"} of point ${index + 1}`,
-              onchange: (event) => {
-                const value = Number(event.target.value);
-                if (Number.isFinite(value) && Math.abs(value) <= (axis ? 90 : 180)) editor.put(at, axis ? [position[0], value] : [value, position[1]]);
-                else event.target.value = String(degrees);
-              },
-            })),
-          ),
-        ),
-      ),
-      ...(vertices.length > MOST_ROWS ? [h("tr", {}, h("td", { colspan: 3 }, `${vertices.length - MOST_ROWS} more are on the map.`))] : []),
-    );
+    const vertices = verticesOf(now.shape);
+    const listed = vertices.slice(0, MOST_ROWS);
+    while (rows.rows.length > listed.length) rows.lastElementChild.remove();
+    while (rows.rows.length < listed.length) rows.append(rowOf(rows.rows.length));
+    listed.forEach(({ at, position }, index) => {
+      const row = rows.rows[index];
+      const isChosen = now.chosen?.join() === at.join();
+      row.classList.toggle("chosen", isChosen);
+      row.querySelector("button").setAttribute("aria-pressed", String(isChosen));
+      row.querySelectorAll("input").forEach((input, axis) => (input.value = String(position[axis])));
+    });
+    rest.hidden = vertices.length <= MOST_ROWS;
+    rest.textContent = `${vertices.length - MOST_ROWS} more are on the map.`;
   }
 
   function draw() {
@@ -72,15 +92,17 @@ export function createDrawPanel(editor, { show }) {
     redo.disabled = !now.canRedo;
     finish.hidden = !isDrawing || shape.kind === "point" || shape.kind === "circle";
     hole.hidden = part.hidden = !isArea || isDrawing;
-    remove.hidden = !chosen || isDrawing;
+    move.hidden = isDrawing || shape.kind === "point" || shape.kind === "circle";
+    move.setAttribute("aria-pressed", String(now.isMoving));
+    remove.hidden = !chosen || isDrawing || removeVertex(shape, chosen) === shape;
+    removeRing.hidden = !chosen || isDrawing || removeRingOf(shape, chosen) === shape;
+    removeRing.lastChild.textContent = chosen?.[1] > 0 ? "Remove hole" : "Remove part";
+    addPoint.hidden = !isDrawing;
     ask.hidden = !isDrawing;
     ask.textContent = ASK[shape.kind];
-    const { length_m, area_m2 } = measure(shape);
-    const number = verticesOf(shape).length;
-    figures.textContent = [
-      shape.kind === "circle" && circleOf(shape) && `${lengthText(shape.radius_m)} radius`, length_m && lengthText(length_m), area_m2 && areaText(area_m2),
-      ["line", "area"].includes(shape.kind) && `${number} ${number === 1 ? "point" : "points"}`,
-    ].filter(Boolean).join(", ");
+    figures.textContent = figuresOf(shape);
+    coming.hidden = true;
+    figures.hidden = false;
     radiusField.hidden = !circleOf(shape);
     if (document.activeElement !== radius) radius.value = String(shape.radius_m ?? "");
     const wrong = isDrawing ? now.faults.filter((fault) => fault.sides.length) : now.faults.length ? now.faults : told ? [told] : [];
@@ -89,15 +111,30 @@ export function createDrawPanel(editor, { show }) {
         h("p", { class: "field-error" }, icon("circle-alert", "small"), h("span", {}, fault.message, " ", fault.position && h("button", { type: "button", class: "text-button", onclick: () => show(fault.position) }, "See the place"))),
       ),
     );
-    if (table.open && !table.contains(document.activeElement)) fill();
+    if (table.open) fill();
   }
 
+  const figuresOf = (shape) => {
+    const { length_m, area_m2 } = measure(shape);
+    const number = verticesOf(shape).length;
+    return [
+      circleOf(shape) && `${lengthText(shape.radius_m)} radius`, length_m && lengthText(length_m), area_m2 && areaText(area_m2),
+      ["line", "area"].includes(shape.kind) && `${number} ${number === 1 ? "point" : "points"}`,
+    ].filter(Boolean).join(", ");
+  };
+
   return {
-    element: h("div", { class: "draw-panel" }, h("div", { class: "draw-tools", role: "toolbar", "aria-label": "Drawing" }, undo, redo, finish, hole, part, remove), ask, figures, radiusField, faults, table),
+    element: h("div", { class: "draw-panel" }, h("div", { class: "draw-tools", role: "toolbar", "aria-label": "Drawing" }, undo, redo, finish, hole, part, move, remove, removeRing), ask, figures, coming, radiusField, faults, table),
     update(state) {
       now = state;
       told = null;
       if (state.shape) draw();
+    },
+    /** Figures of what the shape would be with the pointer where it is. */
+    preview(shape) {
+      coming.textContent = figuresOf(shape);
+      coming.hidden = false;
+      figures.hidden = true;
     },
     serverFault(fault) {
       told = fault && { ...fault, sides: [] };

@@ -3,16 +3,10 @@
  * shape is whole. Undo goes through these values, so that a step back is also a step back in what a click means.
  */
 
-import { addHole, addPart, append, dropLast, leastOf, radiusTo, ringAt, seated, withoutStubs } from "./shape.js";
+import { addHole, addPart, append, dropLast, leastOf, radiusTo, ringAt, seated, stubOf, withoutStubs } from "./shape.js";
 
 /** A shape that lacks vertices is drawn on, also one that was left in the middle. */
-export function begin(shape) {
-  if (shape.kind === "circle") return { shape, growing: shape.parts[0][0].length && shape.radius_m > 0 ? null : [0, 0] };
-  for (const [p, part] of shape.parts.entries()) {
-    for (const [r, ring] of part.entries()) if (ring.length < leastOf(shape.kind)) return { shape, growing: [p, r] };
-  }
-  return { shape, growing: null };
-}
+export const begin = (shape) => ({ shape, growing: stubOf(shape) });
 
 export const growingRing = ({ shape, growing }) => (growing ? ringAt(shape, growing) : []);
 

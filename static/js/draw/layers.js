@@ -1,10 +1,9 @@
 /** What is being drawn, on the map: fill, sides, vertices and middles as handles, and what is wrong in red. */
 
-import { circleRing } from "./measure.js";
-import { circleOf, geometryOf, middlesOf, radiusHandle, verticesOf } from "./shape.js";
+import { circleRing, continuous } from "./measure.js";
+import { circleOf, middlesOf, radiusHandle, verticesOf } from "./shape.js";
 
 const NOTHING = { type: "FeatureCollection", features: [] };
-export const HANDLES = "draw-handles";
 const MOST_MIDDLES = 400; // of a large ring, only vertices
 
 const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
@@ -18,7 +17,7 @@ function layers() {
     { id: "draw-fill", type: "fill", source: "draw-shape", filter: isRole("fill"), paint: { "fill-color": accent, "fill-opacity": 0.12 } },
     { id: "draw-casing", type: "line", source: "draw-shape", filter: isRole("side"), layout: round, paint: { "line-color": casing, "line-width": 6 } },
     { id: "draw-side", type: "line", source: "draw-shape", filter: isRole("side"), layout: round, paint: { "line-color": accent, "line-width": 2.5 } },
-    { id: "draw-next", type: "line", source: "draw-shape", filter: isRole("next"), paint: { "line-color": accent, "line-width": 1.5, "line-dasharray": [3, 2] } },
+    { id: "draw-next", type: "line", source: "draw-next", filter: isRole("side"), paint: { "line-color": accent, "line-width": 1.5, "line-dasharray": [3, 2] } },
     { id: "draw-fault", type: "line", source: "draw-faults", filter: ["==", ["geometry-type"], "LineString"], layout: round, paint: { "line-color": critical, "line-width": 4 } },
     {
       id: "draw-middles",
@@ -28,7 +27,7 @@ function layers() {
       paint: { "circle-radius": touch ? 6 : 3.5, "circle-color": raised, "circle-opacity": 0.85, "circle-stroke-color": accent, "circle-stroke-width": 1.25 },
     },
     {
-      id: HANDLES,
+      id: "draw-handles",
       type: "circle",
       source: "draw-points",
       filter: ["!=", ["get", "role"], "middle"],
@@ -51,7 +50,7 @@ function layers() {
 }
 
 export function addTo(map) {
-  for (const source of ["draw-shape", "draw-points", "draw-faults", "draw-snap"]) map.addSource(source, { type: "geojson", data: NOTHING });
+  for (const source of ["draw-shape", "draw-next", "draw-points", "draw-faults", "draw-snap"]) map.addSource(source, { type: "geojson", data: NOTHING });
   for (const layer of layers()) map.addLayer(layer);
 }
 
@@ -64,42 +63,55 @@ export function recolour(map) {
 const feature = (role, type, coordinates, rest = {}) => ({ type: "Feature", properties: { role, ...rest }, geometry: { type, coordinates } });
 const put = (map, source, features) => map.getSource(source).setData({ type: "FeatureCollection", features });
 
-/** shape null draws nothing. `next`: the line from the last vertex to the pointer, while drawing. */
-export function show(map, shape, { chosen = null, faults = [], next = null, hasHandles = true } = {}) {
-  put(map, "draw-shape", shape ? [...shapeFeatures(shape), ...(next ? [feature("next", "LineString", next)] : [])] : []);
-  put(map, "draw-points", shape && hasHandles ? handleFeatures(shape, chosen) : []);
+/** shape null draws nothing. `growing`: the ring that is still open. */
+export function show(map, shape, { chosen = null, faults = [], growing = null, hasHandles = true } = {}) {
+  put(map, "draw-shape", shape ? shapeFeatures(shape, growing) : []);
+  put(map, "draw-points", shape && hasHandles ? handleFeatures(shape, chosen, growing) : []);
   put(map, "draw-faults", faults.flatMap((fault) => [
     ...fault.sides.map((side) => feature("fault", "LineString", side)),
     ...(fault.position ? [feature("fault", "Point", fault.position)] : []),
   ]));
 }
 
+/** What the next click would add: the side to the pointer, or the circle round its centre. */
+export function showNext(map, shape) {
+  put(map, "draw-next", shape ? shapeFeatures(shape, null) : []);
+}
+
 export function showSnap(map, position) {
   put(map, "draw-snap", position ? [feature("snap", "Point", position)] : []);
 }
 
-function shapeFeatures(shape) {
+function shapeFeatures(shape, growing) {
   const circle = circleOf(shape);
   if (circle) {
     const ring = circleRing(circle.centre, circle.radius_m);
     return [feature("fill", "Polygon", [ring]), feature("side", "LineString", ring)];
   }
-  const geometry = shape.kind === "area" ? geometryOf(shape) : null;
-  const sides = shape.parts.flat().filter((ring) => ring.length > 1);
+  if (shape.kind === "point" || shape.kind === "circle") return [];
+  const start = shape.parts[0][0][0]?.[0];
+  const parts = shape.parts.map((part) => part.map((ring) => continuous(ring, start)));
+  const isGrowing = (p, r) => growing !== null && growing[0] === p && growing[1] === r;
+  const closed = (ring) => [...ring, ring[0]];
+  const fills = shape.kind === "area" ? parts.map((part, p) => part.filter((ring, r) => ring.length > 2 && !isGrowing(p, r)).map(closed)).filter((rings, p) => rings.length && !isGrowing(p, 0)) : [];
+  const sides = parts.flatMap((part, p) => part.map((ring, r) => (shape.kind === "area" && ring.length > 2 && !isGrowing(p, r) ? closed(ring) : ring)));
   return [
-    ...(geometry ? [feature("fill", geometry.type, geometry.coordinates)] : []),
-    ...sides.map((ring) => feature("side", "LineString", shape.kind === "area" && ring.length > 2 ? [...ring, ring[0]] : ring)),
+    ...(fills.length ? [feature("fill", "MultiPolygon", fills)] : []),
+    ...sides.filter((ring) => ring.length > 1).map((ring) => feature("side", "LineString", ring)),
   ];
 }
 
-function handleFeatures(shape, chosen) {
-  const isChosen = (at) => chosen !== null && at.join() === chosen.join();
-  const vertices = verticesOf(shape);
-  const middles = vertices.length <= MOST_MIDDLES ? middlesOf(shape) : [];
+/** What can be taken hold of: { role, at, position }; `at` of a middle is the vertex before it. */
+export function handlesOf(shape) {
+  const vertices = verticesOf(shape).map(({ at, position }) => ({ role: "vertex", at, position }));
   const radius = radiusHandle(shape);
-  return [
-    ...middles.map(({ after, position }) => feature("middle", "Point", position, { at: after.join(), chosen: false })),
-    ...vertices.map(({ at, position }) => feature("vertex", "Point", position, { at: at.join(), chosen: isChosen(at) })),
-    ...(radius ? [feature("radius", "Point", radius, { at: "", chosen: false })] : []),
-  ];
+  const middles = vertices.length <= MOST_MIDDLES ? middlesOf(shape).map(({ after, position }) => ({ role: "middle", at: after, position })) : [];
+  return [...middles, ...vertices, ...(radius ? [{ role: "radius", at: null, position: radius }] : [])];
+}
+
+function handleFeatures(shape, chosen, growing) {
+  const isChosen = ({ role, at }) => role === "vertex" && chosen !== null && at.join() === chosen.join();
+  return handlesOf(shape)
+    .filter(({ role }) => role === "vertex" || !growing)
+    .map((handle) => feature(handle.role, "Point", handle.position, { chosen: isChosen(handle) }));
 }

@@ -1,58 +1,61 @@
 /** Where a vertex is meant to be when it comes near to what is there already: vertices first, then the sides of lines. */
 
-import { TILES } from "../map/style.js";
-import { nearestOnLine } from "../map/click_router.js";
 import { get } from "../api.js";
+import { nearestOnLine } from "../map/click_router.js";
+import { TILES } from "../map/style.js";
 import { distance_m } from "./measure.js";
 
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 18 : 11;
 const LAYERS = ["towers", "towers-high", "towers-ring", "lines", "lines-unknown", "railways", "bridges"];
-const ROUNDING_M = 3; // tiles round positions; the asset itself has them exactly
+const TILE_STEPS = 4096; // a tile rounds positions to its grid; the asset itself has them exactly
+const EQUATOR_M = 40_075_017;
 
-const pathsOf = ({ type, coordinates }) =>
+const ringsOf = ({ type, coordinates }) =>
   ({ Point: [[coordinates]], LineString: [coordinates], MultiLineString: coordinates, Polygon: coordinates, MultiPolygon: coordinates.flat() })[type] ?? [];
+const isLine = ({ type }) => type === "LineString" || type === "MultiLineString";
 
-const far_px = (map, position, point) => {
-  const place = map.project(position);
-  return Math.hypot(place.x - point.x, place.y - point.y);
-};
-
-/** { position, asset } of the nearest vertex within reach, else of the nearest place on a line; null where there is nothing. */
-export function snap(map, point, { but = null } = {}) {
+/**
+ * { position, asset, isVertex } of the nearest vertex within reach, else of the nearest place on a line; null where there is nothing.
+ * `own` are vertices of the shape itself, { position }; they have no asset.
+ */
+export function snap(map, point, { but = null, own = [] } = {}) {
   const box = [[point.x - REACH_PX, point.y - REACH_PX], [point.x + REACH_PX, point.y + REACH_PX]];
   const met = map.queryRenderedFeatures(box, { layers: LAYERS.filter((id) => map.getLayer(id)) }).filter((feature) => feature.source === TILES && feature.properties.id !== but);
   let best = null;
   const offer = (position, asset, isVertex) => {
-    const far = far_px(map, position, point);
-    if (far > REACH_PX || (best && (best.isVertex === isVertex ? best.far <= far : best.isVertex))) return;
-    best = { position, asset, isVertex, far };
+    const place = map.project(position);
+    const far = Math.hypot(place.x - point.x, place.y - point.y);
+    if (far <= REACH_PX && (!best || far < best.far)) best = { position, asset, isVertex, far };
   };
+  for (const { position } of own) offer(position, null, true);
   for (const feature of met) {
-    for (const path of pathsOf(feature.geometry)) for (const position of path) offer(position, feature.properties.id, true);
+    for (const path of ringsOf(feature.geometry)) for (const position of path) offer(position, feature.properties.id, true);
   }
-  if (!best) {
-    const { lng, lat } = map.unproject(point);
-    for (const feature of met) {
-      if (!["LineString", "MultiLineString"].includes(feature.geometry.type)) continue;
-      const position = nearestOnLine(feature.geometry, [lng, lat]);
-      if (position) offer(position, feature.properties.id, false);
-    }
+  if (best) return best;
+  const { lng, lat } = map.unproject(point);
+  for (const { geometry, properties } of met) {
+    if (isLine(geometry)) offer(nearestOnLine(geometry, [lng, lat]), properties.id, false);
   }
   return best;
 }
 
-const shapes = new Map(); // asset id → promise of its positions
+const shapes = new Map(); // asset id → promise of its geometry
 
-/** The asset's own vertex there, to the last digit; the position itself where none is near, or the asset cannot be had. */
-export async function exact({ position, asset, isVertex }) {
-  if (!isVertex) return position;
-  if (!shapes.has(asset)) {
-    shapes.set(
-      asset,
-      get(`/assets/${asset}`).then(({ data }) => pathsOf(data.geometry).flat(), () => (shapes.delete(asset), [])),
-    );
+export const forgetShapes = () => shapes.clear();
+
+function shapeOfAsset(asset) {
+  if (!shapes.has(asset)) shapes.set(asset, get(`/assets/${asset}`).then(({ data }) => data.geometry, () => (shapes.delete(asset), null)));
+  return shapes.get(asset);
+}
+
+/** The asset's own vertex, else the place on its own line, to the last digit; the position itself where the asset cannot be had. */
+export async function exact(map, { position, asset, isVertex }) {
+  const geometry = await shapeOfAsset(asset);
+  if (!geometry) return position;
+  const rounding_m = (2 * EQUATOR_M) / 2 ** Math.floor(map.getZoom()) / TILE_STEPS;
+  if (isVertex) {
+    const [nearest] = ringsOf(geometry).flat().map((vertex) => ({ vertex, far: distance_m(vertex, position) })).sort((a, b) => a.far - b.far);
+    if (nearest && nearest.far <= rounding_m) return nearest.vertex.slice(0, 2);
   }
-  const vertices = await shapes.get(asset);
-  const near = vertices.map((vertex) => ({ vertex, far: distance_m(vertex, position) })).sort((a, b) => a.far - b.far)[0];
-  return near && near.far < ROUNDING_M ? [near.vertex[0], near.vertex[1]] : position;
+  return isLine(geometry) ? nearestOnLine(geometry, position) : position; // where a tile cuts a line there is no vertex
 }

@@ -28,7 +28,7 @@ export function mountRecordPage(about) {
   let features = [];
   let next = null;
   let chosen = null; // { feature, etag }
-  let edit = null; // { choice, feature, etag, form, began }
+  let edit = null; // { choice, feature, etag, form, began: { shape, facts }, isKept, isSaving, sent }
   let asked = 0;
   let checkTimer = 0;
 
@@ -48,8 +48,9 @@ export function mountRecordPage(about) {
     onChange(state) {
       panel?.update(state);
       if (edit) (keepDraft(), checkSoon(state));
-      byId("record-save")?.toggleAttribute("disabled", state.isDrawing || state.faults.length > 0);
+      byId("record-save").toggleAttribute("disabled", !mayBeSaved(state));
     },
+    onPreview: (shape) => panel.preview(shape),
   });
   panel = createDrawPanel(editor, { show: showPlace });
 
@@ -206,7 +207,9 @@ export function mountRecordPage(about) {
   function startEdit(feature, { choice = feature ? about.choiceOf(feature) : null, shape = null, facts = null } = {}) {
     const first = shape ?? (feature ? shapeOf(feature.geometry, feature.properties.circle) : empty(about.shapeKind(choice)));
     const form = about.form(feature, choice, facts);
-    edit = { choice, feature, etag: feature ? chosen.etag : null, form, began: JSON.stringify(feature ? [geometryOf(first), circleOf(first)] : null) };
+    const there = feature ? shapeOf(feature.geometry, feature.properties.circle) : empty(about.shapeKind(choice));
+    const factsThere = facts ? about.form(feature, choice, null).read() : form.read();
+    edit = { choice, feature, etag: feature ? chosen.etag : null, form, began: { shape: textOf(there), facts: factsThere }, isKept: false, isSaving: false, sent: null };
     form.element.addEventListener("input", keepDraft);
     views.edit.replaceChildren(
       h("h2", { class: "record-title", tabindex: -1 }, feature ? about.title(feature) : about.newTitle(choice)),
@@ -222,10 +225,21 @@ export function mountRecordPage(about) {
     views.edit.querySelector("h2").focus({ preventScroll: true });
   }
 
+  const textOf = (shape) => JSON.stringify([geometryOf(shape) ?? shape.parts, circleOf(shape)]);
+  const isReshaped = () => textOf(editor.state.shape) !== edit.began.shape;
+  /** Only what was changed is sent: what others change besides stays theirs. */
+  const changedFacts = () => Object.fromEntries(Object.entries(edit.form.read()).filter(([name, value]) => JSON.stringify(value) !== JSON.stringify(edit.began.facts[name])));
+  const isChanged = () => edit !== null && (isReshaped() || Object.keys(changedFacts()).length > 0);
+  const mayBeSaved = ({ shape, isDrawing, faults }) => edit !== null && shape !== null && !isDrawing && (!faults.length || (edit.feature !== null && !isReshaped()));
+
+  const draftNow = () => ({ id: edit.feature?.id ?? null, choice: edit.choice, shape: editor.state.shape, facts: edit.form.read(), etag: edit.etag });
   function keepDraft() {
     if (!edit) return;
-    const { shape } = editor.state;
-    draft.keep({ id: edit.feature?.id ?? null, choice: edit.choice, shape, facts: edit.form.read(), etag: edit.etag });
+    if (isChanged()) edit.isKept = draft.keep(draftNow());
+    else if (edit.isKept) {
+      edit.isKept = false;
+      draft.drop();
+    }
   }
 
   function checkSoon({ shape, faults, isDrawing }) {
@@ -242,18 +256,30 @@ export function mountRecordPage(about) {
     }, CHECK_AFTER_MS);
   }
 
-  function cancel() {
+  function leaveEdit() {
+    if (edit.isKept) draft.drop();
     edit = null;
-    draft.drop();
     editor.stop();
+  }
+
+  function cancel() {
+    const left = isChanged() ? draftNow() : null;
+    leaveEdit();
     if (chosen) choose(chosen.feature.id, { stay: true });
     else go("find");
+    if (left) toast("Your edit is dropped.", { label: "Undo", act: () => !edit && goOnWith(left) });
   }
 
   function shapeChange(shape) {
-    const now = [geometryOf(shape), circleOf(shape)];
-    if (JSON.stringify(now) === edit.began) return {};
-    return now[1] ? { circle: now[1] } : { geometry: now[0] };
+    if (!isReshaped()) return {};
+    return circleOf(shape) ? { circle: circleOf(shape) } : { geometry: geometryOf(shape) };
+  }
+
+  /** The same request again gets the same answer: a lost one leaves no twin behind. */
+  function create(body) {
+    const text = JSON.stringify(body);
+    if (edit.sent?.text !== text) edit.sent = { text, key: crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` };
+    return post(about.path, body, { headers: { "Idempotency-Key": edit.sent.key } });
   }
 
   function tellFault(error) {
@@ -266,23 +292,29 @@ export function mountRecordPage(about) {
   }
 
   async function save() {
-    if (!edit || editor.state.isDrawing || editor.state.faults.length) return;
+    if (!edit || edit.isSaving || !mayBeSaved(editor.state)) return;
+    const { feature, form } = edit;
+    if (!form.element.reportValidity()) return;
+    if (feature && !isChanged()) {
+      cancel();
+      return;
+    }
     const button = byId("record-save");
+    const body = { ...(feature ? changedFacts() : form.read()), ...shapeChange(editor.state.shape) };
+    edit.isSaving = true;
     button.setAttribute("aria-busy", "true");
-    const body = { ...edit.form.read(), ...shapeChange(editor.state.shape) };
     try {
-      const { data } = edit.feature ? await patch(`${about.path}/${edit.feature.id}`, body, match(edit.etag)) : await post(about.path, { ...about.fixedFacts(edit.choice), ...body });
-      edit = null;
-      draft.drop();
-      editor.stop();
+      const { data } = feature ? await patch(`${about.path}/${feature.id}`, body, match(edit.etag)) : await create({ ...about.fixedFacts(edit.choice), ...body });
+      leaveEdit();
       map.refreshTiles();
       toast("Saved.");
       load();
       await choose(data.id, { stay: true });
     } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      edit.isSaving = false;
       if (error.status === 412 && error.details?.changed_by) await settleConflict(error.details, body);
-      else if (error instanceof ApiError) tellFault(error);
-      else throw error;
+      else tellFault(error);
     } finally {
       button.setAttribute("aria-busy", "false");
     }
@@ -293,9 +325,7 @@ export function mountRecordPage(about) {
     const which = await askWhich({ changed_by, changed_at, theirs, mine: theirs && { ...theirs, ...about.factsOfBody(body) } });
     if (which === "theirs") {
       const { id } = edit.feature;
-      edit = null;
-      draft.drop();
-      editor.stop();
+      leaveEdit();
       if (current) await choose(id, { stay: true });
       else back();
     } else if (which === "mine") {
@@ -306,17 +336,28 @@ export function mountRecordPage(about) {
 
   // what was not saved last time
 
+  async function goOnWith(kept) {
+    if (!kept.id) {
+      chosen = null;
+      startEdit(null, { choice: kept.choice, shape: kept.shape, facts: kept.facts });
+      return;
+    }
+    await choose(kept.id);
+    if (chosen?.feature.id !== kept.id) return;
+    startEdit(chosen.feature, { shape: kept.shape, facts: kept.facts });
+    edit.etag = kept.etag; // what was seen then: a change since comes to light when it is saved
+  }
+
+  addEventListener("beforeunload", (event) => {
+    if (isChanged() && !edit.isKept) event.preventDefault(); // storage is closed: ask
+  });
+
   async function offerDraft() {
     const kept = draft.read();
     if (!kept?.shape) return;
-    const goOn = async () => {
+    const goOn = () => {
       byId("notices").replaceChildren();
-      if (kept.id) {
-        await choose(kept.id);
-        if (!chosen) return;
-        startEdit(chosen.feature, { shape: kept.shape, facts: kept.facts });
-        edit.etag = kept.etag; // what was seen then: a change since comes to light when it is saved
-      } else startEdit(null, { choice: kept.choice, shape: kept.shape, facts: kept.facts });
+      return goOnWith(kept);
     };
     byId("notices").replaceChildren(
       h(
@@ -355,7 +396,7 @@ export function mountRecordPage(about) {
     { keys: ["mod+z"], words: "Undo", act: whenEditing(editor.undo) },
     { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: whenEditing(editor.redo) },
     { keys: ["mod+s"], words: "Save", whileTyping: true, act: () => (edit ? (save(), true) : false) },
-    { keys: ["enter"], words: "End the drawing", act: whenEditing(editor.finish) },
+    { keys: ["enter"], words: "End the drawing", act: (event) => (edit && !event.target.matches?.("button, a, summary, input") ? editor.finish() : false) },
     { keys: ["delete", "backspace"], words: "Remove the chosen point", act: whenEditing(() => (editor.state.isDrawing ? editor.back() : editor.removeChosen())) },
     { keys: ["arrowleft", "shift+arrowleft"], act: arrow(-1, 0) },
     { keys: ["arrowright", "shift+arrowright"], act: arrow(1, 0) },

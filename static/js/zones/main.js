@@ -17,11 +17,14 @@ const heights = ({ lower_limit: lower, upper_limit: upper }) => (lower || upper 
 
 function factsOf({ properties, geometry }) {
   const { name, restriction, reason, schedule, circle, lower_limit: lower, upper_limit: upper } = properties;
-  return { name, restriction, reason, schedule, circle, lower_limit_m: lower?.value_m ?? null, lower_reference: lower?.reference ?? "", upper_limit_m: upper?.value_m ?? null, upper_reference: upper?.reference ?? "", geometry };
+  return { name, restriction, reason, schedule, circle, ...limitFacts("lower", lower), ...limitFacts("upper", upper), geometry };
 }
 
+const limitFacts = (side, limit) => ({ [`${side}_limit_m`]: limit?.value_m ?? null, [`${side}_reference`]: limit?.reference ?? "" });
+
+/** What is sent, under the names that facts have. */
 function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
-  return { ...rest, lower_limit_m: lower?.value_m ?? null, lower_reference: lower?.reference ?? "", upper_limit_m: upper?.value_m ?? null, upper_reference: upper?.reference ?? "" };
+  return { ...rest, ...(lower === undefined ? {} : limitFacts("lower", lower)), ...(upper === undefined ? {} : limitFacts("upper", upper)) };
 }
 
 function details({ properties }) {
