@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, gaps, geometry_checks, ground, history, imports, uploads, zone_sets, zones
+from inspection.views import assets, gaps, geometry_checks, ground, history, imports, terrain, uploads, zone_sets, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -39,6 +39,11 @@ urlpatterns = [
     path("gaps/<int:gap_id>/undo", gaps.GapUndo.as_view(), name="api-gap-undo"),
     path("gaps/<int:gap_id>/dismiss", gaps.GapDismiss.as_view(), name="api-gap-dismiss"),
     path("gaps/<int:gap_id>/reopen", gaps.GapReopen.as_view(), name="api-gap-reopen"),
+    path("terrain", terrain.TerrainList.as_view(), name="api-terrain"),
+    path("terrain/<int:import_id>", terrain.TerrainDetail.as_view(), name="api-terrain-model"),
+    path("terrain/height", terrain.GroundHeight.as_view(), name="api-ground-height"),
+    path("terrain/profile", terrain.Profile.as_view(), name="api-terrain-profile"),
+    path("terrain/heights", terrain.Heights.as_view(), name="api-heights"),
     path("ground", ground.Ground.as_view(), name="api-ground"),
     path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),
 ]

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +11,21 @@ from django.contrib.gis.geos import Polygon
 from django.db import transaction
 
 from inspection.models import DataImport, ImportKind, TerrainTile
+from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
+from inspection.services.proposals.reading import Provenance
 from inspection.terrain.errors import TerrainFileError
 from inspection.terrain.height_grid import BLOCK_SIZE, HeightGrid, packed, without_voids
 from inspection.terrain.hgt import read_hgt
+from inspection.terrain.packed_hgt import unpacked_hgt
+from inspection.terrain.tiff_gate import examine
 from workspace.models import User
+from workspace.services import record_change
 
 MAX_POSTS = 200_000_000
 WGS84_SRID = 4326
 _TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")  # classic and BigTIFF
+_ZIP_START = b"PK"
 _BATCH = 64
 
 Progress = Callable[[str, float], None]
@@ -31,22 +38,17 @@ def import_terrain(
     is_synthetic: bool = False,
     vertical_datum: str = "EGM96",
     progress: Progress | None = None,
+    provenance: Provenance | None = None,
 ) -> DataImport:
-    """Store the heights of a GeoTIFF (EPSG:4326) or HGT file; raises TerrainFileError and changes nothing.
+    """Store the heights of a GeoTIFF (EPSG:4326) or HGT file, zipped or not; raises TerrainFileError and changes nothing.
 
-    The same file again changes nothing; a changed file of the same name takes the place of the earlier one.
+    The same file again changes nothing; a changed file of the same name takes the place of the earlier one. A datum that the file states
+    wins over vertical_datum. It counts as a change of the ground: missions were planned with other heights.
     """
     with path.open("rb") as file:
-        start = file.read(4)
-        file.seek(0)
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
-    if path.suffix.lower() == ".hgt":
-        blocks = _with_progress(read_hgt(path).blocks(), 0, None)
-    elif start in _TIFF_STARTS:
-        blocks = _geotiff_blocks(path, progress)
-    else:
-        raise TerrainFileError("This is neither a GeoTIFF nor an HGT file.")
-    with transaction.atomic():
+    with terrain_blocks(path, progress) as (blocks, stated_datum), transaction.atomic():
+        hold_ground()
         of_this_name = DataImport.objects.filter(kind=ImportKind.TERRAIN, file_name=path.name[:255])
         known = of_this_name.filter(sha256=sha256, terrain_tiles__isnull=False).first()
         if known is not None:
@@ -55,10 +57,44 @@ def import_terrain(
             kind=ImportKind.TERRAIN, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
             attribution=SYNTHETIC_ATTRIBUTION if is_synthetic else "",
         )  # fmt: skip
-        data_import.counts = _write(data_import, blocks, vertical_datum)
-        data_import.save(update_fields=["counts"])
+        if provenance is not None:
+            data_import.attribution, data_import.licence = provenance.attribution, provenance.licence
+            data_import.source_address, data_import.fetched_at = provenance.source_address, provenance.fetched_at
+        data_import.counts = _write(data_import, blocks, stated_datum or vertical_datum)
+        data_import.save()
         TerrainTile.objects.filter(data_import__in=of_this_name.exclude(pk=data_import.pk)).delete()
+        mark_ground_changed()
     return data_import
+
+
+def remove_terrain(*, data_import: DataImport, actor: User) -> None:
+    """Take a terrain model away; older models below it count again."""
+    with transaction.atomic():
+        hold_ground()
+        deleted, _ = TerrainTile.objects.filter(data_import=data_import).delete()
+        if deleted:
+            record_change(
+                organisation=actor.organisation, actor=actor, action="deleted", subject_type="terrain", subject_id=data_import.pk,
+                before={"file_name": data_import.file_name, "counts": data_import.counts},
+            )  # fmt: skip
+            mark_ground_changed()
+
+
+@contextmanager
+def terrain_blocks(path: Path, progress: Progress | None) -> Iterator[tuple[Iterator[HeightGrid], str | None]]:
+    """The blocks of a terrain file and the vertical datum that it states. Raises TerrainFileError."""
+    with path.open("rb") as file:
+        start = file.read(4)
+    if start.startswith(_ZIP_START):
+        with unpacked_hgt(path) as unpacked:
+            yield _with_progress(read_hgt(unpacked).blocks(), 0, None), None
+    elif path.suffix.lower() == ".hgt":
+        yield _with_progress(read_hgt(path).blocks(), 0, None), None
+    elif start in _TIFF_STARTS:
+        facts = examine(path)
+        yield _geotiff_blocks(path, progress), facts.vertical_datum
+    else:
+        raise TerrainFileError("This is neither a GeoTIFF nor an HGT file, zipped or not.")
 
 
 def _write(data_import: DataImport, blocks: Iterator[HeightGrid], vertical_datum: str) -> dict[str, object]:
@@ -97,6 +133,8 @@ def _geotiff_blocks(path: Path, progress: Progress | None) -> Iterator[HeightGri
         raster = GDALRaster(str(path.resolve()))
         if raster.driver.name != "GTiff":
             raise TerrainFileError(f"GDAL takes the file for {raster.driver.name}, not for a GeoTIFF.")
+        if raster.srs is None:
+            raise TerrainFileError("The file cannot be read as a GeoTIFF with a reference system.")
         if raster.srs.srid != WGS84_SRID:
             raise TerrainFileError(
                 "The GeoTIFF is not in longitude and latitude on WGS84 (EPSG:4326); convert it first: gdalwarp -t_srs EPSG:4326"

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
+from inspection.terrain.heights import amsl_m, counted_from
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import RoutePoint, Waypoint, point_between
 
@@ -80,8 +81,10 @@ def _sample_counts(position: FloatArray) -> list[int]:
 
 
 def _waypoint(point: RoutePoint, ground_m: float, take_off_m: float) -> Waypoint:
-    amsl_m = ground_m + point.agl_m
-    return Waypoint(point, amsl_m, amsl_m - take_off_m)
+    ground = np.array([ground_m])
+    above_sea_m = amsl_m(np.array([point.agl_m]), "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
+    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
+    return Waypoint(point, float(above_sea_m[0]), float(above_take_off_m[0]))
 
 
 def _bends(share: FloatArray, ground_m: FloatArray, tolerance_m: float) -> list[int]:

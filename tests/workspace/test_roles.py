@@ -15,6 +15,7 @@ pytestmark = pytest.mark.django_db
 SAFE = {"get", "head", "options"}
 ALSO_CURATORS = {"cancel_job"}
 CURATED = re.compile(r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|gaps|geometry-checks|uploads|imports|terrain)(/|$)")
+ASKED_BY_ALL = {"terrain_profile", "convert_heights"}  # a POST because the question is long; nothing is stored
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 
 
@@ -54,7 +55,7 @@ def test_whoever_is_signed_in_may_read_everything_but_what_has_not_been_decided(
 def test_operators_change_what_is_flown_and_curators_the_ground(role: Role) -> None:
     client = client_of(somebody(role))
     for method, address, name in operations():
-        if method in SAFE:
+        if method in SAFE or name in ASKED_BY_ALL:
             continue
         allowed = {Role.ADMINISTRATOR, Role.CURATOR if CURATED.match(address) else Role.OPERATOR}
         allowed |= {Role.CURATOR} if name in ALSO_CURATORS else set()

@@ -19,13 +19,13 @@ from inspection.models import DataImport, ImportKind, ImportProposal, ProposalOr
 from inspection.selectors import ground_revision
 from inspection.services.ground import hold_ground
 from inspection.services.overpass import fetch_area
-from inspection.services.proposals import assets, osm, zones
+from inspection.services.proposals import assets, osm, terrain, zones
 from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading
 from inspection.services.uploads import UploadRefused, upload_as_file
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
 from workspace.services import cancel_job, create_job, finish_job
 
-FILE_KINDS: dict[str, FileKind] = {ImportKind.OSM: osm, ImportKind.ZONES: zones, ImportKind.ASSETS: assets}
+FILE_KINDS: dict[str, FileKind] = {ImportKind.OSM: osm, ImportKind.ZONES: zones, ImportKind.ASSETS: assets, ImportKind.TERRAIN: terrain}
 READ_TASK = "inspection.tasks.read_proposal"
 APPLY_TASK = "inspection.tasks.apply_proposal"
 MOST_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all

@@ -1,0 +1,120 @@
+"""Terrain: the models, the height at a place, the profile along a line."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.selectors.terrain_models import TerrainModel
+from inspection.serializers.features import GeometrySerializer
+from inspection.terrain.heights import REFERENCES
+
+MOST_VERTICES = 2_000
+MOST_PLACES = 5_000
+
+
+class PositionField(serializers.ListField):
+    """Longitude, latitude [deg]."""
+
+    child = serializers.FloatField()
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(min_length=2, max_length=2, **options)
+
+    def to_internal_value(self, data: Any) -> list[float]:
+        position: list[float] = super().to_internal_value(data)
+        if len(position) != 2 or not (-180 <= position[0] <= 180 and -90 <= position[1] <= 90):
+            raise serializers.ValidationError("A position is longitude, then latitude, in degrees.")
+        return position
+
+
+class ModelPropertiesSerializer(serializers.Serializer):
+    file_name = serializers.CharField()
+    vertical_datum = serializers.CharField()
+    resolution_m = serializers.FloatField(help_text="distance between posts")
+    posts = serializers.IntegerField(allow_null=True)
+    voids = serializers.IntegerField(allow_null=True, help_text="posts without a height")
+    lowest_m = serializers.FloatField(allow_null=True)
+    highest_m = serializers.FloatField(allow_null=True)
+    attribution = serializers.CharField()
+    licence = serializers.CharField()
+    is_synthetic = serializers.BooleanField()
+    imported_at = serializers.DateTimeField()
+
+
+class ModelFeatureSerializer(serializers.Serializer):
+    type = serializers.ChoiceField(choices=["Feature"])
+    id = serializers.IntegerField()
+    geometry = GeometrySerializer()
+    properties = ModelPropertiesSerializer()
+
+
+class ModelCollectionSerializer(serializers.Serializer):
+    """Newest first: what counts on top where models overlap."""
+
+    type = serializers.ChoiceField(choices=["FeatureCollection"])
+    features = ModelFeatureSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class GroundHeightSerializer(serializers.Serializer):
+    ground_amsl_m = serializers.FloatField(allow_null=True, help_text="null where no model knows the ground")
+    vertical_datum = serializers.CharField(allow_null=True)
+    source = serializers.CharField(allow_null=True, help_text="file name of the newest model that reaches there")
+
+
+class ProfileInputSerializer(serializers.Serializer):
+    line = serializers.ListField(child=PositionField(), min_length=2, max_length=MOST_VERTICES)
+    step_m = serializers.FloatField(min_value=1, max_value=100_000, required=False, help_text="half a post's distance unless told")
+
+
+class ProfileSerializer(serializers.Serializer):
+    length_m = serializers.FloatField()
+    distance_m = serializers.ListField(child=serializers.FloatField())
+    positions = serializers.ListField(child=serializers.ListField(child=serializers.FloatField()))
+    ground_amsl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
+    lowest_m = serializers.FloatField(allow_null=True)
+    highest_m = serializers.FloatField(allow_null=True)
+    unknown = serializers.IntegerField(help_text="places where no model knows the ground")
+    vertical_datums = serializers.ListField(child=serializers.CharField())
+
+
+class HeightsInputSerializer(serializers.Serializer):
+    positions = serializers.ListField(child=PositionField(), min_length=1, max_length=MOST_PLACES)
+    heights_m = serializers.ListField(child=serializers.FloatField(min_value=-1_000, max_value=100_000), max_length=MOST_PLACES)
+    reference = serializers.ChoiceField(choices=REFERENCES, help_text="from where heights_m count; RELATIVE: above take-off")
+    take_off = PositionField(required=False, help_text="unless told, the first position")
+
+    def validate(self, values: dict[str, Any]) -> dict[str, Any]:
+        if len(values["heights_m"]) != len(values["positions"]):
+            raise serializers.ValidationError({"heights_m": ["One height for each position is needed."]})
+        return values
+
+
+class HeightsSerializer(serializers.Serializer):
+    """The same heights in each reference; null where the ground is not known."""
+
+    ground_amsl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
+    altitude_agl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
+    altitude_amsl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
+    altitude_relative_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
+
+
+def model_feature(model: TerrainModel) -> dict[str, Any]:
+    west, south, east, north = model.extent
+    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
+    row, counts = model.data_import, model.data_import.counts
+    return {
+        "type": "Feature",
+        "id": row.pk,
+        "geometry": {"type": "Polygon", "coordinates": [ring]},
+        "properties": {
+            "file_name": row.file_name,
+            "vertical_datum": model.vertical_datum,
+            "resolution_m": model.resolution_m,
+            **{name: counts.get(name) for name in ("posts", "voids", "lowest_m", "highest_m")},
+            "attribution": row.attribution,
+            "licence": row.licence,
+            "is_synthetic": row.is_synthetic,
+            "imported_at": row.imported_at,
+        },
+    }
