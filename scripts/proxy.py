@@ -98,10 +98,11 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
         }}"""
 
 
-def _proxied(location: str, name: str, headers: str, scheme: str, *, compression: str = "on") -> str:
+def _proxied(location: str, name: str, headers: str, scheme: str, *, compression: str = "on", faults: str = "warn") -> str:
     return f"""
         location {location} {{
             gzip {compression};
+            error_log stderr {faults};
             proxy_pass http://web;
             proxy_http_version 1.1;
             proxy_set_header Connection "";
@@ -147,6 +148,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
     # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
     places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, compression="off")
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme)
+    links = _proxied("/new-password/", "page", headers, scheme, faults="emerg")
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;
 pid {_quoted(folder / "nginx.pid")};
@@ -164,7 +166,12 @@ http {{
     charset utf-8;
     charset_types text/css text/plain text/javascript image/svg+xml;
 {temporary}
-    log_format line '$time_iso8601 $remote_addr "$request" $status $body_bytes_sent $request_time';
+    # A link to a new password lets its holder in: it is written into no log, nor is a fault of the application at it.
+    map $request $told_request {{
+        "~^(?<told>[A-Z]+ /new-password/)" "$told...";
+        default $request;
+    }}
+    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
     access_log /dev/stdout line;
     server_tokens off;
     sendfile on;
@@ -191,7 +198,7 @@ http {{
             alias {_quoted(f"{places.static}/")};
             add_header Cache-Control no-cache;
 {headers}
-        }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}
+        }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}{links}
 {failures_for_people}
 {failures_for_programs}
     }}

@@ -58,7 +58,8 @@ def site() -> Iterator[tuple[str, Path]]:
             port = free.getsockname()[1]
         path = places.state / "nginx.conf"
         path.write_text(configuration(places, places.state, port))
-        process = subprocess.Popen([nginx, "-e", "stderr", "-c", str(path)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with (places.state / "proxy.log").open("ab") as log:
+            process = subprocess.Popen([nginx, "-e", "stderr", "-c", str(path)], stdout=log, stderr=log)
         try:
             deadline = time.monotonic() + 10
             while socket.socket().connect_ex(("127.0.0.1", port)) != 0:
@@ -134,3 +135,16 @@ def test_answers_are_compressed(site: tuple[str, Path]) -> None:
 def test_a_missions_etag_stays_strong_so_that_if_match_can_match(site: tuple[str, Path]) -> None:
     _, headers, body = _fetch(f"{site[0]}/api/v1/missions/1")
     assert (headers["ETag"], body) == ('"7"', ANSWER)
+
+
+def test_no_log_has_the_link_to_a_new_password(site: tuple[str, Path]) -> None:
+    """Neither the line of the request nor, as the application is away, that of its fault."""
+    assert _fetch(f"{site[0]}/new-password/MQ/c1x-secret")[0] == 503
+    assert _fetch(f"{site[0]}/lost-password?next=seen")[0] == 503
+    log = site[1] / "proxy.log"
+    deadline = time.monotonic() + 10
+    while 'next=seen HTTP/1.1" 503' not in log.read_text():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    assert '"GET /new-password/..." 503' in log.read_text()
+    assert "secret" not in log.read_text()
