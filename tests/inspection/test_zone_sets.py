@@ -43,7 +43,9 @@ def test_a_set_states_its_source_and_its_numbers(client: Client, curator: User, 
     path = tmp_path / "Works.geojson"
     path.write_bytes(zone_file(("A", 9.0), ("B", 9.2)))
     call_command("import_zones", str(path), "--licence", "CC BY 4.0", "--attribution", "The office", stdout=StringIO())
-    save_zone(zone=NoFlyZone.objects.get(name="A"), actor=curator)
+    zone = NoFlyZone.objects.get(name="A")
+    zone.reason = "Checked on site"
+    save_zone(zone=zone, actor=curator)
     [listed] = client_of(somebody(Role.VIEWER)).get(SETS).json()["results"]
     assert (listed["name"], listed["zone_count"], listed["edited_count"], listed["version_count"]) == ("Works", 2, 1, 1)
     source = listed["source"]
