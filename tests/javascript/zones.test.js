@@ -1,0 +1,37 @@
+/** The page of zones: when one applies, its heights in words, and what is sent of them. */
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { fromField, newPeriod, timeFromField, timeToField, toField, weekOf } from "../../static/js/zones/schedule.js";
+
+const entry = (rest) => ({ day: ["MON"], startTime: null, startEvent: null, endTime: null, endEvent: null, ...rest });
+const week = (...schedule) => weekOf({ startDateTime: null, endDateTime: null, schedule });
+const hours = ({ day, from_h, to_h }) => [day, from_h, to_h];
+
+test("working hours are five stretches", () => {
+  assert.deepEqual(weekOf(newPeriod()).map(hours), [0, 1, 2, 3, 4].map((day) => [day, 8, 18]));
+});
+
+test("a period without hours covers the whole week", () => {
+  assert.deepEqual(week().map(hours), [0, 1, 2, 3, 4, 5, 6].map((day) => [day, 0, 24]));
+});
+
+test("a night goes on after midnight, from Sunday on Monday", () => {
+  const night = entry({ day: ["SUN"], startTime: "22:30:00Z", endTime: "06:00:00Z" });
+  assert.deepEqual(week(night).map(hours), [[6, 22.5, 24], [0, 0, 6]]);
+  assert.deepEqual(week(entry({ startTime: "22:00:00Z", endTime: "00:00:00Z" })).map(hours), [[0, 22, 24]]);
+});
+
+test("what ends with the sun has a soft end", () => {
+  const [stretch] = week(entry({ startTime: "08:00:00Z", endEvent: "SS" }));
+  assert.equal(stretch.softStart, false);
+  assert.equal(stretch.softEnd, true);
+});
+
+test("moments and times come back as they were, in UTC", () => {
+  assert.equal(fromField(toField("2026-12-31T18:00:00Z")), "2026-12-31T18:00:00Z");
+  assert.equal(timeFromField(timeToField("07:45:00Z")), "07:45:00Z");
+  assert.equal(fromField(toField(null)), null);
+  assert.equal(timeFromField(timeToField(null)), null);
+});
