@@ -6,7 +6,7 @@ import { say, toast } from "../page/toast.js";
 import { fileCard } from "./file_card.js";
 import { guessKind, HEAD_BYTES, setNameOf } from "./kinds.js";
 import { createRememberedUploads, markOf } from "./remembered_uploads.js";
-import { sendFile } from "./send_file.js";
+import { sendFile, untilAnswered } from "./send_file.js";
 
 const isUnderWay = (item) => ["sending", "waiting", "starting"].includes(item.phase);
 
@@ -70,28 +70,32 @@ export function mountBringIn({ userId, onStarted }) {
     Object.assign(item, { phase: "sending", problem: "", controller: new AbortController() });
     keep(item);
     draw();
+    const hints = {
+      signal: item.controller.signal,
+      nudge: (wake) => (item.wake = wake),
+      tell({ received, waits_s }) {
+        if (received !== undefined) item.received = received;
+        item.waits_s = waits_s;
+        const phase = waits_s > 0 ? "waiting" : "sending";
+        if (phase === "waiting" && item.phase !== "waiting") keep(item);
+        item.phase = phase;
+        draw();
+      },
+    };
+    const onBegun = (id) => {
+      item.uploadId = id;
+      keep(item);
+    };
     try {
-      item.uploadId = await sendFile(item.file, {
-        uploadId: item.uploadId,
-        signal: item.controller.signal,
-        onBegun(id) {
-          item.uploadId = id;
-          keep(item);
-        },
-        nudge: (wake) => (item.wake = wake),
-        tell({ received, waits_s }) {
-          if (received !== undefined) item.received = received;
-          item.waits_s = waits_s;
-          const phase = waits_s > 0 ? "waiting" : "sending";
-          if (phase === "waiting" && item.phase !== "waiting") keep(item);
-          item.phase = phase;
-          draw();
-        },
-      });
-      item.phase = "starting";
-      draw();
+      item.uploadId = await sendFile(item.file, { ...hints, uploadId: item.uploadId, onBegun });
       const provenance = Object.fromEntries(Object.entries(item.provenance).filter(([, value]) => value.trim()));
-      const { data } = await post("/imports", { kind: item.kind, upload: item.uploadId, parameters: item.parameters, provenance });
+      const headers = { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` };
+      const body = { kind: item.kind, upload: item.uploadId, parameters: item.parameters, provenance };
+      const { data } = await untilAnswered(() => {
+        item.phase = "starting";
+        draw();
+        return post("/imports", body, { headers });
+      }, hints);
       takeOff(item);
       say(`${item.name} is being read.`);
       onStarted(data, { isLast: !items.some(isUnderWay) });

@@ -21,6 +21,7 @@ export function mountProposal(store, acts) {
 
   store.listen(["current", "busy"], ({ current, busy }) => {
     byId("imports-home").hidden = current !== null;
+    document.title = `${current ? `${titleOf(current)} · ` : ""}Imports · Spanwise`;
     panel.hidden = foot.hidden = byId("changes-panel").hidden = current === null;
     if (!current) {
       drawn = "";

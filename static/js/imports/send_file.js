@@ -35,6 +35,18 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
   }
 }
 
+/** Runs `act` until the server has answered; the same hints as above. */
+export async function untilAnswered(act, hints) {
+  for (let wait_s = 1; ; wait_s = Math.min(wait_s * 2, LONGEST_WAIT_S)) {
+    try {
+      return await act();
+    } catch (error) {
+      if (!(error instanceof ApiError) || !WORTH_ANOTHER_TRY.has(error.status)) throw error;
+      await pause(wait_s, hints);
+    }
+  }
+}
+
 async function begin(file, uploadId, signal) {
   if (uploadId) {
     try {
@@ -47,7 +59,7 @@ async function begin(file, uploadId, signal) {
   return (await post("/uploads", { file_name: file.name, size_bytes: file.size }, { signal })).data;
 }
 
-function pause(wait_s, { tell, nudge, signal }) {
+function pause(wait_s, { tell, nudge = () => {}, signal }) {
   return new Promise((resolve, reject) => {
     let left_s = wait_s;
     const end = (act) => {
