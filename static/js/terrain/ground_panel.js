@@ -1,0 +1,118 @@
+/** The dock: the height of the ground at a place, or its profile along a line. */
+
+import { byId, h, icon } from "../dom.js";
+import { coordinateText, heightText, lengthText } from "../units.js";
+import { drawProfile, nearestSample, profileSentence, rowsOf } from "./profile_chart.js";
+
+const CHART_PX = 150;
+
+/** on: { cursor(index or null), back(), close() }. Returns { close(), height(…), profile(…), point(index or null) }. */
+export function mountGroundPanel(on) {
+  const dock = byId("dock");
+  const panel = byId("terrain-panel");
+  let shown = null; // { profile, towers, chart, figures, frame }
+
+  const closer = () => h("button", { class: "icon-button tight terrain-close", type: "button", "aria-label": "Close", title: "Close (Esc)", onclick: on.close }, icon("x"));
+
+  function put(...content) {
+    shown = null;
+    dock.hidden = false;
+    panel.replaceChildren(...content, closer());
+  }
+
+  function point(index) {
+    if (!shown) return;
+    shown.chart.point(index);
+    shown.figures.replaceChildren(...figuresAt(shown, index));
+  }
+
+  function redraw() {
+    if (!shown) return;
+    const width = Math.floor(shown.frame.clientWidth);
+    if (!width || width === shown.width) return;
+    shown.width = width;
+    shown.chart = drawProfile(shown.profile, shown.towers, width, CHART_PX);
+    shown.frame.replaceChildren(shown.chart.element);
+  }
+  new ResizeObserver(redraw).observe(panel);
+
+  return {
+    close() {
+      shown = null;
+      dock.hidden = true;
+      panel.replaceChildren();
+    },
+    words: (sentence) => put(h("p", { class: "terrain-sentence" }, sentence)),
+    height(position, { ground_amsl_m, vertical_datum, source }) {
+      const isKnown = ground_amsl_m !== null;
+      put(
+        h("h2", { class: "terrain-sentence" }, isKnown ? `${heightText(ground_amsl_m)} above sea level` : "No terrain model knows the ground here."),
+        h("p", { class: "caption" }, [coordinateText(position), isKnown && vertical_datum, isKnown && source].filter(Boolean).join(" · ")),
+      );
+    },
+    /** `title` names what the line is; `canStepBack` offers to take the last point away. */
+    profile(profile, towers, { title, canStepBack }) {
+      const frame = h("div", { class: "profile-frame" });
+      const figures = h("div", { class: "profile-figures" });
+      put(
+        h(
+          "div",
+          { class: "profile-head" },
+          h("h2", { class: "terrain-sentence" }, title),
+          h("p", { class: "caption" }, profileSentence(profile, towers)),
+          canStepBack && h("button", { class: "button quiet", type: "button", onclick: on.back }, icon("undo-2"), "Take the last point back"),
+        ),
+        h("div", { class: "profile-body" }, figures, frame),
+        tableOf(profile, towers),
+      );
+      shown = { profile, towers, frame, figures, width: 0, chart: { point: () => {} } };
+      redraw();
+      point(null);
+      const follow = ({ clientX }) => {
+        if (!shown?.chart.scales) return;
+        const along_m = shown.chart.scales.distanceAt(clientX - frame.getBoundingClientRect().left);
+        on.cursor(nearestSample(profile.distance_m, along_m));
+      };
+      frame.addEventListener("pointermove", follow);
+      frame.addEventListener("pointerdown", follow);
+      frame.addEventListener("pointerleave", () => on.cursor(null));
+    },
+    point,
+  };
+}
+
+function figuresAt({ profile, towers }, index) {
+  const place = (term, words) => h("div", {}, h("dt", {}, term), h("dd", {}, words));
+  if (index === null) {
+    if (profile.lowest_m === null) return [];
+    return [h("dl", {}, place("Highest", heightText(profile.highest_m)), place("Lowest", heightText(profile.lowest_m)), place("Length", lengthText(profile.length_m)))];
+  }
+  const ground = profile.ground_amsl_m[index];
+  const tower = towers.find((candidate) => candidate.index === index);
+  return [
+    h(
+      "dl",
+      {},
+      place("Ground", ground === null ? "not known" : heightText(ground)),
+      place("Along", lengthText(profile.distance_m[index])),
+      tower && place("Tower", towerText(tower)),
+    ),
+  ];
+}
+
+const towerText = ({ label, height_m }) => `${label}, ${height_m === null ? "height not stated" : heightText(height_m)}`;
+
+function tableOf(profile, towers) {
+  const cells = ({ distance_m, ground_amsl_m, tower }) => [lengthText(distance_m), ground_amsl_m === null ? "not known" : heightText(ground_amsl_m), tower ? towerText(tower) : ""];
+  return h(
+    "details",
+    { class: "profile-table" },
+    h("summary", {}, "As a table"),
+    h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, ["Along", "Ground above sea level", "Tower"].map((name) => h("th", { scope: "col" }, name)))),
+      h("tbody", {}, rowsOf(profile, towers).map((row) => h("tr", {}, cells(row).map((words) => h("td", {}, words))))),
+    ),
+  );
+}
