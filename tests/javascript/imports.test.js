@@ -6,7 +6,7 @@ import { mappingOf, meaningsOf, withMeaning } from "../../static/js/imports/colu
 import { guessKind, setNameOf } from "../../static/js/imports/kinds.js";
 import { areaKm2 } from "../../static/js/imports/overpass_box.js";
 import { createRememberedUploads, markOf } from "../../static/js/imports/remembered_uploads.js";
-import { differenceSentence, factLines, factName, sizeText, summaryLines, touched } from "../../static/js/imports/words.js";
+import { differenceSentence, factLines, factName, sizeText, summaryLines, terrainSentence, touched } from "../../static/js/imports/words.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const bytes = (text) => new TextEncoder().encode(text);
@@ -15,6 +15,12 @@ test("a difference is one sentence, and what does not occur is not in it", () =>
   assert.equal(plain(differenceSentence({ new: 412, changed: 3, vanished: 1, kept: 2, unchanged: 18_000 })), "412 new, 3 changed, 1 vanished, 2 kept as edited by hand.");
   assert.equal(plain(differenceSentence({ new: 1_200, changed: 0, vanished: 0, kept: 0 })), "1,200 new.");
   assert.equal(differenceSentence({ new: 0, unchanged: 9 }), "Nothing would change.");
+});
+
+test("terrain is said by its heights and what they count from", () => {
+  const summary = { lowest_m: -3.6, highest_m: 2_599.2, vertical_datum: "EGM96" };
+  assert.equal(plain(terrainSentence(summary, { new: 1, changed: 0 })), "Heights from −4 m to 2,599 m above EGM96.");
+  assert.match(terrainSentence(summary, { changed: 1 }), /in place of the earlier model of this name\.$/);
 });
 
 test("what was edited by hand counts only where it is overwritten", () => {

@@ -8,7 +8,7 @@ const FIELDS = {
   osm: [],
   zones: [["set_name", "Name of the set", "The set that this file is the newest state of"]],
   assets: [["set_name", "Name of the set", "The set that this file is the newest state of"]],
-  terrain: [["vertical_datum", "Heights count from", "The file does not say it"]],
+  terrain: [["vertical_datum", "Heights count from", "Where the file does not say it"]],
 };
 const PROVENANCE = [
   ["licence", "Licence", "CC BY 4.0"],

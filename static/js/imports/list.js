@@ -2,7 +2,7 @@
 
 import { byId, h, icon, keyedList } from "../dom.js";
 import { percentText, whenText } from "../units.js";
-import { differenceSentence, isOpen, KINDS, ORIGINS, STATES } from "./words.js";
+import { differenceSentence, isOpen, KINDS, ORIGINS, STATES, terrainSentence } from "./words.js";
 
 /** acts: { open(id), more() } */
 export function mountList(store, acts) {
@@ -55,6 +55,11 @@ function content(proposal) {
 
 export const titleOf = (proposal) => proposal.file_name || `${KINDS[proposal.kind].words} ${ORIGINS[proposal.origin]}`.trim();
 
+function whatOf({ kind, summary, difference }) {
+  const sentence = kind === "terrain" && summary.vertical_datum ? terrainSentence(summary, {}) : differenceSentence(difference);
+  return summary.needs_mapping ? "Columns to be explained" : sentence.replace(/\.$/, "");
+}
+
 function secondLine(proposal) {
   const who = proposal.decided_by ?? proposal.created_by;
   const when = whenText(proposal.decided_at ?? proposal.created_at);
@@ -62,8 +67,8 @@ function secondLine(proposal) {
     reading: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
     applying: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
     refused: () => proposal.faults[0]?.message ?? "",
-    ready: () => differenceSentence(proposal.difference).replace(/\.$/, ""),
-    applied: () => differenceSentence(proposal.difference).replace(/\.$/, ""),
+    ready: () => whatOf(proposal),
+    applied: () => whatOf(proposal),
     discarded: () => "",
   }[proposal.state]();
   return [what, [isOpen(proposal) ? "" : who, when].filter(Boolean).join(", ")].filter(Boolean).join(" · ");

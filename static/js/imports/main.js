@@ -127,9 +127,16 @@ async function loadChanges({ fit = false } = {}) {
   if (fit) map.fit(boxAround(drawn().flatMap((change) => positionsOf(change.geometry))));
 }
 
-/** A file whose columns nobody has explained yet has no changes, but shapes. */
+/** A file whose columns nobody has explained yet has no changes, but shapes; terrain has what it covers. */
 function previewOf(proposal) {
-  const features = proposal?.summary.needs_mapping ? (proposal.summary.preview?.features ?? []) : [];
+  if (!proposal) return [];
+  const { kind, summary, difference } = proposal;
+  if (kind === "terrain" && summary.extent) {
+    const [west, south, east, north] = summary.extent;
+    const geometry = { type: "Polygon", coordinates: [[[west, south], [east, south], [east, north], [west, north], [west, south]]] };
+    return [{ type: "Feature", id: -1, geometry, properties: { action: difference.changed ? "changed" : "new", before: null, after: null } }];
+  }
+  const features = summary.needs_mapping ? (summary.preview?.features ?? []) : [];
   return features.map((feature, place) => ({ ...feature, id: -1 - place, properties: { action: "new", before: null, after: null } }));
 }
 

@@ -7,7 +7,7 @@ import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
 import { otherSystem } from "./other_system.js";
-import { differenceSentence, isOpen, KINDS, notesOf, ORIGINS, sizeText, summaryLines, touched } from "./words.js";
+import { differenceSentence, isOpen, KINDS, notesOf, ORIGINS, sizeText, summaryLines, terrainSentence, touched } from "./words.js";
 
 const MOST_LISTED = 2_000; // of each action; the numbers are of all
 
@@ -42,7 +42,7 @@ export function mountProposal(store, acts) {
     const hadFocus = panel.contains(document.activeElement) && document.activeElement.id;
     line = isOpen(proposal) ? jobLine(proposal.state === "reading" ? "Reading" : "Applying", () => acts.cancel(proposal)) : null;
     panel.replaceChildren(...head(proposal, acts), ...body(proposal).filter(Boolean));
-    byId("changes-panel").hidden = !["ready", "applying", "applied"].includes(proposal.state);
+    byId("changes-panel").hidden = proposal.kind === "terrain" || !["ready", "applying", "applied"].includes(proposal.state);
     foot.replaceChildren(...decision(proposal, busy));
     foot.hidden = foot.children.length === 0;
     if (hadFocus) document.getElementById(hadFocus)?.focus();
@@ -103,7 +103,7 @@ export function mountProposal(store, acts) {
     const count = touched(proposal.difference, { overwrites });
     const needsMapping = Boolean(proposal.summary.needs_mapping);
     const isIdle = needsMapping || (count === 0 && Object.keys(proposal.difference).length > 0);
-    const words = busy === "apply" ? "Applying" : count ? `Apply ${count.toLocaleString("en-GB")} ${count === 1 ? "change" : "changes"}` : "Apply";
+    const words = busy === "apply" ? "Applying" : count && proposal.kind !== "terrain" ? `Apply ${count.toLocaleString("en-GB")} ${count === 1 ? "change" : "changes"}` : "Apply";
     const apply = h("button", { type: "button", class: needsMapping ? "button" : "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: needsMapping ? "Say first what the columns are" : isIdle ? "Nothing would change" : null }, words);
     apply.addEventListener("click", () => (overwrites ? askFirst(proposal) : acts.apply(false)));
     return [h("div", { class: "foot-buttons" }, discard(busy), apply)];
@@ -134,7 +134,8 @@ export function mountProposal(store, acts) {
   return { forgetOverwrite: () => (overwrites = false) };
 }
 
-function sentenceOf({ state, difference, summary }) {
+function sentenceOf({ kind, state, difference, summary }) {
+  if (kind === "terrain" && summary.vertical_datum) return terrainSentence(summary, difference);
   const sentence = Object.keys(difference).length ? differenceSentence(difference) : "";
   if (summary.needs_mapping) return summary.words || "Say what the columns are.";
   return state === "ready" && !sentence ? "Ready to be applied." : sentence;

@@ -30,8 +30,8 @@ export const ACTIONS = {
 
 export const ORIGINS = { upload: "", overpass: "from Overpass", subscription: "from a subscription", roll_back: "roll-back" };
 
-/** Where a height counts from, as a terrain file does not say. */
-export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EVRF2007", "NAVD88"];
+/** Where heights count from, for files that do not say it. */
+export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN2016", "NAVD88"];
 
 export const isOpen = (proposal) => proposal.state === "reading" || proposal.state === "applying";
 
@@ -43,6 +43,13 @@ export function differenceSentence(difference) {
     .filter((action) => difference[action] > 0)
     .map((action) => `${number(difference[action])}${SPACE}${ACTIONS[action].words}`);
   return parts.length ? `${parts.join(", ")}.` : "Nothing would change.";
+}
+
+/** "Heights from 431 m to 2,599 m above EGM96, in place of the earlier model of this name." */
+export function terrainSentence({ lowest_m, highest_m, vertical_datum }, difference) {
+  const metres = (value) => `${number(Math.round(value)).replace("-", "−")}${SPACE}m`;
+  const again = difference.changed > 0 ? ", in place of the earlier model of this name" : "";
+  return `Heights from ${metres(lowest_m)} to ${metres(highest_m)} above ${vertical_datum}${again}.`;
 }
 
 /** How many rows of the ground an application touches. */
@@ -103,7 +110,7 @@ export function factLines({ before, after }) {
 
 const isEmpty = (value) => value === null || value === undefined || value === "" || (typeof value === "object" && Object.keys(value).length === 0);
 
-const NOT_SAID = new Set(["words", "needs_mapping"]); // said elsewhere
+const NOT_SAID = new Set(["words", "needs_mapping", "datum_is_stated"]); // said elsewhere
 
 /** Figures of a file, for people: numbers and short texts alone. */
 export function summaryLines(summary) {
