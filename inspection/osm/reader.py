@@ -1,7 +1,7 @@
 """Reads an OSM file into asset records: a few streaming passes, so that memory holds the infrastructure and not the file."""
 
 from collections import Counter
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,6 +25,12 @@ from inspection.osm.records import AssetRecord, Extent, OsmContent
 MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure
 MAX_NODES_PER_WAY = 10_000  # OSM itself stops at 2,000
 _LENGTH_DECIMALS = 6
+BATCH = 5_000
+_CHUNK = 20_000
+_NOWHERE = (float("nan"), float("nan"))
+
+Take = Callable[[list[AssetRecord]], None]
+"""Is given records, some thousand at a time, and keeps none of them."""
 
 
 @dataclass(frozen=True)
@@ -42,27 +48,83 @@ class _Relation:
     inner: tuple[int, ...]
 
 
-def read_osm(path: Path, progress: Progress | None = None) -> OsmContent:
-    """The assets of an .osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON file; raises OsmFileError if it cannot be read whole."""
+def read_osm(path: Path, progress: Progress | None = None, take: Take | None = None) -> OsmContent:
+    """The assets of an .osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON file; raises OsmFileError if it cannot be read whole.
+
+    With `take` the records are given to it in batches and not kept, so that memory does not grow with their number; an object that
+    stands twice in an unsorted file is then given twice, the one that counts last.
+    """
     file_format = examine(path, progress)
     try:
         if file_format not in {OsmFormat.JSON, OsmFormat.JSON_GZIP, OsmFormat.JSON_BZIP2}:
-            return _Reader(osmium.io.File(str(path), file_format.value), progress).content(None)
+            return _Reader(osmium.io.File(str(path), file_format.value), progress, take).content(None)
         with TemporaryDirectory() as folder:
             rewritten = Path(folder) / "overpass.osm.pbf"
             timestamp = rewrite_as_pbf(path, file_format, rewritten)
-            return _Reader(osmium.io.File(str(rewritten), "pbf"), progress).content(timestamp)
+            return _Reader(osmium.io.File(str(rewritten), "pbf"), progress, take).content(timestamp)
     except (RuntimeError, ValueError, OSError, EOFError, IndexError, OverflowError, osmium.InvalidLocationError) as error:
         if isinstance(error, OsmFileError):
             raise
         raise OsmFileError(f"The file is damaged: {error}") from error
 
 
+class _Batch:
+    """Records on their way out: kept, or given away some thousand at a time; what must be known of all is counted on the way."""
+
+    def __init__(self, take: Take | None) -> None:
+        self._take = take
+        self.kept: list[AssetRecord] = []
+        self.kinds: Counter[tuple[str, str]] = Counter()
+        self.is_unsorted = False
+        self._row_of: dict[int, int] = {}  # of supports that are kept: the last of the same number counts
+        self._last_id = 0
+        self._bounds: list[tuple[float, float, float, float]] = []
+        self.extent: Extent | None = None
+
+    def add_sorted(self, record: AssetRecord) -> None:
+        """A support; files have them in the order of their numbers, each once."""
+        self.is_unsorted |= record.osm_id <= self._last_id
+        self._last_id = record.osm_id
+        if self._take is None and record.osm_id in self._row_of:
+            row = self._row_of[record.osm_id]
+            self.kinds[self.kept[row].kind, self.kept[row].subtype] -= 1
+            self.kinds[record.kind, record.subtype] += 1
+            self.kept[row] = record
+            return
+        if self._take is None:
+            self._row_of[record.osm_id] = len(self.kept)
+        self.add(record)
+
+    def add(self, record: AssetRecord) -> None:
+        self.kinds[record.kind, record.subtype] += 1
+        self._bounds.append(record.geometry.bounds)
+        self.kept.append(record)
+        if len(self._bounds) == BATCH:
+            self._widen()
+            if self._take is not None:
+                self.give()
+
+    def give(self) -> None:
+        """What is left, at the end."""
+        self._widen()
+        if self._take is not None and self.kept:
+            self._take(self.kept)
+            self.kept = []
+
+    def _widen(self) -> None:
+        if not self._bounds:
+            return
+        bounds = np.array(self._bounds if self.extent is None else [*self._bounds, self.extent])
+        self.extent = (*map(float, bounds[:, :2].min(axis=0)), *map(float, bounds[:, 2:].max(axis=0)))  # type: ignore[assignment]
+        self._bounds = []
+
+
 class _Reader:
     """The passes over one file, in order; each keeps only what a later one or a record needs."""
 
-    def __init__(self, file: Any, progress: Progress | None) -> None:
+    def __init__(self, file: Any, progress: Progress | None, take: Take | None) -> None:
         self.file = file
+        self.batch = _Batch(take)
         self.progress = progress or (lambda stage, share: None)
         self.counts: Counter[str] = Counter()
         self.skipped: Counter[str] = Counter()
@@ -79,13 +141,16 @@ class _Reader:
         self.progress("way nodes", 0.4)
         self._read_positions([way.refs for way in (*ways.values(), *members.values())])
         self.progress("towers and poles", 0.7)
-        records = self._supports()
+        self._supports()
         self.progress("geometry", 0.8)
-        records += self._ways_and_bridges(ways, relations, members)
+        self._ways_and_bridges(ways, relations, members)
         self.progress("read", 1.0)
+        batch = self.batch
+        batch.give()
+        stated = header.get("osmosis_replication_timestamp") or header.get("timestamp") or None
         return OsmContent(
-            records=records, counts=self._counts(records), extent=_extent(records), stated_extent=_stated_extent(header.box()),
-            data_timestamp=timestamp or header.get("osmosis_replication_timestamp") or header.get("timestamp") or None,
+            records=batch.kept, kinds=batch.kinds, is_unsorted=batch.is_unsorted, counts=self._counts(), extent=batch.extent,
+            stated_extent=_stated_extent(header.box()), data_timestamp=timestamp or stated,
         )  # fmt: skip
 
     def _tagged(self, entities: Any, *keys: str) -> Iterator[Any]:
@@ -147,15 +212,34 @@ class _Reader:
         wanted = np.unique(np.concatenate(refs))
         wanted = wanted[wanted > 0]
         positions = np.full((len(wanted), 2), np.nan)
-        row_of = {osm_id: row for row, osm_id in enumerate(wanted.tolist())}
-        if row_of:
-            for node in self._numbered(osmium.osm.NODE, row_of):
-                if node.location.valid():
-                    positions[row_of[node.id]] = node.location.lon, node.location.lat
-                else:
-                    self.skipped["node_not_on_earth"] += 1
+        if len(wanted):
+            for ids, places in self._nodes_in_chunks():
+                rows = np.minimum(np.searchsorted(wanted, ids), len(wanted) - 1)
+                is_wanted = wanted[rows] == ids
+                self.skipped["node_not_on_earth"] += int(np.isnan(places[is_wanted, 0]).sum())
+                is_wanted &= ~np.isnan(places[:, 0])
+                positions[rows[is_wanted]] = places[is_wanted]
+        if not self.skipped["node_not_on_earth"]:
+            del self.skipped["node_not_on_earth"]
         found = ~np.isnan(positions[:, 0])
         self.node_ids, self.positions = wanted[found], positions[found]
+
+    def _nodes_in_chunks(self) -> Iterator[tuple[NDArray[np.int64], FloatArray]]:
+        """Ids and positions of all nodes, NaN for those that are not on earth, some ten thousand at a time."""
+        ids: list[int] = []
+        places: list[tuple[float, float]] = []
+        nodes: Iterable[Any] = osmium.FileProcessor(self.file, osmium.osm.NODE)
+        for node in nodes:
+            if node.deleted:
+                continue
+            location = node.location
+            ids.append(node.id)
+            places.append((location.lon, location.lat) if location.valid() else _NOWHERE)
+            if len(ids) == _CHUNK:
+                yield np.array(ids, dtype=np.int64), np.array(places, dtype=np.float64)
+                ids, places = [], []
+        if ids:
+            yield np.array(ids, dtype=np.int64), np.array(places, dtype=np.float64)
 
     def _located(self, way: _Way) -> tuple[NDArray[np.int64], FloatArray, int]:
         """The way's nodes that are in the file, their positions, and how many are not."""
@@ -165,8 +249,7 @@ class _Reader:
         found = self.node_ids[places] == way.refs
         return way.refs[found], self.positions[places[found]], int(len(way.refs) - found.sum())
 
-    def _supports(self) -> list[AssetRecord]:
-        records: dict[int, AssetRecord] = {}
+    def _supports(self) -> None:
         for node in self._tagged(osmium.osm.NODE, "power"):
             tags = dict(node.tags)
             kind = tags["power"]
@@ -176,18 +259,16 @@ class _Reader:
                 self.skipped["node_not_on_earth"] += 1
                 continue
             place = LonLat(node.location.lon, node.location.lat)
-            records[node.id] = AssetRecord(
+            record = AssetRecord(
                 kind="tower", subtype=kind, osm_type="n", osm_id=node.id, geometry=Point(place), centre=place, tags=tags,
                 voltages_v=meaning.voltages_v(tags.get("voltage")), circuits=meaning.circuits(tags.get("circuits")),
                 height_m=meaning.height_m(tags),
             )  # fmt: skip
-        self.counts.update(record.subtype for record in records.values())
-        return list(records.values())
+            self.batch.add_sorted(record)
 
-    def _ways_and_bridges(self, ways: dict[int, _Way], relations: Sequence[_Relation], members: dict[int, _Way]) -> list[AssetRecord]:
+    def _ways_and_bridges(self, ways: dict[int, _Way], relations: Sequence[_Relation], members: dict[int, _Way]) -> None:
         located = [self._located(way) for way in ways.values()]
         lengths = _lengths_m([points for _, points, _ in located])
-        records: list[AssetRecord] = []
         bridge_ways: list[BridgeWay] = []
         areas: list[BridgeArea] = []
         for way, (refs, points, missing), length_m in zip(ways.values(), located, lengths, strict=True):
@@ -206,15 +287,16 @@ class _Reader:
             length_m = round(length_m, _LENGTH_DECIMALS)
             node_ids = tuple(refs.tolist())
             if line:
-                records.append(_line_record(way, line, points, length_m, node_ids))
+                self.batch.add(_line_record(way, line, points, length_m, node_ids))
             if railway:
-                records.append(_railway_record(way, railway, points, length_m, node_ids))
+                self.batch.add(_railway_record(way, railway, points, length_m, node_ids))
             if is_bridge and np.abs(np.diff(points[:, 0])).max() <= 180.0:
                 bridge_ways.append(BridgeWay(way.osm_id, way.tags, points, node_ids, length_m))
             elif is_bridge:
                 self.skipped["bridge_across_antimeridian"] += 1
         self._add_relation_areas(relations, members, areas)
-        return records + bridges_of(bridge_ways, areas)
+        for record in bridges_of(bridge_ways, areas):
+            self.batch.add(record)
 
     def _count(self, line: str | None, railway: str | None, is_bridge: bool, length_m: float) -> None:
         if line:
@@ -258,11 +340,13 @@ class _Reader:
             except BrokenArea:
                 self.skipped["bridge_area_invalid"] += 1
 
-    def _counts(self, records: Sequence[AssetRecord]) -> dict[str, Any]:
+    def _counts(self) -> dict[str, Any]:
         counts: dict[str, Any] = dict.fromkeys(
             ("tower", "pole", "portal", "line", "minor_line", "cable", "railway", "bridge_ways", "railway_bridge_ways", "bridge_areas"), 0
         )
-        counts |= {"bridge": sum(record.kind == "bridge" for record in records), "missing_nodes": 0}
+        kinds = self.batch.kinds
+        counts |= {"bridge": sum(number for (kind, _), number in kinds.items() if kind == "bridge"), "missing_nodes": 0}
+        counts |= {subtype: number for (kind, subtype), number in kinds.items() if kind == "tower"}
         counts |= dict.fromkeys(("line_km", "minor_line_km", "railway_km"), 0.0)
         counts |= {key: round(float(value), 3) if key.endswith("_km") else int(value) for key, value in sorted(self.counts.items())}
         return counts | {"skipped": dict(sorted(self.skipped.items()))}
@@ -317,13 +401,6 @@ def _railway_record(way: _Way, kind: str, points: FloatArray, length_m: float, n
         voltages_v=meaning.voltages_v(way.tags.get("voltage")), length_m=length_m, is_flyable=meaning.is_flyable_railway(way.tags),
         node_osm_ids=node_ids,
     )  # fmt: skip
-
-
-def _extent(records: Sequence[AssetRecord]) -> Extent | None:
-    if not records:
-        return None
-    bounds = np.array([record.geometry.bounds for record in records])
-    return (*map(float, bounds[:, :2].min(axis=0)), *map(float, bounds[:, 2:].max(axis=0)))  # type: ignore[return-value]
 
 
 def _stated_extent(box: Any) -> Extent | None:

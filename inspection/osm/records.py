@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -69,9 +70,14 @@ class AssetRecord:
 
 @dataclass(frozen=True)
 class OsmContent:
-    """The assets of one file. extent is None when the file has none; stated_extent is what the file's header says."""
+    """The assets of one file. extent is None when the file has none; stated_extent is what the file's header says.
+
+    records is empty where they were given away in batches; kinds counts all of them by kind and subtype.
+    """
 
     records: list[AssetRecord]
+    kinds: Counter[tuple[str, str]]
+    is_unsorted: bool  # an object may have been given twice
     counts: dict[str, Any]
     extent: Extent | None
     stated_extent: Extent | None

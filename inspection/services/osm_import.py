@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -60,18 +59,17 @@ def import_osm(
     with newer data has written. What an earlier file of the same region had and this one has not is marked as vanished, never deleted:
     see _sources. With replace_region that holds for all OSM assets within the file's extent, whichever file they came from.
     """
-    content = _read(path, progress)
     with path.open("rb") as file:
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
-    _tell(progress, "writing", 0.0)
     with transaction.atomic():
-        hold_ground()
-        data_import = DataImport.objects.create(
-            kind=ImportKind.OSM, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
-            attribution=SYNTHETIC_ATTRIBUTION if is_synthetic else content.attribution, data_timestamp=_timestamp(content.data_timestamp),
-            **_origin(provenance),
-        )  # fmt: skip
-        with _staged(content) as cursor:
+        with _staged(path, progress) as (cursor, content):
+            _tell(progress, "writing", 0.0)
+            hold_ground()
+            data_import = DataImport.objects.create(
+                kind=ImportKind.OSM, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
+                attribution=SYNTHETIC_ATTRIBUTION if is_synthetic else content.attribution,
+                data_timestamp=_timestamp(content.data_timestamp), **_origin(provenance),
+            )  # fmt: skip
             values = _values(cursor, content, path, is_synthetic, replace_edited, replace_region, but=data_import)
             values |= {
                 "data_import": data_import.pk, "actor": imported_by and imported_by.pk,
@@ -111,10 +109,9 @@ def difference_of_osm(
     *, path: Path, progress: Progress | None = None, replace_edited: bool = False, replace_region: bool = False, most: int = 2_000
 ) -> OsmDifference:
     """What import_osm would do with the file; nothing is written. Raises OsmFileError."""
-    content = _read(path, progress)
-    _tell(progress, "comparing", 0.0)
     with transaction.atomic():
-        with _staged(content) as cursor:
+        with _staged(path, progress) as (cursor, content):
+            _tell(progress, "comparing", 0.0)
             values = _values(cursor, content, path, False, replace_edited, replace_region)
             numbers = _numbers(cursor, values)
             _tell(progress, "comparing", 0.6)
@@ -126,23 +123,24 @@ def difference_of_osm(
     return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, numbers, samples)
 
 
-def _read(path: Path, progress: Progress | None) -> OsmContent:
-    content = read_osm(path, progress)
-    if not content.records:
-        raise OsmFileError("The file has no power lines, towers, railways or bridges.")
-    return content
-
-
 @contextmanager
-def _staged(content: OsmContent) -> Iterator[CursorWrapper]:
-    """A cursor beside which the file's records lie in a temporary table."""
+def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapper, OsmContent]]:
+    """Read the file's records into a temporary table as they come; a cursor beside it, and what is known of all. Raises OsmFileError."""
     with connection.cursor() as cursor:
         cursor.execute(osm_merge.STAGING)
         with cursor.copy(osm_merge.COPY) as copy:
-            for row in _rows(content.records):
-                copy.write_row(row)
+
+            def take(records: list[AssetRecord]) -> None:
+                for row in _rows(records):
+                    copy.write_row(row)
+
+            content = read_osm(path, progress, take)
+            if not content.kinds:
+                raise OsmFileError("The file has no power lines, towers, railways or bridges.")
+        if content.is_unsorted:
+            cursor.execute(osm_merge.KEEP_THE_LAST)
         cursor.execute("ANALYZE osm_staging, inspection_asset")  # right after a first import the planner still takes the table for empty
-        yield cursor
+        yield cursor, content
         cursor.execute("DROP TABLE osm_staging")  # before the end of the transaction: several imports may share one
 
 
@@ -164,7 +162,7 @@ def _values(
     """
     earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic).exclude(pk=but and but.pk)
     sources = [row for row in earlier if _is_same_source(row.counts.get("extent"), content.extent)]
-    present = Counter((record.kind, record.subtype) for record in content.records)
+    present = content.kinds
     is_same_name = any(source.file_name == path.name[:255] for source in sources)
     held = Asset.objects.filter(data_import__in=sources, vanished_at=None, osm_id__isnull=False).order_by()
     filtered_out = [

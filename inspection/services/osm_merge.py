@@ -23,6 +23,13 @@ CREATE TEMPORARY TABLE osm_staging (
 ) ON COMMIT DROP
 """
 COPY = f"COPY osm_staging ({', '.join(COLUMNS)}) FROM STDIN"
+# Of an object that stands twice in a file the last one counts.
+KEEP_THE_LAST = """
+DELETE FROM osm_staging s USING (
+    SELECT kind, osm_type, osm_id, max(ctid) AS last FROM osm_staging GROUP BY kind, osm_type, osm_id HAVING count(*) > 1
+) twice
+WHERE s.kind = twice.kind AND s.osm_type = twice.osm_type AND s.osm_id = twice.osm_id AND s.ctid <> twice.last
+"""
 
 
 def facts(row: str, vanished: str = "false") -> str:
