@@ -13,10 +13,13 @@ const field = (id, words, input, unit) => h("div", { class: "field" }, h("label"
 const text = (id, value, longest = 255) => h("input", { class: "input", id, type: "text", maxlength: longest, value: value ?? "", autocomplete: "off", spellcheck: "false" });
 const number = (id, value, rest) => h("input", { class: "input", id, type: "number", value: value ?? "", ...rest });
 
-/** "110, 20" or "110 kV; 20 kV" → volts, highest first. */
+const HIGHEST_KV = 2_000;
+
+/** "110, 20" or "110 kV; 20 kV" → volts, highest first; null where a part is no voltage. */
 export function voltsOf(words) {
-  const found = words.split(/[;,/]/).map((part) => Number(part.replace(/kV/i, "").trim().replace(",", "."))).filter((kilovolts) => kilovolts > 0 && Number.isFinite(kilovolts));
-  return [...new Set(found.map((kilovolts) => Math.round(kilovolts * 1000)))].sort((a, b) => b - a);
+  const parts = words.split(/[;,/]/).map((part) => part.replace(/kv/i, "").trim()).filter(Boolean);
+  const volts = parts.map((part) => (/^\d+(\.\d+)?$/.test(part) ? Math.round(Number(part) * 1000) : 0));
+  return volts.every((each) => each >= 1 && each <= HIGHEST_KV * 1000) ? [...new Set(volts)].sort((a, b) => b - a) : null;
 }
 
 const numberOrNull = (input) => (input.value === "" ? null : Number(input.value));
@@ -29,6 +32,8 @@ export function assetForm(feature, kind, kept) {
   const subtype = h("select", { class: "input", id: "asset-subtype" }, [...subtypes, ...(isOther ? [[facts.subtype, facts.subtype]] : [])].map(([value, words]) => h("option", { value, selected: value === (facts.subtype || subtypes[0][0]) }, words)));
   const [ref, name, operator] = ["ref", "name", "operator"].map((key) => text(`asset-${key}`, facts[key]));
   const voltages = text("asset-voltages", (facts.voltages_v ?? []).map((volts) => volts / 1000).join(", "), 60);
+  const checkVoltages = () => voltages.setCustomValidity(voltsOf(voltages.value) ? "" : `Write kilovolts up to ${HIGHEST_KV}, such as 110, 20.`);
+  voltages.addEventListener("input", checkVoltages);
   const circuits = number("asset-circuits", facts.circuits, { min: 1, max: 100, step: 1 });
   const height = number("asset-height", facts.height_m, { min: 0.1, max: 1000, step: "any" });
   const flyable = h("input", { class: "check", id: "asset-flyable", type: "checkbox", checked: facts.is_flyable ?? true });
@@ -46,7 +51,7 @@ export function assetForm(feature, kind, kept) {
     element,
     read() {
       const read = { subtype: subtype.value, ref: ref.value.trim(), name: name.value.trim(), operator: operator.value.trim(), is_flyable: flyable.checked };
-      if (isPower) read.voltages_v = voltsOf(voltages.value);
+      if (isPower) read.voltages_v = voltsOf(voltages.value) ?? [];
       if (kind === "line") read.circuits = numberOrNull(circuits);
       else read.height_m = numberOrNull(height);
       return read;

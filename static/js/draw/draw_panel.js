@@ -13,6 +13,15 @@ const ASK = {
   circle: "Click the centre, then how far it reaches.",
 };
 
+const HINTS = {
+  point: "Drag it to its place, or write where it stands under Points.",
+  line: "Drag a point; drag the small one between two to add another.",
+  area: "Drag a point; drag the small one between two to add another.",
+  circle: "Drag the centre, or the point on the rim.",
+};
+const HOLD = matchMedia("(pointer: coarse)").matches ? " Hold a point to remove it." : " Alt-click removes one; with Ctrl or Alt nothing snaps.";
+const MOVING = "Drag the whole shape, or move it with the arrow keys.";
+
 const button = (words, name, act, rest = {}) => h("button", { type: "button", class: "button", onclick: act, ...rest }, icon(name, "small"), words);
 const tool = (words, name, act) => h("button", { type: "button", class: "icon-button", "aria-label": words, title: words, onclick: act }, icon(name));
 
@@ -98,8 +107,7 @@ export function createDrawPanel(editor, { show }) {
     removeRing.hidden = !chosen || isDrawing || removeRingOf(shape, chosen) === shape;
     removeRing.lastChild.textContent = chosen?.[1] > 0 ? "Remove hole" : "Remove part";
     addPoint.hidden = !isDrawing;
-    ask.hidden = !isDrawing;
-    ask.textContent = ASK[shape.kind];
+    ask.textContent = isDrawing ? ASK[shape.kind] : now.isMoving ? MOVING : HINTS[shape.kind] + (["line", "area"].includes(shape.kind) ? HOLD : "");
     figures.textContent = figuresOf(shape);
     coming.hidden = true;
     figures.hidden = false;

@@ -4,10 +4,11 @@ import { h } from "../dom.js";
 import { clockText } from "../units.js";
 import { differences } from "./history_list.js";
 
-/** Resolves to "theirs", "mine" or null (look again). `mine` and `theirs` are facts under the same names. */
-export function askWhich({ changed_by, changed_at, mine, theirs }) {
+const list = (rows) => h("dl", { class: "conflict-facts" }, rows.map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words))));
+
+/** Resolves to "theirs", "mine" or null (look again). `seen`, `mine` and `theirs` are facts under the same names; `theirs` null where it is gone. */
+export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
   return new Promise((resolve) => {
-    const rows = differences(theirs, mine);
     const answer = (which) => () => {
       dialog.close();
       dialog.remove();
@@ -17,8 +18,8 @@ export function askWhich({ changed_by, changed_at, mine, theirs }) {
       "dialog",
       { "aria-labelledby": "conflict-title" },
       h("h2", { id: "conflict-title" }, `Changed by ${changed_by}${changed_at ? ` at ${clockText(changed_at)}` : ""}`),
-      h("p", {}, theirs ? "Nothing of yours was stored yet. Theirs → yours:" : "It was taken off the ground. Nothing of yours was stored."),
-      h("dl", { class: "conflict-facts" }, rows.map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words)))),
+      h("p", {}, theirs ? "Nothing of yours is stored yet." : "It was taken off the ground. Nothing of yours is stored."),
+      theirs && [h("h3", {}, "What they changed"), list(differences(seen, theirs)), h("h3", {}, "What yours would change of that"), list(differences(theirs, mine))],
       h(
         "div",
         { class: "acts" },

@@ -34,7 +34,7 @@ const countPoints = (coordinates) => (typeof coordinates[0] === "number" ? 1 : c
 export function differences(before, after) {
   if (!before || !after) return [];
   return Object.keys(before)
-    .filter((name) => !QUIET.has(name))
+    .filter((name) => !QUIET.has(name) && JSON.stringify(before[name]) !== JSON.stringify(after[name]))
     .map((name) => [factName(name), name === "geometry" ? "moved" : `${factText(name, before[name])} → ${factText(name, after[name])}`]);
 }
 
@@ -44,15 +44,15 @@ function momentText(iso) {
   return words === "now" || words.includes(",") ? words : `${words}, ${clockText(iso)}`;
 }
 
-/** entries as the API gives them; `revert(entry)` where somebody may. */
-export function historyList(entries, { revert = null } = {}) {
+/** entries as the API gives them; `revert(entry)` where somebody may, `ring(geometries)` shows on the map where it was. */
+export function historyList(entries, { revert = null, ring = () => {} } = {}) {
   return h(
     "ol",
     { class: "history-list" },
     entries.map((entry) =>
       h(
         "li",
-        {},
+        entry.before?.geometry ? { onpointerenter: () => ring([entry.before.geometry]), onpointerleave: () => ring() } : {},
         h("div", { class: "history-head" }, h("strong", {}, ACTS[entry.action] ?? entry.action), h("span", { class: "caption", title: new Date(entry.recorded_at).toString() }, [entry.actor ?? (entry.file_name ? `from ${entry.file_name}` : "by a command"), momentText(entry.recorded_at)].join(" · "))),
         h("dl", {}, differences(entry.before, entry.after).map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words)))),
         revert && entry.id && entry.before && h("button", { type: "button", class: "text-button", onclick: () => revert(entry) }, icon("undo-2", "small"), "Bring back what was before"),

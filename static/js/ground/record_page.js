@@ -10,6 +10,7 @@ import { byId, h, icon } from "../dom.js";
 import { createDrawPanel } from "../draw/draw_panel.js";
 import { createEditor } from "../draw/editor.js";
 import { circleOf, empty, geometryOf, shapeOf } from "../draw/shape.js";
+import { piecesOf } from "../map/click_router.js";
 import { boxAround } from "../map/map_view.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { say, toast } from "../page/toast.js";
@@ -30,13 +31,22 @@ export function mountRecordPage(about) {
   let chosen = null; // { feature, etag }
   let edit = null; // { choice, feature, etag, form, began: { shape, facts }, isKept, isSaving, sent }
   let asked = 0;
+  let pointed; // id of what the pointer is at
   let checkTimer = 0;
 
   const { page, map, layout, open } = mountGroundPage({
     isBusy: () => editor?.isActive() ?? false,
     kinds: () => about.pickKinds,
     click: (thing) => thing && choose(thing.id, { stay: true }),
+    ringsItself: true,
+    hover(thing) {
+      if (thing?.id === pointed) return;
+      pointed = thing?.id;
+      ring(thing ? piecesOf(map.map, thing) : []);
+    },
   });
+  /** What is chosen stays ringed beside what the pointer or a row is at. */
+  const ring = (geometries = []) => map.ring([...(chosen && !edit ? [chosen.feature.geometry] : []), ...geometries]);
   const draft = createDraft(`spanwise.${about.key}-draft.${page.userId}`);
   const views = { find: byId("record-find"), show: byId("record-show"), edit: byId("record-edit") };
   const list = byId("record-list");
@@ -92,7 +102,7 @@ export function mountRecordPage(about) {
             "button",
             {
               type: "button", class: "record-row", "data-id": feature.id, onclick: () => choose(feature.id),
-              onpointerenter: () => map.ring([feature.geometry]), onpointerleave: () => map.ring([]), onfocus: () => map.ring([feature.geometry]), onblur: () => map.ring([]),
+              onpointerenter: () => ring([feature.geometry]), onpointerleave: () => ring(), onfocus: () => ring([feature.geometry]), onblur: () => ring(),
             },
             icon(row.icon),
             h("span", { class: "what" }, h("span", { class: "name" }, row.name), row.detail && h("small", {}, row.detail)),
@@ -116,10 +126,10 @@ export function mountRecordPage(about) {
       const [{ data: feature, etag }, { data: history }] = await Promise.all([get(`${about.path}/${id}`), get(`${about.path}/${id}/history`)]);
       chosen = { feature, etag };
       const scroll = byId("side-scroll").scrollTop;
-      drawChosen(history.results);
+      drawChosen(history);
       go("show");
       if (keepScroll) byId("side-scroll").scrollTop = scroll;
-      map.ring([feature.geometry]);
+      ring();
       if (!stay) map.fit(boxOf(feature.geometry));
       rememberAddress(id);
       say(about.title(feature));
@@ -141,7 +151,21 @@ export function mountRecordPage(about) {
     history.replaceState(history.state, "", address);
   }
 
-  function drawChosen(entries) {
+  /** The newest changes; earlier ones on demand. */
+  function historyPart({ results, next: earlier }) {
+    const part = h("div", {}, historyList(results, { revert: page.canCurate ? revert : null, ring }));
+    const more = async () => {
+      try {
+        part.lastChild.replaceWith(historyPart((await get(earlier)).data));
+      } catch (error) {
+        failed(error, more);
+      }
+    };
+    if (earlier) part.append(h("button", { type: "button", class: "text-button", onclick: more }, "Earlier changes"));
+    return part;
+  }
+
+  function drawChosen(history) {
     const { feature } = chosen;
     const isGone = feature.properties.vanished_at;
     const acts = page.canCurate && [
@@ -155,13 +179,13 @@ export function mountRecordPage(about) {
       ...about.details(feature),
       h("div", { class: "record-acts" }, acts || []),
       h("h3", {}, icon("history", "small"), "History"),
-      historyList(entries, { revert: page.canCurate ? revert : null }),
+      historyPart(history),
     );
   }
 
   function back() {
     chosen = null;
-    map.ring([]);
+    ring();
     rememberAddress(null);
     go("find");
     list.querySelector("button")?.focus({ preventScroll: true });
@@ -220,7 +244,7 @@ export function mountRecordPage(about) {
       form.element,
     );
     go("edit");
-    map.ring([]);
+    ring();
     editor.start(first, { without: feature?.id ?? null });
     views.edit.querySelector("h2").focus({ preventScroll: true });
   }
@@ -322,7 +346,7 @@ export function mountRecordPage(about) {
 
   async function settleConflict({ changed_by, changed_at, current }, body) {
     const theirs = current && about.factsOf(current);
-    const which = await askWhich({ changed_by, changed_at, theirs, mine: theirs && { ...theirs, ...about.factsOfBody(body) } });
+    const which = await askWhich({ changed_by, changed_at, seen: about.factsOf(edit.feature), theirs, mine: theirs && { ...theirs, ...about.factsOfBody(body) } });
     if (which === "theirs") {
       const { id } = edit.feature;
       leaveEdit();

@@ -1,6 +1,7 @@
 /** Height limits of a zone: words, a small drawing of the band, and the fields that edit them. */
 
 import { h, svg } from "../dom.js";
+import { heightText } from "../units.js";
 
 export const REFERENCES = [["AGL", "above ground"], ["AMSL", "above sea level"], ["STD", "flight level"], ["WGS84", "above the ellipsoid"]];
 const WORDS = Object.fromEntries(REFERENCES);
@@ -12,6 +13,13 @@ export function limitText(limit, side) {
   if (limit.reference === "STD") return `FL\u00a0${Math.round(limit.value_m / FLIGHT_LEVEL_M)}`;
   if (limit.value_m === 0 && limit.reference === "AGL") return "ground";
   return `${Math.round(limit.value_m).toLocaleString("en-GB")}\u00a0m ${WORDS[limit.reference] ?? ""}`.trim();
+}
+
+/** What is known of both limits, in one sentence. */
+export function heightsText({ lower_limit: lower, upper_limit: upper }) {
+  if (lower && upper) return `From ${limitText(lower, "lower")} to ${limitText(upper, "upper")}`;
+  if (upper) return `Up to ${limitText(upper, "upper")}, lower limit not stated`;
+  return lower ? `From ${limitText(lower, "lower")}, upper limit not stated` : "Heights not stated";
 }
 
 /** A column of air with the band in it; what is not stated is open, drawn as a dashed end. */
@@ -40,18 +48,22 @@ export function limitField(side, words, limit) {
     { class: "input", "aria-label": `${words}, counted from` },
     [["", "not stated"], ...REFERENCES].map(([key, text]) => h("option", { value: key, selected: key === (limit?.reference ?? "") }, text)),
   );
+  const metres = h("p", { class: "caption", hidden: true });
+  const factor = () => (reference.value === "STD" ? FLIGHT_LEVEL_M : unit.value === "ft" ? FOOT_M : 1);
   const adapt = () => {
     value.disabled = reference.value === "";
+    value.required = reference.value !== "";
     unit.disabled = reference.value === "" || reference.value === "STD";
+    metres.hidden = value.disabled || value.value === "" || factor() === 1;
+    metres.textContent = `${value.value}\u00a0${reference.value === "STD" ? "hundred feet of pressure altitude" : "ft"} = ${heightText(Number(value.value) * factor())}`;
   };
-  reference.addEventListener("change", adapt);
+  for (const part of [value, unit, reference]) part.addEventListener("input", adapt);
   adapt();
   return {
-    element: h("fieldset", {}, h("legend", {}, words), h("div", { class: "limit-row" }, value, unit, reference)),
+    element: h("fieldset", {}, h("legend", {}, words), h("div", { class: "limit-row" }, value, unit, reference), metres),
     read() {
       if (!reference.value || value.value === "") return null;
-      const factor = reference.value === "STD" ? FLIGHT_LEVEL_M : unit.value === "ft" ? FOOT_M : 1;
-      return { value_m: Math.round(Number(value.value) * factor * 100) / 100, reference: reference.value };
+      return { value_m: Math.round(Number(value.value) * factor() * 100) / 100, reference: reference.value };
     },
   };
 }

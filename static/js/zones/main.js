@@ -5,7 +5,7 @@ import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/furniture.js";
 import { coordinateText, lengthText, whenText } from "../units.js";
 import { zoneForm } from "./form.js";
-import { bandDrawing, limitText } from "./heights.js";
+import { bandDrawing, heightsText } from "./heights.js";
 import { weekDrawing } from "./schedule_editor.js";
 import { mountSetsPanel } from "./sets_panel.js";
 
@@ -13,7 +13,6 @@ const PAGE = 60;
 const TYPING_MS = 250;
 const filter = { text: "", set: null, inView: false };
 const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
-const heights = ({ lower_limit: lower, upper_limit: upper }) => (lower || upper ? `From ${limitText(lower, "lower")} to ${limitText(upper, "upper")}` : "Heights not stated");
 
 function factsOf({ properties, geometry }) {
   const { name, restriction, reason, schedule, circle, lower_limit: lower, upper_limit: upper } = properties;
@@ -31,7 +30,7 @@ function details({ properties }) {
   const { source } = properties;
   return [
     h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || "Restriction not stated"),
-    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heights(properties)), h("p", {}, properties.schedule_words), properties.schedule && h("p", { class: "caption" }, "Counts at all heights and times for now"))),
+    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, properties.schedule_words), properties.schedule && h("p", { class: "caption" }, "Counts at all heights and times for now"))),
     ...(properties.schedule ?? []).slice(0, 3).filter((period) => Array.isArray(period.schedule)).map(weekDrawing),
     properties.is_edited && h("p", { class: "caption" }, "Edited by hand: imports leave it alone."),
     h(
@@ -63,7 +62,7 @@ const records = mountRecordPage({
   details,
   form: zoneForm,
   followsView: () => filter.inView,
-  row: ({ properties }) => ({ icon: "zone", name: properties.name, detail: heights(properties), chip: properties.schedule ? "at times" : "" }),
+  row: ({ properties }) => ({ icon: "zone", name: properties.name, detail: heightsText(properties), chip: properties.schedule ? "at times" : "" }),
   listQuery(map) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);

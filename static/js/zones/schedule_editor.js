@@ -33,9 +33,13 @@ export function scheduleEditor(schedule) {
   const body = h("div", { class: "record-form" });
   const element = h("fieldset", {}, h("legend", {}, "When it applies"), body);
   const tell = () => element.dispatchEvent(new Event("input", { bubbles: true }));
+  /** Everything is drawn anew; focus stays at the control that has the same place. */
   const change = (act) => () => {
+    const controls = () => [...body.querySelectorAll("input, select, button")];
+    const place = controls().indexOf(document.activeElement);
     act();
     draw();
+    if (place >= 0) controls()[Math.min(place, controls().length - 1)].focus();
     tell();
   };
 
@@ -66,7 +70,7 @@ export function scheduleEditor(schedule) {
           type: "checkbox", checked: has(key),
           onchange: change(() => {
             const chosen = DAYS.map(([day]) => day).filter((day) => (day === key ? !has(day) : has(day)));
-            entry.day = chosen.length === 7 || !chosen.length ? ["ANY"] : chosen;
+            if (chosen.length) entry.day = chosen.length === 7 ? ["ANY"] : chosen; // the last day stays
           }),
         }), h("span", {}, words)),
       ),
