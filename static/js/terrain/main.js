@@ -1,7 +1,7 @@
 /** The page "Terrain": composes the list of models, the map and the dock; a click tells the height, several points the profile. */
 
 import { get, post, remove } from "../api.js";
-import { byId } from "../dom.js";
+import { byId, h } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { distance_m } from "../mission/span_strip.js";
@@ -14,8 +14,9 @@ import * as layer from "./terrain_layer.js";
 
 const HINTS = {
   height: "Click the map: the height of the ground there.",
-  profile: "Click two or more points, or a power line. Backspace takes the last point back, Esc ends.",
+  profile: "Click two or more points, or a power line.",
 };
+const KEYS_OF_PROFILE = " Backspace takes the last point back, Esc ends.";
 const MOST_SAMPLES = 1_500; // more than a drawing has pixels
 const REACH_PX = 24; // of the pointer from the profile's line, for the cursor
 const MOST_TOWER_PAGES = 10;
@@ -54,7 +55,7 @@ function choose(next) {
   end();
   tool = next;
   document.querySelector(`#terrain-tools input[value=${tool}]`).checked = true;
-  byId("terrain-hint").textContent = HINTS[tool];
+  byId("terrain-hint").replaceChildren(HINTS[tool], ...(tool === "profile" ? [h("span", { class: "with-keys" }, KEYS_OF_PROFILE)] : []));
   map.map.getCanvas().style.cursor = tool === "profile" ? "crosshair" : "";
 }
 
@@ -201,8 +202,8 @@ open({
   bindings: [
     { keys: ["h"], words: "Height at a place", act: () => choose("height") },
     { keys: ["p"], words: "Profile along a line", act: () => choose("profile") },
-    { keys: ["arrowright"], words: "On along the profile", act: step(1) },
-    { keys: ["arrowleft"], act: step(-1) },
+    { keys: ["."], words: "On along the profile", act: step(1) },
+    { keys: [","], words: "Back along the profile", act: step(-1) },
     { keys: ["backspace", "delete"], words: "Take the last point back", act: takePointBack },
     { keys: ["escape"], words: "End", act: () => (!byId("dock").hidden || points.length ? end() : tool === "profile" ? choose("height") : false) },
   ],
