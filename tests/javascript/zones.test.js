@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { heightsText } from "../../static/js/zones/heights.js";
 import { fromField, newPeriod, timeFromField, timeToField, toField, weekOf } from "../../static/js/zones/schedule.js";
 
 const entry = (rest) => ({ day: ["MON"], startTime: null, startEvent: null, endTime: null, endEvent: null, ...rest });
@@ -34,4 +35,12 @@ test("moments and times come back as they were, in UTC", () => {
   assert.equal(timeFromField(timeToField("07:45:00Z")), "07:45:00Z");
   assert.equal(fromField(toField(null)), null);
   assert.equal(timeFromField(timeToField(null)), null);
+});
+
+test("heights are told with what they count from, and what is not stated as such", () => {
+  const above = (value_m, reference) => ({ value_m, reference });
+  assert.equal(heightsText({ lower_limit: above(0, "AGL"), upper_limit: above(120, "AGL") }), "From ground to 120\u00a0m above ground");
+  assert.equal(heightsText({ lower_limit: null, upper_limit: above(2895.6, "STD") }), "Up to FL\u00a095, lower limit not stated");
+  assert.equal(heightsText({ lower_limit: above(300, "AMSL"), upper_limit: null }), "From 300\u00a0m above sea level, upper limit not stated");
+  assert.equal(heightsText({ lower_limit: null, upper_limit: null }), "Heights not stated");
 });

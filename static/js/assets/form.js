@@ -1,6 +1,7 @@
 /** The facts of an asset as fields. */
 
 import { h } from "../dom.js";
+import { HIGHEST_KV, voltsOf } from "./voltages.js";
 
 const SUBTYPES = {
   tower: [["tower", "Tower"], ["pole", "Pole"], ["portal", "Portal"]],
@@ -12,15 +13,6 @@ const SUBTYPES = {
 const field = (id, words, input, unit) => h("div", { class: "field" }, h("label", { for: id }, words), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input);
 const text = (id, value, longest = 255) => h("input", { class: "input", id, type: "text", maxlength: longest, value: value ?? "", autocomplete: "off", spellcheck: "false" });
 const number = (id, value, rest) => h("input", { class: "input", id, type: "number", value: value ?? "", ...rest });
-
-const HIGHEST_KV = 2_000;
-
-/** "110, 20" or "110 kV; 20 kV" → volts, highest first; null where a part is no voltage. */
-export function voltsOf(words) {
-  const parts = words.split(/[;,/]/).map((part) => part.replace(/kv/i, "").trim()).filter(Boolean);
-  const volts = parts.map((part) => (/^\d+(\.\d+)?$/.test(part) ? Math.round(Number(part) * 1000) : 0));
-  return volts.every((each) => each >= 1 && each <= HIGHEST_KV * 1000) ? [...new Set(volts)].sort((a, b) => b - a) : null;
-}
 
 const numberOrNull = (input) => (input.value === "" ? null : Number(input.value));
 
