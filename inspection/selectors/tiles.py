@@ -8,7 +8,7 @@ from django.db import connection
 from inspection.selectors.assets import VOLTAGE_NOT_STATED
 
 DEEPEST_ZOOM = 22
-RECIPE = 3  # part of the ETag: counts the changes to this file's statements
+RECIPE = 4  # part of the ETag: counts the changes to this file's statements
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
@@ -23,6 +23,7 @@ TOWER_ZOOM = 10
 OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
 ZONE_LABEL_ZOOM = 9
 MOST_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
+MOST_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
 
 VOLTAGE_TEXT = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
 # The words of asset_label in selectors/assets.py.
@@ -98,10 +99,10 @@ LAYERS = (
         f"""inspection_asset WHERE kind = 'line' AND {ON_GROUND} AND (
             %(zoom)s >= {ALL_VOLTAGES_ZOOM} OR max_voltage_v >= %(least_voltage_v)s
             OR (max_voltage_v IS NULL AND subtype = 'line' AND %(zoom)s >= {MEDIUM_VOLTAGE_ZOOM}))""",
-        SIMPLIFIED, "geometry", "max_voltage_v DESC NULLS LAST, length_m DESC NULLS LAST",
+        SIMPLIFIED, "geometry", "max_voltage_v DESC NULLS LAST, inspection_asset.length_m DESC NULLS LAST",
     ),
     Layer("railways", RAILWAY_ZOOM, RAILWAY_COLUMNS, f"inspection_asset WHERE kind = 'railway' AND {ON_GROUND}", SIMPLIFIED, "geometry",
-          "length_m DESC NULLS LAST"),
+          "inspection_asset.length_m DESC NULLS LAST"),
     Layer("bridges", BRIDGE_ZOOM, BRIDGE_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "geometry", "geometry", "id"),
     Layer("bridge_points", BRIDGE_ZOOM, BRIDGE_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "centre", "centre",
           "id"),
@@ -129,6 +130,7 @@ def vector_tile(zoom: int, column: int, row: int) -> bytes:
             {
                 "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
                 "tolerance_deg": 360 / 2**zoom / EXTENT * 4,  # half a pixel of a 512 pixel tile
+                "most": next((most for last_zoom, most in MOST_FEATURES_FAR if zoom <= last_zoom), MOST_FEATURES),
                 "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM,
             },
         )  # fmt: skip
@@ -142,7 +144,7 @@ def _layer_sql(layer: Layer) -> str:
                 SELECT {layer.columns}, ST_AsMVTGeom(
                     ST_Transform({layer.shape}, 3857), ST_TileEnvelope(%(zoom)s, %(column)s, %(row)s), {EXTENT}, {BUFFER}, true) AS geom
                 FROM {layer.source} AND {layer.found_by} && ST_MakeEnvelope(%(west)s, %(south)s, %(east)s, %(north)s, 4326)
-                ORDER BY {layer.order} LIMIT {MOST_FEATURES}
+                ORDER BY {layer.order} LIMIT %(most)s
             ) drawn WHERE geom IS NOT NULL
         ) feature), '')"""  # noqa: S608 - put together from the constants above alone
 
