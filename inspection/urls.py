@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, gaps, geometry_checks, ground, history, imports, terrain, uploads, zone_sets, zones
+from inspection.views import assets, gaps, geometry_checks, ground, history, imports, regions, terrain, uploads, zone_sets, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -31,6 +31,7 @@ urlpatterns = [
     path("imports/<uuid:proposal_id>/changes", imports.ImportChanges.as_view(), name="api-import-changes"),
     path("imports/<uuid:proposal_id>/apply", imports.ImportApply.as_view(), name="api-import-apply"),
     path("imports/<uuid:proposal_id>/discard", imports.ImportDiscard.as_view(), name="api-import-discard"),
+    path("regions/delete", regions.RegionDelete.as_view(), name="api-region-delete"),
     path("geometry-checks", geometry_checks.GeometryCheck.as_view(), name="api-geometry-checks"),
     path("gaps", gaps.GapList.as_view(), name="api-gaps"),
     path("gaps/summary", gaps.GapCounts.as_view(), name="api-gap-summary"),

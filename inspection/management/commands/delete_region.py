@@ -1,0 +1,47 @@
+"""manage.py delete_region: takes all assets of a box, an import or a set off the ground."""
+
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError, CommandParser
+
+from inspection.models import AssetSet, DataImport
+from inspection.services.regions import Region, counts_of_region, delete_region
+
+
+class Command(BaseCommand):
+    help = (
+        "Take all assets of a box, of one import or of one set off the ground. Missions keep what they point at, and the next file that "
+        "has an asset brings it back. Shows what would go unless --yes is given."
+    )
+
+    def add_arguments(self, parser: CommandParser) -> None:
+        which = parser.add_mutually_exclusive_group(required=True)
+        which.add_argument("--bbox", help="west,south,east,north in degrees; what reaches into it goes too")
+        which.add_argument("--import", dest="data_import", type=int, help="number of a data import, as the admin lists them")
+        which.add_argument("--set", dest="asset_set", help="name of a set of assets that came from other files than OpenStreetMap's")
+        parser.add_argument("--yes", action="store_true", help="do it")
+
+    def handle(self, *args: Any, **options: Any) -> None:
+        region = self._region(options)
+        counts = delete_region(region=region, actor=None) if options["yes"] else counts_of_region(region)
+        words = ", ".join(f"{number} {kind}" for kind, number in sorted(counts.items())) or "nothing"
+        self.stdout.write(f"{words} taken off the ground" if options["yes"] else f"{words} would go; --yes does it")
+
+    def _region(self, options: dict[str, Any]) -> Region:
+        if options["bbox"]:
+            try:
+                west, south, east, north = (float(part) for part in options["bbox"].split(","))
+            except ValueError as error:
+                raise CommandError("--bbox is four numbers: west,south,east,north") from error
+            if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south < north <= 90):
+                raise CommandError("--bbox reaches beyond the earth, or south is not below north")
+            return Region(box=(west, south, east, north))
+        if options["data_import"] is not None:
+            row = DataImport.objects.filter(pk=options["data_import"]).first()
+            if row is None:
+                raise CommandError(f"There is no import {options['data_import']}.")
+            return Region(data_import=row)
+        found = AssetSet.objects.filter(name=options["asset_set"]).first()
+        if found is None:
+            raise CommandError(f"There is no set {options['asset_set']!r}.")
+        return Region(asset_set=found)

@@ -1,0 +1,79 @@
+"""A region is taken off the ground as a whole, and a file brings it back."""
+
+from collections.abc import Callable
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from django.core.management import call_command
+from django.core.management.base import CommandError
+from django.test import Client
+
+from inspection.models import Asset
+from inspection.selectors import ground_revision
+from inspection.services import import_osm
+from tests.inspection.ground import line, tower
+from tests.workspace.people import client_of, somebody
+from workspace.models import AuditEntry, Role
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def client() -> Client:
+    return client_of(somebody(Role.CURATOR))
+
+
+def delete(client: Client, **body: object):
+    return client.post("/api/v1/regions/delete", body, content_type="application/json")
+
+
+def on_the_ground() -> int:
+    return Asset.objects.filter(vanished_at=None).count()
+
+
+def test_a_box_is_counted_first_and_then_taken_off(client: Client) -> None:
+    tower((10.0, 56.0))
+    tower((12.0, 56.0))
+    line((9.0, 56.0), (10.05, 56.05))
+    box = [9.95, 55.95, 10.1, 56.1]
+    assert delete(client, bbox=box, dry_run=True).json() == {"counts": {"tower": 1, "line": 1}}
+    assert on_the_ground() == 3
+    revision = ground_revision()
+    assert delete(client, bbox=box).json() == {"counts": {"tower": 1, "line": 1}}
+    assert (on_the_ground(), ground_revision()) == (1, revision + 1)
+    entry = AuditEntry.objects.get()
+    assert (entry.subject_type, entry.before["bbox"], entry.before["counts"]) == ("region", box, {"tower": 1, "line": 1})
+    assert delete(client, bbox=box).json() == {"counts": {}}
+
+
+def test_an_import_is_taken_off_and_its_file_brings_everything_back(client: Client, shared_data: Callable[[str], Path]) -> None:
+    file = shared_data("osm/liechtenstein-2021-infra.osm.pbf")
+    first = import_osm(path=file)
+    all_of_it = on_the_ground()
+    assert sum(delete(client, import_id=first.pk).json()["counts"].values()) == all_of_it
+    assert on_the_ground() == 0
+    assert import_osm(path=file).counts["changed"] == all_of_it
+    assert on_the_ground() == all_of_it
+
+
+@pytest.mark.parametrize(
+    "body", [{}, {"bbox": [1, 2, 3]}, {"bbox": [0, 10, 1, 9]}, {"import_id": 7}, {"set": "none"}, {"bbox": [0, 0, 1, 1], "set": "x"}]
+)
+def test_a_region_that_is_none_is_refused(client: Client, body: dict[str, object]) -> None:
+    assert delete(client, **body).status_code == 400
+
+
+def test_operators_delete_no_region() -> None:
+    assert delete(client_of(somebody(Role.OPERATOR)), bbox=[0, 0, 1, 1]).status_code == 403
+
+
+def test_the_command_shows_what_would_go_before_it_goes() -> None:
+    tower((10.0, 56.0))
+    told = StringIO()
+    call_command("delete_region", "--bbox=9,55,11,57", stdout=told)
+    assert (told.getvalue(), on_the_ground()) == ("1 tower would go; --yes does it\n", 1)
+    call_command("delete_region", "--bbox=9,55,11,57", "--yes", stdout=told)
+    assert on_the_ground() == 0
+    with pytest.raises(CommandError, match="four numbers"):
+        call_command("delete_region", "--bbox=here")
