@@ -19,6 +19,11 @@ class SourceSerializer(serializers.Serializer):
 
     file_name = serializers.CharField()
     attribution = serializers.CharField(help_text="author and licence")
+    licence = serializers.CharField(help_text="empty when nobody stated it")
+    source_address = serializers.CharField(help_text="empty for a file that somebody sent")
+    fetched_at = serializers.DateTimeField(allow_null=True)
+    valid_from = serializers.DateTimeField(allow_null=True, help_text="as the file states it")
+    valid_until = serializers.DateTimeField(allow_null=True, help_text="as the file states it")
     is_synthetic = serializers.BooleanField()
     imported_at = serializers.DateTimeField()
 
@@ -51,9 +56,7 @@ def collection_serializer(name: str, feature: type[serializers.Serializer]) -> t
 def source_json(data_import: DataImport | None) -> dict[str, Any] | None:
     if data_import is None:
         return None
-    return {
-        "file_name": data_import.file_name,
-        "attribution": data_import.attribution,
-        "is_synthetic": data_import.is_synthetic,
-        "imported_at": data_import.imported_at,
-    }
+    names = (
+        "file_name", "attribution", "licence", "source_address", "fetched_at", "valid_from", "valid_until", "is_synthetic", "imported_at",
+    )  # fmt: skip
+    return {name: getattr(data_import, name) for name in names}

@@ -5,6 +5,7 @@ from typing import Any
 from rest_framework import serializers
 
 from inspection.models import DataImport, ImportProposal, ProposalState, ZoneSet, ZoneSetVersion, ZoneSubscription
+from inspection.serializers.features import SourceSerializer, source_json
 from inspection.services.zone_import import FORMAT_NAMES
 from workspace.models import User
 from workspace.outgoing import OutgoingRefused, check_address
@@ -12,18 +13,9 @@ from workspace.outgoing import OutgoingRefused, check_address
 LONGEST_INTERVAL_H = 24 * 90
 
 
-class ZoneSetSourceSerializer(serializers.Serializer):
+class ZoneSetSourceSerializer(SourceSerializer):
     """The file that the set last took over."""
 
-    file_name = serializers.CharField()
-    attribution = serializers.CharField()
-    licence = serializers.CharField(help_text="empty when nobody stated it")
-    source_address = serializers.CharField(help_text="empty for a file that somebody sent")
-    fetched_at = serializers.DateTimeField(allow_null=True)
-    valid_from = serializers.DateTimeField(allow_null=True, help_text="as the file states it")
-    valid_until = serializers.DateTimeField(allow_null=True, help_text="as the file states it")
-    is_synthetic = serializers.BooleanField()
-    imported_at = serializers.DateTimeField()
     imported_by = serializers.CharField(allow_null=True)
 
 
@@ -156,12 +148,8 @@ def _proposal_json(proposal: ImportProposal | None) -> dict[str, Any] | None:
 
 
 def _source_json(data_import: DataImport | None) -> dict[str, Any] | None:
-    if data_import is None:
-        return None
-    names = (
-        "file_name", "attribution", "licence", "source_address", "fetched_at", "valid_from", "valid_until", "is_synthetic", "imported_at",
-    )  # fmt: skip
-    return {name: getattr(data_import, name) for name in names} | {"imported_by": _name(data_import.imported_by)}
+    source = source_json(data_import)
+    return source and source | {"imported_by": _name(data_import.imported_by)}
 
 
 def _name(user: User | None) -> str | None:

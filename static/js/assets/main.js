@@ -39,7 +39,7 @@ function details(feature) {
       term("Voltages", properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")), term("Circuits", properties.circuits && String(properties.circuits)),
       term("Height", properties.height_m && `${properties.height_m}\u00a0m above ground`), term("Length", properties.length_m && lengthText(properties.length_m)),
       term("Network", properties.is_flyable ? "" : "Not part of the flying network"), term("Place", coordinateText(properties.centre)),
-      term("Source", sourceWords(feature)), term("Attribution", properties.source?.attribution), term("Changed", whenText(properties.updated_at)),
+      term("Source", sourceWords(feature)), term("Licence", properties.source?.licence), term("Attribution", properties.source?.attribution), term("Fetched", properties.source?.fetched_at && whenText(properties.source.fetched_at)), term("Changed", whenText(properties.updated_at)),
     ),
     tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, `${countText(tags.length, "tag")} of the source`), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
   ].filter(Boolean);

@@ -7,7 +7,7 @@ import { coordinateText, lengthText, whenText } from "../units.js";
 import { zoneForm } from "./form.js";
 import { bandDrawing, heightsText } from "./heights.js";
 import { weekDrawing } from "./schedule_editor.js";
-import { mountSetsPanel } from "./sets_panel.js";
+import { mountSetsPanel, validityText } from "./sets_panel.js";
 
 const PAGE = 60;
 const TYPING_MS = 250;
@@ -38,7 +38,7 @@ function details({ properties }) {
       { class: "facts" },
       term("Circle", properties.circle && `${lengthText(properties.circle.radius_m)} round ${coordinateText(properties.circle.centre)}`), term("Identifier", properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
       term("Set", properties.zone_set ?? "Drawn here"), term("File", source?.file_name), term("Licence", source ? source.licence || "not stated" : ""), term("Attribution", source?.attribution),
-      term("Fetched", source?.fetched_at && whenText(source.fetched_at)), term("Imported", source?.imported_at && whenText(source.imported_at)), term("Changed", whenText(properties.updated_at)),
+      term("Valid", source ? validityText(source) || "not stated" : ""), term("Address", source?.source_address), term("Fetched", source?.fetched_at && whenText(source.fetched_at)), term("Imported", source?.imported_at && whenText(source.imported_at)), term("Changed", whenText(properties.updated_at)),
     ),
     h("p", { class: "caption" }, "Facts as the source states them; whether you may fly is for you to judge."),
   ].filter(Boolean);

@@ -7,7 +7,8 @@ import { countText, whenText } from "../units.js";
 
 const FORMATS = [["", "found out from the file"], ["ed269", "ED-269"], ["ed318", "ED-318"], ["openair", "OpenAir"], ["geojson", "GeoJSON"]];
 const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
-const validity = ({ valid_from: from, valid_until: until }) => [from && `from ${whenText(from)}`, until && `until ${whenText(until)}`].filter(Boolean).join(" ");
+/** "from 1 Jan until 31 Dec": what a file states of itself. */
+export const validityText = ({ valid_from: from, valid_until: until }) => [from && `from ${whenText(from)}`, until && `until ${whenText(until)}`].filter(Boolean).join(" ");
 
 export function mountSetsPanel({ canCurate, showZones }) {
   const place = byId("zone-sets");
@@ -58,7 +59,7 @@ export function mountSetsPanel({ canCurate, showZones }) {
         { class: "facts" },
         term("File", source?.file_name), term("Format", set.source_format), term("Licence", source?.licence || (source ? "not stated" : "")), term("Attribution", source?.attribution),
         term("Address", source?.source_address), term("Fetched", source?.fetched_at && whenText(source.fetched_at)), term("Imported", source?.imported_at && whenText(source.imported_at)),
-        term("Valid", source ? validity(source) || "not stated" : ""), term("Edited", set.edited_count ? `${countText(set.edited_count, "zone")} by hand` : ""),
+        term("Valid", source ? validityText(source) || "not stated" : ""), term("Edited", set.edited_count ? `${countText(set.edited_count, "zone")} by hand` : ""),
         subscription && term("Subscription", subscriptionWords(subscription)),
       ),
       subscription?.problem && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, h("strong", {}, "Not fetched. "), subscription.problem)),
