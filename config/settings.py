@@ -216,6 +216,7 @@ SPECTACULAR_SETTINGS = {
         "GapState": "inspection.models.GapState",
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
+        "HeightReference": "inspection.models.HeightReference",
         "FeatureType": ["Feature"],
         "FeatureCollectionType": ["FeatureCollection"],
         "GeometryType": ["Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"],
