@@ -29,6 +29,7 @@ from workspace.models import DEFAULT_ORGANISATION_ID, User
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"
 SAME_SOURCE_OVERLAP = 0.5  # two files show the same region if their extents share at least half of what they cover together
 EXTENT_MARGIN_DEG = 0.01
+MANY_NEW = 10_000  # rows after which all that the planner knows of the assets is out of date
 HANDFUL = 10  # of one subtype; so few can really all be gone, more of them missing at once were filtered out of the file
 
 Progress = Callable[[str, float], None]
@@ -88,9 +89,8 @@ def import_osm(
             _tell(progress, "writing", 0.4)
             cursor.execute(osm_merge.INSERT, values)
             _tell(progress, "writing", 0.8)
-            cursor.execute(
-                "ANALYZE inspection_asset (id, kind, osm_type, osm_id, line_id, vanished_at)"
-            )  # for what numbers the supports next
+            columns = "" if numbers["new"] > MANY_NEW else "(id, kind, osm_type, osm_id, line_id, vanished_at)"
+            cursor.execute(f"ANALYZE inspection_asset {columns}")  # the supports are numbered next, and tiles are asked for soon
         counts = content.counts | numbers | {"extent": content.extent}
         has_changed = any(numbers[key] for key in ("new", "changed", "vanished"))
         if number_supports() or has_changed:
