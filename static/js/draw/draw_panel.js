@@ -25,7 +25,7 @@ const MOVING = "Drag the whole shape, or move it with the arrow keys.";
 const button = (words, name, act, rest = {}) => h("button", { type: "button", class: "button", onclick: act, ...rest }, icon(name, "small"), words);
 const tool = (words, name, act) => h("button", { type: "button", class: "icon-button", "aria-label": words, title: words, onclick: act }, icon(name));
 
-/** Returns { element, update(state), preview(shape), serverFault(fault or null) }; show(position) moves the map. */
+/** Returns { element, update(state), preview(shape), verdict(of the server) }; show(position) moves the map. */
 export function createDrawPanel(editor, { show }) {
   const undo = tool("Undo (Ctrl+Z)", "undo-2", () => editor.undo());
   const redo = tool("Redo (Ctrl+Shift+Z)", "redo-2", () => editor.redo());
@@ -122,8 +122,9 @@ export function createDrawPanel(editor, { show }) {
     if (table.open) fill();
   }
 
-  const figuresOf = (shape) => {
-    const { length_m, area_m2 } = measure(shape);
+  const figuresOf = (shape, exact = {}) => {
+    const rough = measure(shape);
+    const [length_m, area_m2] = [exact.length_m ?? rough.length_m, exact.area_m2 ?? rough.area_m2];
     const number = verticesOf(shape).length;
     return [
       circleOf(shape) && `${lengthText(shape.radius_m)} radius`, length_m && lengthText(length_m), area_m2 && areaText(area_m2),
@@ -144,9 +145,11 @@ export function createDrawPanel(editor, { show }) {
       coming.hidden = false;
       figures.hidden = true;
     },
-    serverFault(fault) {
-      told = fault && { ...fault, sides: [] };
+    /** { fault, length_m, area_m2 } as the server found them, on the ellipsoid. */
+    verdict({ fault, length_m, area_m2 }) {
+      told = fault && { message: `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.`, position: fault.position, sides: [] };
       draw();
+      figures.textContent = figuresOf(now.shape, { length_m, area_m2 });
     },
   };
 }

@@ -43,12 +43,12 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
     else pointer = null;
     if (isActive()) show(map, shape(), { chosen, faults: faultsNow(), growing: growing(), hasHandles: !isMoving });
     else show(map, null);
-    preview();
     // With a point chosen the arrow keys are the point's, else the map's.
     if (isActive() && (chosen || isMoving)) map.keyboard.disable();
     else map.keyboard.enable();
     canvas.classList.toggle("drawing", growing() !== null);
     onChange(stateNow());
+    preview();
   }
 
   function preview() {

@@ -273,7 +273,7 @@ export function mountRecordPage(about) {
       if (!edit || editor.state.shape !== shape) return;
       try {
         const { data } = await post("/geometry-checks", { kind: about.checkKind(edit.choice), geometry: geometryOf(shape) ?? undefined, circle: circleOf(shape) });
-        if (edit && editor.state.shape === shape && !data.valid) panel.serverFault(data.fault);
+        if (edit && editor.state.shape === shape) panel.verdict(data);
       } catch {
         /* it is checked again when it is saved */
       }
