@@ -1,10 +1,10 @@
-"""Takes a whole region off the ground: all assets of a box, of an import, or of a set."""
+"""Takes a whole region off the ground: what files brought into a box, an import, or a set."""
 
 from dataclasses import dataclass
 from typing import Any
 
 from django.db import transaction
-from django.db.models import Count, F, QuerySet
+from django.db.models import Count, F, Q, QuerySet
 from django.utils import timezone
 
 from inspection.models import Asset, AssetSet, DataImport
@@ -33,7 +33,9 @@ class Region:
 
 
 def assets_of_region(region: Region) -> QuerySet[Asset]:
-    assets = Asset.objects.filter(vanished_at=None).order_by()
+    """What came from files; what was drawn or edited by hand stays, since no file would bring it back."""
+    sourced = Q(osm_id__isnull=False) | Q(asset_set__isnull=False)
+    assets = Asset.objects.filter(sourced, vanished_at=None, is_edited=False).order_by()
     if region.box is not None:
         assets = assets.filter(geometry__intersects=area_of(region.box))
     if region.data_import is not None:
@@ -48,8 +50,7 @@ def counts_of_region(region: Region) -> dict[str, int]:
 def delete_region(*, region: Region, actor: User | None) -> dict[str, int]:
     """Mark everything of the region as vanished and return how much of each kind; missions keep what they point at.
 
-    The next file that has an asset brings it back, also one that had been edited by hand: with its edit. One entry of the history
-    tells who did it and what was meant.
+    The next file that has an asset brings it back. One entry of the history tells who did it and what was meant.
     """
     with transaction.atomic():
         hold_ground()

@@ -44,7 +44,7 @@ class RegionDelete(APIView):
     @extend_schema(
         operation_id="delete_region",
         summary="Take all assets of a box, an import or a set off the ground",
-        description="Missions keep what they point at; the next file that has an asset brings it back.",
+        description="What was drawn or edited by hand stays, missions keep what they point at, and the next file brings the rest back.",
         request=RegionInputSerializer,
         responses=RegionCountsSerializer,
     )

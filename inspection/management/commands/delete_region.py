@@ -10,8 +10,8 @@ from inspection.services.regions import Region, counts_of_region, delete_region
 
 class Command(BaseCommand):
     help = (
-        "Take all assets of a box, of one import or of one set off the ground. Missions keep what they point at, and the next file that "
-        "has an asset brings it back. Shows what would go unless --yes is given."
+        "Take the assets of a box, of one import or of one set off the ground, except what was drawn or edited by hand. Missions keep what "
+        "they point at, and the next file that has an asset brings it back. Shows what would go unless --yes is given."
     )
 
     def add_arguments(self, parser: CommandParser) -> None:
