@@ -43,11 +43,16 @@ class _CappedFile(io.BufferedReader):
 class Archive:
     """The files of a zip file by name; a member is unpacked into a file that nobody else can see."""
 
-    def __init__(self, archive: zipfile.ZipFile, packed_bytes: int) -> None:
+    def __init__(self, archive: zipfile.ZipFile, packed_bytes: int, most_ratio: int) -> None:
         self._archive = archive
-        self._packed_bytes = packed_bytes
+        self.packed_bytes = packed_bytes
+        self._most_ratio = most_ratio
         self._unpacked = 0
         self.names = [info.filename for info in archive.infolist() if not info.is_dir()]
+
+    def size_of(self, name: str) -> int:
+        """Unpacked, as the archive states it; never more comes out."""
+        return self._archive.getinfo(name).file_size
 
     @contextmanager
     def unpacked(self, name: str) -> Iterator[IO[bytes]]:
@@ -72,15 +77,15 @@ class Archive:
 
     def _count(self, size: int, name: str) -> None:
         self._unpacked += size
-        if self._unpacked > FREE_UNPACKED_BYTES and self._unpacked > MAX_RATIO * self._packed_bytes:
-            raise refused(name, f"the archive unpacks to more than {MAX_RATIO} times its size; refused as a decompression bomb")
+        if self._unpacked > FREE_UNPACKED_BYTES and self._unpacked > self._most_ratio * self.packed_bytes:
+            raise refused(name, f"the archive unpacks to more than {self._most_ratio} times its size; refused as a decompression bomb")
         if self._unpacked > MAX_UNPACKED_BYTES:
             raise refused(name, f"the archive unpacks to more than {MAX_UNPACKED_BYTES // 2**20} MiB")
 
 
 @contextmanager
-def opened_archive(path: Path) -> Iterator[Archive]:
-    """Raises AssetFileError for an archive that no honest program writes."""
+def opened_archive(path: Path, *, most_ratio: int = MAX_RATIO) -> Iterator[Archive]:
+    """most_ratio: of what is unpacked to what is packed. Raises AssetFileError for an archive that no honest program writes."""
     with path.open("rb", buffering=0) as raw, _CappedFile(raw) as file:
         try:
             archive = zipfile.ZipFile(file)
@@ -90,7 +95,7 @@ def opened_archive(path: Path) -> Iterator[Archive]:
             raise refused("", f"the archive is damaged or cut off: {error}") from error
         with archive:
             _check_entries(archive.infolist())
-            yield Archive(archive, path.stat().st_size)
+            yield Archive(archive, path.stat().st_size, most_ratio)
 
 
 def _check_entries(entries: list[zipfile.ZipInfo]) -> None:

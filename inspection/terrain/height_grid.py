@@ -1,7 +1,6 @@
 """A block of a terrain model: heights above sea level on a regular grid in longitude and latitude."""
 
 import zlib
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 from inspection.geodesy.wgs84 import FloatArray
 
 BLOCK_SIZE = 256
-LOWEST_M, HIGHEST_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; all else is a void that the file does not declare
+LOWEST_M, HIGHEST_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; all else is a void
 NO_WEIGHT = 1e-6  # of a post: less than this is the rounding of a position, a micrometre of height
 
 
@@ -57,30 +56,6 @@ class HeightGrid:
             total += np.where(weight > NO_WEIGHT, self.heights_m[at_row, at_column].astype(np.float64) * weight, 0.0)
         heights[inside] = total
         return heights
-
-    def blocks(self, size: int = BLOCK_SIZE) -> Iterator["HeightGrid"]:
-        """Parts of at most size posts a side that share their edge posts; parts that are all void are left out."""
-        rows, columns = self.heights_m.shape
-        for row in _starts(rows, size):
-            for column in _starts(columns, size):
-                part = self.heights_m[row : row + size, column : column + size]
-                if not np.isnan(part).all():
-                    west, north = self.west_deg + column * self.step_lon_deg, self.north_deg - row * self.step_lat_deg
-                    yield HeightGrid(west, north, self.step_lon_deg, self.step_lat_deg, part)
-
-
-def _starts(count: int, size: int) -> range:
-    return range(0, max(count - 1, 1), size - 1)
-
-
-def without_voids(raw: NDArray[np.generic], declared_void: float | None) -> NDArray[np.float32]:
-    """Heights as float32, with NaN for the declared void value and for what cannot be a height on earth."""
-    heights = raw.astype(np.float32)
-    void = ~((heights >= LOWEST_M) & (heights <= HIGHEST_M))
-    if declared_void is not None and not np.isnan(declared_void):
-        void |= raw.astype(np.float64) == declared_void
-    heights[void] = np.nan
-    return heights
 
 
 def packed(heights: NDArray[np.float32]) -> bytes:

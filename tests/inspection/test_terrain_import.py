@@ -6,13 +6,15 @@ from io import StringIO
 
 import numpy as np
 import pytest
-from django.contrib.gis.gdal import GDALRaster
 from django.core.management import call_command
 from django.core.management.base import CommandError
 
 from inspection.models import DataImport, TerrainTile
 from inspection.selectors import ground_heights_m, has_terrain
-from inspection.services import import_terrain
+from inspection.selectors.terrain import ground_truth
+from inspection.services import TerrainFileError, import_terrain
+from inspection.terrain.geotiff import GeoTiff
+from tests.inspection.terrain.tiffs import write_geotiff, write_hgt
 
 pytestmark = pytest.mark.django_db
 STEP = 0.001
@@ -23,14 +25,9 @@ def plane(width=600, height=300, base=300.0):
     return (base + 0.5 * x + 0.25 * y).astype(np.float32)
 
 
-def geotiff(path, heights, srid=4326, origin=(9.0, 47.0), void=-9999.0):
-    rows, columns = heights.shape
-    raster = GDALRaster(
-        {"driver": "GTiff", "name": str(path), "srid": srid, "width": columns, "height": rows, "origin": origin, "scale": (STEP, -STEP),
-         "datatype": 6, "bands": [{"data": heights.tobytes(), "nodata_value": void}]}
-    )  # fmt: skip
-    raster._flush()
-    return path
+def geotiff(path, heights, srid=9707, **options):
+    """With its vertical datum, EGM96, stated."""
+    return write_geotiff(path, heights, srid=srid, **options)
 
 
 def post(column, row):
@@ -80,8 +77,7 @@ def test_the_same_file_again_changes_nothing_and_a_changed_one_replaces_it(tmp_p
 def test_an_hgt_file_is_read(tmp_path):
     heights = np.full((1201, 1201), 250, dtype=">i2")
     heights[600, 600] = 300
-    path = tmp_path / "N46E009.hgt"
-    path.write_bytes(heights.tobytes())
+    path = write_hgt(tmp_path / "N46E009.hgt", heights)
     out = StringIO()
     call_command("import_terrain", str(path), "--json", stdout=out)
     assert json.loads(out.getvalue())["highest_m"] == 300.0
@@ -91,11 +87,11 @@ def test_an_hgt_file_is_read(tmp_path):
 def test_files_that_are_no_terrain_are_refused(tmp_path):
     flat = plane(4, 4)
     cases = {
-        "utm.tif": (lambda path: geotiff(path, flat, srid=32632, origin=(500_000, 5_000_000)), "EPSG:4326"),
-        "cut.tif": (lambda path: path.write_bytes(geotiff(tmp_path / "whole.tif", plane()).read_bytes()[:3_000]), "GeoTIFF|damaged"),
+        "silent.tif": (lambda path: geotiff(path, flat, srid=4326), "does not say from where"),
+        "cut.tif": (lambda path: path.write_bytes(geotiff(tmp_path / "whole.tif", plane()).read_bytes()[:3_000]), "cut off"),
         "voids.tif": (lambda path: geotiff(path, np.full((4, 4), -9999.0, dtype=np.float32)), "only voids"),
         "nan.tif": (lambda path: geotiff(path, np.full((4, 4), math.nan, dtype=np.float32)), "only voids"),
-        "text.tif": (lambda path: path.write_text("II*, but no"), "neither|cannot be read"),
+        "text.tif": (lambda path: path.write_text("II*, but no"), "neither"),
         "map.vrt": (lambda path: path.write_text("<VRTDataset rasterXSize='2' rasterYSize='2'/>"), "neither"),
         "far.tif": (lambda path: geotiff(path, flat, origin=(500.0, 95.0)), "beyond"),
     }
@@ -104,3 +100,69 @@ def test_files_that_are_no_terrain_are_refused(tmp_path):
         with pytest.raises(CommandError, match=message):
             call_command("import_terrain", str(tmp_path / name))
     assert (TerrainTile.objects.count(), DataImport.objects.count()) == (0, 0)
+
+
+def test_a_file_that_states_no_datum_is_taken_with_the_one_that_is_said(tmp_path):
+    path = geotiff(tmp_path / "silent.tif", plane(4, 4), srid=4326)
+    first = import_terrain(path=path, vertical_datum="EGM2008")
+    assert import_terrain(path=path, vertical_datum="EGM2008").pk == first.pk
+    other = import_terrain(path=path, vertical_datum="EGM96")
+    assert set(TerrainTile.objects.values_list("data_import", "vertical_datum")) == {(other.pk, "EGM96")}
+
+
+def test_between_files_that_stand_side_by_side_is_no_gap(tmp_path):
+    """GeoTIFF tiles of whole degrees share no posts: between the last of one and the first of the next lies a step."""
+    whole = plane(600, 300)
+    for name, rows, columns in (
+        ("a", slice(0, 150), slice(0, 300)),
+        ("b", slice(0, 150), slice(300, 600)),
+        ("c", slice(150, 300), slice(0, 300)),
+    ):
+        corner = (9.0 + columns.start * STEP, 47.0 - rows.start * STEP)
+        import_terrain(path=geotiff(tmp_path / f"{name}.tif", whole[rows, columns], origin=corner))
+    cells = [(299.5, 40.25), (299.1, 100.0), (120.3, 149.7), (299.0, 149.5)]
+    found = ground_heights_m(np.array([post(*cell) for cell in cells]))
+    assert found == pytest.approx([300 + 0.5 * column + 0.25 * row for column, row in cells], abs=1e-3)
+    beyond = ground_heights_m(np.array([post(299.5, 149.5), post(450, 149.5), post(600.2, 10), post(299.5, -0.5)]))
+    assert np.isnan(beyond).all()  # one of the four posts is in no file
+
+
+def test_a_void_at_the_seam_of_two_files_stays_one(tmp_path):
+    left, right = plane(300, 150), plane(300, 150)
+    left[70, 299] = -9999.0
+    import_terrain(path=geotiff(tmp_path / "left.tif", left))
+    import_terrain(path=geotiff(tmp_path / "right.tif", right, origin=(9.3, 47.0)))
+    assert np.isnan(ground_heights_m(np.array([post(299.5, 70.2)]))).all()
+    assert np.isfinite(ground_heights_m(np.array([post(299.5, 72.0)]))).all()
+
+
+def test_each_height_is_told_with_the_model_that_it_is_from(tmp_path):
+    older = import_terrain(path=geotiff(tmp_path / "older.tif", plane(base=100.0)))
+    newer = plane(base=700.0)
+    newer[5:20, 5:20] = -9999.0
+    top = import_terrain(path=geotiff(tmp_path / "newer.tif", newer))
+    truth = ground_truth(np.array([post(0, 0), post(10, 10), (8.0, 47.0)]))
+    assert truth.imports.tolist() == [top.pk, older.pk, -1]
+
+
+def test_many_places_are_answered_as_each_by_itself(tmp_path):
+    rough = plane() + np.random.default_rng(5).normal(0, 40, (300, 600)).astype(np.float32)
+    rough[100:120, 200:300] = -9999.0
+    import_terrain(path=geotiff(tmp_path / "older.tif", plane(400, 200, base=100.0)))
+    import_terrain(path=geotiff(tmp_path / "rough.tif", rough, origin=(9.1, 46.95)))
+    places = np.random.default_rng(6).uniform([8.9, 46.6], [9.8, 47.1], (300, 2))
+    together = ground_heights_m(places)
+    assert np.isnan(together).any()
+    assert np.allclose(together, [ground_heights_m(place[None])[0] for place in places], equal_nan=True)
+
+
+def test_a_damaged_file_brings_nothing_in_and_takes_nothing_away(tmp_path):
+    path = geotiff(tmp_path / "plane.tif", plane(), compress="deflate")
+    import_terrain(path=path)
+    whole = path.read_bytes()
+    with path.open("rb") as file:
+        place = int(GeoTiff(file)._offsets[5]) + 40
+    path.write_bytes(whole[:place] + bytes(64) + whole[place + 64 :])
+    with pytest.raises(TerrainFileError, match="damaged"):
+        import_terrain(path=path)
+    assert (TerrainTile.objects.count(), DataImport.objects.count()) == (6, 1)

@@ -283,7 +283,7 @@ def test_with_terrain_data_all_three_heights_agree(tmp_path: Path) -> None:
         }
     )  # fmt: skip
     raster._flush()
-    import_terrain(path=tmp_path / "slope.tif")
+    import_terrain(path=tmp_path / "slope.tif", vertical_datum="EGM96")
 
     plan = make_plan(request=request(here.towers[5]))
     assert not plan["flat_ground_assumed"]

@@ -11,6 +11,7 @@ from inspection.demo_region import DEFAULT_SEED, REGION_NAME, make_region, write
 from inspection.demo_region.hills import TerrainGrid
 
 GDAL_FLOAT32 = 6
+EGM96_SRID = 9707  # WGS 84, with heights above EGM96: the file states from where they count
 
 
 class Command(BaseCommand):
@@ -44,7 +45,7 @@ def _write_terrain(path: Path, terrain: TerrainGrid) -> None:
             "name": str(path),
             "width": columns,
             "height": rows,
-            "srid": 4326,
+            "srid": EGM96_SRID,
             "origin": (terrain.west_deg, terrain.north_deg),
             "scale": (terrain.step_deg, -terrain.step_deg),
             "datatype": GDAL_FLOAT32,

@@ -1,51 +1,52 @@
-"""Terrain files as proposals."""
+"""Terrain files as proposals: what is in the file, and block by block what it would change."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import shapely
+from django.contrib.gis.geos import MultiPolygon, Polygon
 
-from inspection.models import DataImport, ImportKind, TerrainTile
-from inspection.services.proposals.reading import Fault, FileRefused, Progress, Provenance, Reading
-from inspection.services.terrain_import import import_terrain, terrain_blocks
+from inspection.models import ChangeAction, DataImport, TerrainTile
+from inspection.selectors.terrain import ground_truth
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from inspection.services.terrain_import import facts_of, import_terrain, imports_of_name, same_import, sha256_of
 from inspection.terrain.errors import TerrainFileError
+from inspection.terrain.height_grid import HeightGrid
+from inspection.terrain.raster import blocks_of
+from inspection.terrain.survey import Survey
+from inspection.terrain.terrain_file import NEEDS_DATUM, datum_of, opened_terrain
+from inspection.terrain.vertical_datum import DatumFault
 from workspace.models import User
 
-DEFAULT_DATUM = "EGM96"
-LONGEST_DATUM = 50
+SUBJECT = "terrain"
+SAME_M = 0.01  # heights that differ by less are the same
+_AT_ONCE = 8  # blocks
+_EDGE_DEG = 1e-7
 
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
-    """What is in the file, and which model of the same name it takes the place of. Raises FileRefused."""
-    datum = _datum(parameters)
-    posts = voids = blocks = 0
-    lowest, highest = np.inf, -np.inf
-    extents: list[tuple[float, float, float, float]] = []
-    step = (0.0, 0.0)
+    """What is in the file, and which ground it would change. Raises FileRefused."""
+    path = _file(path)
     try:
-        with terrain_blocks(_file(path), progress) as (grids, stated_datum):
-            for grid in grids:
-                progress("reading the heights", 0.5)
-                blocks += 1
-                posts += grid.heights_m.size
-                voids += int(np.isnan(grid.heights_m).sum())
-                lowest, highest = min(lowest, float(np.nanmin(grid.heights_m))), max(highest, float(np.nanmax(grid.heights_m)))
-                extents.append(grid.extent)
-                step = (grid.step_lon_deg, grid.step_lat_deg)
+        with opened_terrain(path) as file:
+            datum = datum_of(file, _said_datum(parameters))
+            survey, comparison = Survey(), _Comparison(provenance.file_name, datum)
+            for number, raster in enumerate(file.rasters):
+                for block in blocks_of(raster):
+                    progress("reading the heights", (number + block.share) / len(file.rasters))
+                    survey.add(block)
+                    if block.grid is not None:
+                        comparison.add(block.grid)
+            summary = facts_of(file, survey, datum)
     except TerrainFileError as error:
-        raise FileRefused([Fault("", str(error))]) from error
-    if not blocks:
-        raise FileRefused([Fault("", "The file has no heights, only voids.")])
-    bounds = np.array(extents)
-    summary = {
-        "blocks": blocks, "posts": posts, "voids": voids, "lowest_m": lowest, "highest_m": highest, "step_lon_deg": step[0],
-        "step_lat_deg": step[1], "vertical_datum": stated_datum or datum, "datum_is_stated": stated_datum is not None,
-        "extent": [*bounds[:, :2].min(axis=0).tolist(), *bounds[:, 2:].max(axis=0).tolist()],
-    }  # fmt: skip
-    held = TerrainTile.objects.filter(data_import__kind=ImportKind.TERRAIN, data_import__file_name=provenance.file_name[:255]).count()
-    return Reading(
-        summary, {"new": max(blocks - held, 0), "changed": min(blocks, held), "vanished": max(held - blocks, 0), "kept": 0, "unchanged": 0}
-    )
+        raise _refusal(error) from error
+    if same_import(provenance.file_name, sha256_of(path), datum) is not None:
+        return Reading(summary, dict.fromkeys(ChangeAction.values, 0) | {"unchanged": survey.blocks})
+    comparison.finish()
+    summary["notes"] = [*summary["notes"], *comparison.notes()]
+    return Reading(summary, comparison.numbers, tuple(comparison.changes))
 
 
 def apply(
@@ -54,10 +55,111 @@ def apply(
     """Store the heights. Raises FileRefused."""
     try:
         return import_terrain(
-            path=_file(path), imported_by=applied_by, vertical_datum=_datum(parameters), progress=progress, provenance=provenance
+            path=_file(path), imported_by=applied_by, vertical_datum=_said_datum(parameters), progress=progress, provenance=provenance
         )
     except TerrainFileError as error:
-        raise FileRefused([Fault("", str(error))]) from error
+        raise _refusal(error) from error
+
+
+class _Comparison:
+    """Compares the posts of blocks with the ground as it is."""
+
+    def __init__(self, file_name: str, datum: str) -> None:
+        self.numbers: dict[str, int] = dict.fromkeys([*ChangeAction.values, "unchanged"], 0)
+        self.changes: list[Change] = []
+        self._file_name = file_name
+        self._datum = datum
+        self._waiting: list[HeightGrid] = []
+        self._extents: list[tuple[float, float, float, float]] = []
+        self._met: set[int] = set()  # imports that tell the ground where the file does
+
+    def add(self, grid: HeightGrid) -> None:
+        self._extents.append(grid.extent)
+        self._waiting.append(grid)
+        if len(self._waiting) == _AT_ONCE:
+            self._compare()
+
+    def finish(self) -> None:
+        self._compare()
+        for tile in self._given_up():
+            self.numbers[ChangeAction.VANISHED] += 1
+            self.changes.append(
+                Change(ChangeAction.VANISHED, SUBJECT, _label(tile.extent.extent), tile.pk, tile.extent, before={"model": self._file_name})
+            )
+
+    def notes(self) -> Iterable[str]:
+        others = DataImport.objects.filter(terrain_tiles__extent__bboverlaps=MultiPolygon([Polygon.from_bbox(self._whole())], srid=4326))
+        datums = others.exclude(file_name=self._file_name[:255]).values_list("file_name", "terrain_tiles__vertical_datum").distinct()
+        for name, datum in sorted(set(datums)):
+            if datum != self._datum:
+                yield f"{name} here counts its heights from {datum}, this file from {self._datum}: where they meet, heights may step."
+
+    def _compare(self) -> None:
+        grids, self._waiting = self._waiting, []
+        posts = [_posts(grid) for grid in grids]
+        if not posts:
+            return
+        truth = ground_truth(np.concatenate([positions for positions, _ in posts]))
+        names = dict(DataImport.objects.filter(pk__in=np.unique(truth.imports).tolist()).values_list("pk", "file_name"))
+        first = 0
+        for grid, (_, heights) in zip(grids, posts, strict=True):
+            part = slice(first, first + len(heights))
+            first = part.stop
+            self._take(
+                grid, heights, truth.heights_m[part], [names[key] for key in np.unique(truth.imports[part]).tolist() if key in names]
+            )
+
+    def _take(self, grid: HeightGrid, heights: np.ndarray[Any, Any], now: np.ndarray[Any, Any], models: list[str]) -> None:
+        both = ~np.isnan(heights) & ~np.isnan(now)
+        change_m = float(np.abs(heights[both] - now[both]).max()) if both.any() else None
+        after = {"model": self._file_name} | _span(grid.heights_m)
+        extent = grid.extent
+        if change_m is None:
+            self._note(ChangeAction.NEW, extent, None, after)
+        elif change_m < SAME_M and both.sum() == (~np.isnan(heights)).sum():
+            self.numbers["unchanged"] += 1
+        else:
+            self._note(
+                ChangeAction.CHANGED, extent, {"model": ", ".join(models)} | _span(now), after | {"largest_change_m": round(change_m, 1)}
+            )
+
+    def _note(
+        self, action: ChangeAction, extent: tuple[float, float, float, float], before: dict[str, Any] | None, after: dict[str, Any]
+    ) -> None:
+        self.numbers[action] += 1
+        shape = Polygon.from_bbox(extent)
+        shape.srid = 4326
+        self.changes.append(Change(action, SUBJECT, _label(extent), None, shape, before, after))
+
+    def _given_up(self) -> list[TerrainTile]:
+        """Blocks of the earlier file of this name that the new one does not cover whole."""
+        tiles = list(TerrainTile.objects.filter(data_import__in=imports_of_name(self._file_name)).defer("heights_amsl_m"))
+        if not tiles:
+            return []
+        west, south, east, north = np.array(self._extents).T
+        covered = shapely.unary_union(shapely.box(west - _EDGE_DEG, south - _EDGE_DEG, east + _EDGE_DEG, north + _EDGE_DEG))
+        shapely.prepare(covered)
+        return [tile for tile in tiles if not shapely.covers(covered, shapely.box(*tile.extent.extent))]
+
+    def _whole(self) -> tuple[float, float, float, float]:
+        west, south, east, north = np.array(self._extents).T
+        return float(west.min()), float(south.min()), float(east.max()), float(north.max())
+
+
+def _posts(grid: HeightGrid) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """Positions and heights."""
+    rows, columns = (np.arange(count) for count in grid.heights_m.shape)
+    lon, lat = np.meshgrid(grid.west_deg + columns * grid.step_lon_deg, grid.north_deg - rows * grid.step_lat_deg)
+    return np.column_stack([lon.ravel(), lat.ravel()]), grid.heights_m.ravel().astype(np.float64)
+
+
+def _span(heights: np.ndarray[Any, Any]) -> dict[str, float]:
+    return {"lowest_m": round(float(np.nanmin(heights)), 1), "highest_m": round(float(np.nanmax(heights)), 1)}
+
+
+def _label(extent: tuple[float, float, float, float]) -> str:
+    lon, lat = (extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2
+    return f"Block at {abs(lat):.3f}° {'S' if lat < 0 else 'N'}, {abs(lon):.3f}° {'W' if lon < 0 else 'E'}"
 
 
 def _file(path: Path | None) -> Path:
@@ -66,12 +168,13 @@ def _file(path: Path | None) -> Path:
     return path
 
 
-def _datum(parameters: dict[str, Any]) -> str:
-    datum = parameters.get("vertical_datum") or DEFAULT_DATUM
-    if not isinstance(datum, str) or len(datum) > LONGEST_DATUM or not datum.isprintable():
-        raise FileRefused([Fault("vertical_datum", f"The vertical datum is a name of at most {LONGEST_DATUM} characters.")])
-    if "ellipsoid" in datum.lower() or datum.upper() in {"WGS84", "EPSG:4979"}:
-        raise FileRefused(
-            [Fault("vertical_datum", "Heights above the ellipsoid cannot be compared with others: convert them to sea level.")]
-        )
-    return datum
+def _said_datum(parameters: dict[str, Any]) -> str:
+    said = parameters.get("vertical_datum") or ""
+    if not isinstance(said, str):
+        raise FileRefused([Fault("vertical_datum", "The vertical datum is a name.")])
+    return said
+
+
+def _refusal(error: TerrainFileError) -> FileRefused:
+    place = "vertical_datum" if isinstance(error, DatumFault) or str(error) == NEEDS_DATUM else ""
+    return FileRefused([Fault(place, str(error))])

@@ -13,6 +13,7 @@ from django.core.management import call_command
 from inspection.demo_region import BASES, make_region
 from inspection.selectors import ground_heights_m
 from inspection.services import import_terrain
+from inspection.terrain.terrain_file import opened_terrain
 
 NAMES = ["demo-terrain.tif", "demo-zones.json", "demo.osm.pbf"]
 
@@ -50,10 +51,11 @@ def test_the_zone_file_is_an_ed269_document_that_says_synthetic(written: tuple[P
 def test_the_terrain_file_holds_the_drawn_heights_where_they_were_drawn(written: tuple[Path, str]) -> None:
     raster = GDALRaster(str(written[0] / "demo-terrain.tif"))
     terrain = make_region().terrain
-    assert raster.srid == 4326
     assert (raster.origin.x, raster.origin.y) == pytest.approx((terrain.west_deg, terrain.north_deg), abs=1e-12)
     assert (raster.scale.x, raster.scale.y) == pytest.approx((terrain.step_deg, -terrain.step_deg), abs=1e-15)
     assert np.array_equal(raster.bands[0].data(), terrain.heights_amsl_m)
+    with opened_terrain(written[0] / "demo-terrain.tif") as file:
+        assert (file.reference_systems, file.vertical_datum) == (["WGS 84"], "EGM96")
 
 
 @pytest.mark.django_db
