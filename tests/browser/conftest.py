@@ -20,6 +20,7 @@ CHROMIUM_FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync",
 ]  # fmt: skip
+PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
 PASSWORD = "inspect-the-lines"
 USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator"}
 NEW_USERS = f"""
@@ -134,6 +135,7 @@ def picture() -> Callable[[Page, str], None]:
         if os.environ.get("SPANWISE_SCREENSHOTS") == "1":
             page.evaluate("document.activeElement?.blur()")
             page.mouse.move(0, 0)
+            page.wait_for_timeout(PICTURE_SETTLES_MS)
             page.screenshot(path=PROJECT_DIR / "docs" / "screenshots" / f"{name}.png")
 
     return take
