@@ -14,7 +14,9 @@ pytestmark = pytest.mark.django_db
 
 SAFE = {"get", "head", "options"}
 ALSO_CURATORS = {"cancel_job"}
-CURATED = re.compile(r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|gaps|geometry-checks|uploads|imports|terrain|regions)(/|$)")
+CURATED = re.compile(
+    r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|gaps|geometry-checks|uploads|imports|terrain|regions)(/|$)"
+)
 ASKED_BY_ALL = {"terrain_profile", "convert_heights"}  # a POST because the question is long; nothing is stored
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 
