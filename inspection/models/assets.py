@@ -118,8 +118,10 @@ class Asset(models.Model):
         indexes = [
             models.Index(fields=["kind", "id"], name="asset_kind_idx"),
             models.Index(  # the most important lines first: tiles of whole countries
-                F("max_voltage_v").desc(nulls_last=True), F("length_m").desc(nulls_last=True),
-                condition=Q(kind="line", vanished_at=None), name="asset_lines_idx",
+                F("max_voltage_v").desc(nulls_last=True),
+                F("length_m").desc(nulls_last=True),
+                condition=Q(kind="line", vanished_at=None),
+                name="asset_lines_idx",
             ),
             models.Index(fields=["osm_type", "osm_id"], name="asset_osm_idx"),
             GinIndex(
