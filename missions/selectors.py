@@ -7,11 +7,12 @@ from django.contrib.gis.db.models import Extent
 from django.db.models import Count, Max, Prefetch, Q, QuerySet
 
 from inspection.models import Asset
-from inspection.selectors import UNREAD_OF_A_LINE, ground_revision, zones_in_force
+from inspection.selectors import UNREAD_OF_A_LINE, ground_heights_m, ground_revision, zones_in_force
 from missions.flight_plan.clearance import legs_that_meet
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route, Uav, Waypoint
 from workspace.models import AuditEntry, Organisation
 
+TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
 
 
@@ -59,7 +60,7 @@ def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:
 
 
 def is_stale(mission: Mission, revision: int) -> bool:
-    """Whether assets or zones have changed since the mission was planned; `revision` is the ground's now."""
+    """Whether assets, zones or terrain have changed since the mission was planned; `revision` is the ground's now."""
     return mission.state != MissionState.DRAFT and mission.ground_revision != revision
 
 
@@ -79,7 +80,32 @@ def stale_reason(mission: Mission) -> str:
         return f"An asset changed since this was planned. {vanished[0]} is no longer in the data."
     if Asset.objects.filter(vanished_at__isnull=False, pk__in=_passed_assets(mission)).exists():
         return "An asset changed since this was planned. A route passes something that is no longer in the data."
+    if reason := _terrain_reason(mission):
+        return reason
     return "The ground has changed since this was planned. No zone in force touches the routes."
+
+
+def _terrain_reason(mission: Mission) -> str:
+    """Whether the ground under the waypoints is another one than the routes were planned over; its height then is AMSL less AGL."""
+    waypoints = [(route, waypoint) for route in mission.routes.all() for waypoint in route.waypoints.all()]
+    if not waypoints:
+        return ""
+    now_m = ground_heights_m(np.array([waypoint.position.coords for _, waypoint in waypoints]))
+    then_m = np.array([
+        np.nan if waypoint.altitude_amsl_m is None else waypoint.altitude_amsl_m - waypoint.altitude_agl_m for _, waypoint in waypoints
+    ])  # fmt: skip
+    off_m = np.abs(now_m - then_m)
+    if (off_m > TERRAIN_CHANGED_M).any():
+        worst = int(np.nanargmax(off_m))
+        name = waypoints[worst][0].mission_uav.name
+        return f"The terrain changed since this was planned. Under the route of {name} it differs by up to {off_m[worst]:.0f} m."
+    if (~np.isnan(then_m) & np.isnan(now_m)).any():
+        return "The terrain changed since this was planned. Under a route it is no longer known."
+    for route in mission.routes.all():
+        under = [height for (own, _), height in zip(waypoints, now_m.tolist(), strict=True) if own is route]
+        if under and not np.isnan(under).any() and route.waypoints.all()[0].altitude_amsl_m is None:
+            return f"Terrain came in since this was planned: {route.mission_uav.name} flies as over flat ground."
+    return ""
 
 
 def _passed_assets(mission: Mission) -> set[int]:

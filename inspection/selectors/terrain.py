@@ -6,6 +6,7 @@ from threading import Lock
 
 import numpy as np
 import shapely
+from django.db.models import Count, Max
 from numpy.typing import NDArray
 
 from inspection.geodesy.wgs84 import FloatArray
@@ -41,6 +42,12 @@ class _TileIndex:
 
 def has_terrain() -> bool:
     return TerrainTile.objects.exists()
+
+
+def terrain_edition() -> tuple[int | None, int]:
+    """Another one after every change of the terrain, and the same one after other changes of the ground."""
+    tiles = TerrainTile.objects.aggregate(newest=Max("pk"), number=Count("pk"))
+    return tiles["newest"], tiles["number"]
 
 
 def ground_heights_m(positions: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ import numpy as np
 from django.conf import settings
 
 from inspection.geodesy import LonLat, path_length_m
-from inspection.selectors import current_graph, ground_heights_m, ground_revision, has_terrain, zones_in_force
+from inspection.selectors import current_graph, ground_heights_m, ground_revision, has_terrain, terrain_edition, zones_in_force
 from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
 from missions.flight_plan.duration import duration_s
 from missions.flight_plan.flyable_graph import flyable_graph, node_heights_m
@@ -70,10 +70,14 @@ def make_plan(
     left_out += [unreached_place(places[item.target], item, visits_of[item.target], ways, scene) for item in solution.unassigned]
 
     on_progress(0.95, "Working out heights and checking every leg")
-    drawing = _Drawing(request, scene, places, visits, courses, ways)
-    flown = {uav: drawing.route(uav, number, solution.routes[number]) for number, uav in enumerate(uavs) if solution.routes[number]}
-    routes = [flown.get(uav, PlannedRoute(end_action=end_action(request, uav))) for uav in range(len(request.uavs))]
-    revision = _look_at_zones_again(routes, scene)
+    while True:
+        ground_before = terrain_edition()
+        drawing = _Drawing(request, scene, places, visits, courses, ways)
+        flown = {uav: drawing.route(uav, number, solution.routes[number]) for number, uav in enumerate(uavs) if solution.routes[number]}
+        routes = [flown.get(uav, PlannedRoute(end_action=end_action(request, uav))) for uav in range(len(request.uavs))]
+        revision = _look_at_zones_again(routes, scene)
+        if terrain_edition() == ground_before:  # else the heights belong to another ground than the revision says
+            break
     return plan_to_json(
         request,
         routes,
