@@ -1,17 +1,21 @@
-"""The terrain models in use: where they reach, how fine they are, and which of them counts at a place."""
+"""The terrain models in use: where they reach, how fine they are, and which of them counts where several lie."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from math import cos, radians
+from typing import Any
 
-from django.contrib.gis.db.models import Extent
-from django.contrib.gis.geos import Point
-from django.db.models import Max, Min, Sum
+from django.contrib.gis.db.models import Extent, Union
+from django.contrib.gis.db.models.functions import SnapToGrid
+from django.contrib.gis.geos import GEOSGeometry, Polygon
+from django.db.models import Max, Min
 
-from inspection.geodesy import LonLat
-from inspection.models import DataImport, ImportKind, TerrainTile
+from inspection.models import DataImport, ImportKind
+from inspection.selectors.ground import ground_edition
 
 DEGREE_M = 111_320.0  # of latitude, and of longitude at the equator
+USUAL_STEP_M = 30.0  # where no model reaches
+_SNAP_DEG = 1e-7  # edges of neighbouring tiles are the same but for rounding
 
 
 @dataclass(frozen=True)
@@ -19,47 +23,62 @@ class TerrainModel:
     """One file. Of several at a place the newest counts, and an older one fills its voids."""
 
     data_import: DataImport
+    footprint: GEOSGeometry  # of its blocks that have heights
     extent: tuple[float, float, float, float]  # west, south, east, north [deg]
     vertical_datum: str
     resolution_m: float
-    tiles: int
+    over: tuple[int, ...]  # older models that lie under parts of it
+    step_at: tuple[str, ...]  # other datums that heights are counted from where it meets or covers another model
 
 
 def terrain_models() -> list[TerrainModel]:
     """Newest first: what counts on top."""
-    imports = (
+    return list(_models(ground_edition()))
+
+
+def model_of(data_import: int) -> TerrainModel | None:
+    return next((model for model in terrain_models() if model.data_import.pk == data_import), None)
+
+
+def finest_step_m(box: tuple[float, float, float, float]) -> float:
+    """Half of what lies between the posts of the finest model that touches a box: more places tell nothing more."""
+    west, south, east, north = box
+    steps = [
+        model.resolution_m / 2
+        for model in terrain_models()
+        if model.extent[0] <= east and model.extent[2] >= west and model.extent[1] <= north and model.extent[3] >= south
+    ]
+    return min(steps, default=USUAL_STEP_M)
+
+
+@lru_cache(maxsize=2)
+def _models(edition: object) -> tuple[TerrainModel, ...]:
+    """The models as they stand at this edition of the ground."""
+    rows = (
         DataImport.objects.filter(kind=ImportKind.TERRAIN, terrain_tiles__isnull=False)
         .annotate(
-            extent=Extent("terrain_tiles__extent"), datum=Max("terrain_tiles__vertical_datum"), step_lat=Min("terrain_tiles__step_lat_deg"),
-            step_lon=Min("terrain_tiles__step_lon_deg"), newest=Max("terrain_tiles__pk"), tiles=Sum("terrain_tiles__rows"),
+            extent=Extent("terrain_tiles__extent"),
+            footprint=Union(SnapToGrid("terrain_tiles__extent", _SNAP_DEG)),
+            datum=Max("terrain_tiles__vertical_datum"),
+            step_lat=Min("terrain_tiles__step_lat_deg"),
+            step_lon=Min("terrain_tiles__step_lon_deg"),
+            newest=Max("terrain_tiles__pk"),
         )
         .order_by("-newest")
-    )  # fmt: skip
-    return [_model(row) for row in imports]
-
-
-def model_at(position: LonLat) -> TerrainTile | None:
-    """The newest tile that reaches over the position."""
-    place = Point(position.lon, position.lat, srid=4326)
-    return (
-        TerrainTile.objects.select_related("data_import").defer("heights_amsl_m").filter(extent__intersects=place).order_by("-pk").first()
     )
+    return tuple(_model(row, place, list(rows)) for place, row in enumerate(rows))
 
 
-def datums_along(extent: Iterable[float]) -> list[str]:
-    """The vertical datums of the models that touch a box; more than one means that heights of different zero points meet."""
-    west, south, east, north = extent
-    tiles = TerrainTile.objects.filter(extent__bboverlaps=_box(west, south, east, north))
-    return sorted(set(tiles.values_list("vertical_datum", flat=True).order_by()))
-
-
-def _box(west: float, south: float, east: float, north: float):  # type: ignore[no-untyped-def]
-    box = Point(west, south, srid=4326).union(Point(east, north, srid=4326)).envelope
-    box.srid = 4326
-    return box
-
-
-def _model(row: DataImport) -> TerrainModel:
+def _model(row: Any, place: int, rows: list[Any]) -> TerrainModel:
     middle = radians((row.extent[1] + row.extent[3]) / 2)
     step_m = max(row.step_lat * DEGREE_M, row.step_lon * DEGREE_M * cos(middle))
-    return TerrainModel(row, row.extent, row.datum, step_m, row.tiles)
+    around = Polygon.from_bbox(row.extent).buffer(2 * row.step_lat)
+    return TerrainModel(
+        data_import=row,
+        footprint=row.footprint,
+        extent=row.extent,
+        vertical_datum=row.datum,
+        resolution_m=step_m,
+        over=tuple(other.pk for other in rows[place + 1 :] if other.footprint.intersection(row.footprint).area > 0),
+        step_at=tuple(sorted({other.datum for other in rows if other.datum != row.datum and other.footprint.intersects(around)})),
+    )

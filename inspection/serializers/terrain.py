@@ -5,7 +5,10 @@ from typing import Any
 from rest_framework import serializers
 
 from inspection.selectors.terrain_models import TerrainModel
+from inspection.selectors.zones_along import ZoneStretch
 from inspection.serializers.features import GeometrySerializer
+from inspection.serializers.zones import LimitSerializer, limit_json
+from inspection.services.facts import geojson
 from inspection.terrain.heights import REFERENCES
 
 MOST_VERTICES = 2_000
@@ -37,8 +40,11 @@ class ModelPropertiesSerializer(serializers.Serializer):
     highest_m = serializers.FloatField(allow_null=True)
     attribution = serializers.CharField()
     licence = serializers.CharField()
+    source_address = serializers.CharField(help_text="empty for a file that somebody sent")
     is_synthetic = serializers.BooleanField()
     imported_at = serializers.DateTimeField()
+    over = serializers.ListField(child=serializers.IntegerField(), help_text="older models that lie under parts of this one")
+    other_datums = serializers.ListField(child=serializers.CharField(), help_text="of models that it meets: heights may step there")
 
 
 class ModelFeatureSerializer(serializers.Serializer):
@@ -59,12 +65,25 @@ class ModelCollectionSerializer(serializers.Serializer):
 class GroundHeightSerializer(serializers.Serializer):
     ground_amsl_m = serializers.FloatField(allow_null=True, help_text="null where no model knows the ground")
     vertical_datum = serializers.CharField(allow_null=True)
-    source = serializers.CharField(allow_null=True, help_text="file name of the newest model that reaches there")
+    source = serializers.CharField(allow_null=True, help_text="file name of the model that the height is from")
 
 
 class ProfileInputSerializer(serializers.Serializer):
     line = serializers.ListField(child=PositionField(), min_length=2, max_length=MOST_VERTICES)
-    step_m = serializers.FloatField(min_value=1, max_value=100_000, required=False, help_text="half a post's distance unless told")
+    step_m = serializers.FloatField(
+        min_value=1, max_value=100_000, required=False, help_text="no less than half a post's distance, which it is unless told"
+    )
+
+
+class ZoneAlongSerializer(serializers.Serializer):
+    """A stretch of the line that lies in a zone."""
+
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+    from_m = serializers.FloatField()
+    to_m = serializers.FloatField()
+    lower_limit = LimitSerializer(allow_null=True, help_text="null: not stated")
+    upper_limit = LimitSerializer(allow_null=True, help_text="null: not stated")
 
 
 class ProfileSerializer(serializers.Serializer):
@@ -75,7 +94,10 @@ class ProfileSerializer(serializers.Serializer):
     lowest_m = serializers.FloatField(allow_null=True)
     highest_m = serializers.FloatField(allow_null=True)
     unknown = serializers.IntegerField(help_text="places where no model knows the ground")
+    step_m = serializers.FloatField(help_text="between neighbouring places at most")
     vertical_datums = serializers.ListField(child=serializers.CharField())
+    sources = serializers.ListField(child=serializers.CharField(), help_text="file names of the models that the heights are from")
+    zones = ZoneAlongSerializer(many=True)
 
 
 class HeightsInputSerializer(serializers.Serializer):
@@ -100,13 +122,11 @@ class HeightsSerializer(serializers.Serializer):
 
 
 def model_feature(model: TerrainModel) -> dict[str, Any]:
-    west, south, east, north = model.extent
-    ring = [[west, south], [east, south], [east, north], [west, north], [west, south]]
     row, counts = model.data_import, model.data_import.counts
     return {
         "type": "Feature",
         "id": row.pk,
-        "geometry": {"type": "Polygon", "coordinates": [ring]},
+        "geometry": geojson(model.footprint),
         "properties": {
             "file_name": row.file_name,
             "vertical_datum": model.vertical_datum,
@@ -114,7 +134,19 @@ def model_feature(model: TerrainModel) -> dict[str, Any]:
             **{name: counts.get(name) for name in ("posts", "voids", "lowest_m", "highest_m")},
             "attribution": row.attribution,
             "licence": row.licence,
+            "source_address": row.source_address,
             "is_synthetic": row.is_synthetic,
             "imported_at": row.imported_at,
+            "over": list(model.over),
+            "other_datums": list(model.step_at),
         },
     }
+
+
+def zone_along_json(stretch: ZoneStretch) -> dict[str, Any]:
+    zone = stretch.zone
+    return {
+        "id": zone.pk, "name": zone.name, "from_m": round(stretch.from_m, 2), "to_m": round(stretch.to_m, 2),
+        "lower_limit": limit_json(zone.lower_limit_m, zone.lower_reference),
+        "upper_limit": limit_json(zone.upper_limit_m, zone.upper_reference),
+    }  # fmt: skip

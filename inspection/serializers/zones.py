@@ -56,8 +56,8 @@ def zone_feature(zone: NoFlyZone) -> dict[str, Any]:
         "zone_set": zone.zone_set.name if zone.zone_set else None,
         "restriction": zone.restriction,
         "reason": zone.reason,
-        "lower_limit": _limit(zone.lower_limit_m, zone.lower_reference),
-        "upper_limit": _limit(zone.upper_limit_m, zone.upper_reference),
+        "lower_limit": limit_json(zone.lower_limit_m, zone.lower_reference),
+        "upper_limit": limit_json(zone.upper_limit_m, zone.upper_reference),
         "source_heights": zone.source_heights,
         "circle": zone.circle,
         "schedule": zone.schedule,
@@ -74,7 +74,7 @@ def zone_detail_feature(zone: NoFlyZone) -> dict[str, Any]:
     return feature
 
 
-def _limit(value_m: float | None, reference: str) -> dict[str, Any] | None:
+def limit_json(value_m: float | None, reference: str) -> dict[str, Any] | None:
     return None if value_m is None else {"value_m": value_m, "reference": reference}
 
 

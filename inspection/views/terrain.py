@@ -9,11 +9,12 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import DataImport, ImportKind
 from inspection.selectors import ground_heights_m
-from inspection.selectors.terrain_models import datums_along, model_at, terrain_models
+from inspection.selectors.terrain import ground_truth
+from inspection.selectors.terrain_models import finest_step_m, model_of, terrain_models
+from inspection.selectors.zones_along import box_of_line, zones_along
 from inspection.serializers.terrain import (
     GroundHeightSerializer,
     HeightsInputSerializer,
@@ -22,6 +23,7 @@ from inspection.serializers.terrain import (
     ProfileInputSerializer,
     ProfileSerializer,
     model_feature,
+    zone_along_json,
 )
 from inspection.services.terrain_import import remove_terrain
 from inspection.terrain.heights import amsl_m, counted_from
@@ -30,7 +32,6 @@ from inspection.views.parameters import invalid
 from workspace.models import Role
 from workspace.permissions import CURATORS
 
-USUAL_STEP_M = 30.0
 EVERYBODY = frozenset(Role)
 
 
@@ -66,10 +67,14 @@ class GroundHeight(APIView):
             raise invalid("position", "Two numbers are needed: lon,lat.") from error
         if not (-180 <= lon <= 180 and -90 <= lat <= 90):
             raise invalid("position", "Longitude comes first, from -180 to 180, then latitude, from -90 to 90.")
-        height = ground_heights_m(np.array([[lon, lat]]))[0]
-        tile = model_at(LonLat(lon, lat))
+        truth = ground_truth(np.array([[lon, lat]]))
+        model = model_of(int(truth.imports[0]))
         return Response(
-            {"ground_amsl_m": _known(height), "vertical_datum": tile and tile.vertical_datum, "source": tile and tile.data_import.file_name}
+            {
+                "ground_amsl_m": _known(truth.heights_m[0]),
+                "vertical_datum": model and model.vertical_datum,
+                "source": model and model.data_import.file_name,
+            }
         )
 
 
@@ -87,10 +92,12 @@ class Profile(APIView):
         body = ProfileInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         line = np.array(body.validated_data["line"])
-        found = samples_along(line, body.validated_data.get("step_m", USUAL_STEP_M))
-        heights = ground_heights_m(found.positions)
+        finest_m = finest_step_m(box_of_line(line))
+        found = samples_along(line, max(body.validated_data.get("step_m", finest_m), finest_m))
+        truth = ground_truth(found.positions)
+        heights = truth.heights_m
         known = heights[~np.isnan(heights)]
-        extent = [*line.min(axis=0).tolist(), *line.max(axis=0).tolist()]
+        models = [model for key in np.unique(truth.imports).tolist() if (model := model_of(key)) is not None]
         return Response(
             {
                 "length_m": float(found.distance_m[-1]),
@@ -100,7 +107,10 @@ class Profile(APIView):
                 "lowest_m": float(known.min()) if len(known) else None,
                 "highest_m": float(known.max()) if len(known) else None,
                 "unknown": int(np.isnan(heights).sum()),
-                "vertical_datums": datums_along(extent),
+                "step_m": round(float(np.diff(found.distance_m).max()), 2),
+                "vertical_datums": sorted({model.vertical_datum for model in models}),
+                "sources": sorted({model.data_import.file_name for model in models}),
+                "zones": [zone_along_json(stretch) for stretch in zones_along(line)],
             }
         )
 

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from django.contrib.gis.geos import GEOSGeometry
 from django.test import Client
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.models import DataImport, TerrainTile
+from inspection.models import DataImport, NoFlyZone, TerrainTile
 from inspection.selectors import ground_revision
 from inspection.services import import_terrain
 from inspection.services.proposals import terrain
@@ -58,7 +59,10 @@ def test_models_tell_where_they_reach_how_fine_they_are_and_from_where_they_coun
     properties = features[1]["properties"]
     assert (properties["vertical_datum"], properties["voids"]) == ("EGM2008", 1)
     assert properties["resolution_m"] == pytest.approx(111.32, rel=0.01)
-    assert features[0]["geometry"]["coordinates"][0][0] == [9.0, 46.0]
+    assert (properties["over"], features[0]["properties"]["over"]) == ([], [older.pk])
+    assert features[0]["properties"]["other_datums"] == ["EGM2008"]
+    assert features[0]["geometry"]["type"] == "Polygon"
+    assert sorted(features[0]["geometry"]["coordinates"][0])[0] == [9.0, 46.0]
 
 
 @pytest.mark.django_db
@@ -87,8 +91,58 @@ def test_a_profile_follows_the_ground_and_tells_what_it_does_not_know(client: Cl
     assert found["ground_amsl_m"][-1] == pytest.approx(525.0, abs=0.01)
     assert (found["distance_m"][0], found["distance_m"][-1]) == (0.0, pytest.approx(found["length_m"], abs=0.01))
     assert found["unknown"] == found["ground_amsl_m"].count(None) > 0
-    assert found["vertical_datums"] == ["EGM96"]
+    assert (found["vertical_datums"], found["sources"]) == (["EGM96"], ["plane.tif"])
     assert max(np.diff(found["distance_m"])) <= 100.0
+
+
+@pytest.mark.django_db
+def test_a_profile_is_no_finer_than_what_is_known(client: Client, tmp_path: Path) -> None:
+    """Posts stand 111 m apart."""
+    import_terrain(path=geotiff(tmp_path / "plane.tif", plane()))
+    line = [list(post(100, 100)), list(post(100, 200))]
+    for step in ({}, {"step_m": 2}):
+        found = client.post("/api/v1/terrain/profile", {"line": line, **step}, content_type="application/json").json()
+        assert found["step_m"] == pytest.approx(111.32 / 2, rel=0.02)
+
+
+@pytest.mark.django_db
+def test_a_profile_names_the_zones_that_it_crosses_with_their_limits(client: Client) -> None:
+    """The line runs east along 47 N; a zone that is open to the south is crossed twice."""
+    shape = GEOSGeometry(
+        "MULTIPOLYGON (((9.1 46.9, 9.2 46.9, 9.2 47.1, 9.3 47.1, 9.3 46.9, 9.4 46.9, 9.4 47.2, 9.1 47.2, 9.1 46.9)))", srid=4326
+    )
+    limits = {"lower_limit_m": None, "lower_reference": "", "upper_limit_m": 120.0, "upper_reference": "AGL"}
+    zone = NoFlyZone.objects.create(identifier="u", name="Reserve", geometry=shape, **limits)
+    NoFlyZone.objects.create(identifier="far", name="Far", geometry=GEOSGeometry("MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)))", srid=4326))
+    found = client.post("/api/v1/terrain/profile", {"line": [[9, 47], [9.15, 47], [9.5, 47]]}, content_type="application/json").json()
+    per_degree_m = found["length_m"] / 0.5
+    assert [(along["id"], along["from_m"], along["to_m"]) for along in found["zones"]] == [
+        (zone.pk, pytest.approx(0.1 * per_degree_m, abs=1), pytest.approx(0.2 * per_degree_m, abs=1)),
+        (zone.pk, pytest.approx(0.3 * per_degree_m, abs=1), pytest.approx(0.4 * per_degree_m, abs=1)),
+    ]
+    assert found["zones"][0]["upper_limit"] == {"value_m": 120.0, "reference": "AGL"}
+    assert found["zones"][0]["lower_limit"] is None
+
+
+@pytest.mark.django_db
+def test_a_model_of_several_tiles_covers_what_they_cover(client: Client, tmp_path: Path) -> None:
+    heights = plane(900, 300)
+    heights[:, 250:700] = -9999.0
+    import_terrain(path=geotiff(tmp_path / "gap.tif", heights))
+    (feature,) = client.get("/api/v1/terrain").json()["features"]
+    assert feature["geometry"]["type"] == "MultiPolygon"
+    assert len(feature["geometry"]["coordinates"]) == 2
+
+
+@pytest.mark.django_db
+def test_a_void_is_told_with_the_older_model_that_fills_it(client: Client, tmp_path: Path) -> None:
+    import_terrain(path=geotiff(tmp_path / "older.tif", plane(), srid=9518))
+    heights = plane(base=900.0)
+    heights[95:105, 195:205] = -9999.0
+    import_terrain(path=geotiff(tmp_path / "newer.tif", heights))
+    lon, lat = post(200, 100)
+    found = client.get(f"/api/v1/terrain/height?position={lon},{lat}").json()
+    assert found == {"ground_amsl_m": 425.0, "vertical_datum": "EGM2008", "source": "older.tif"}
 
 
 @pytest.mark.django_db

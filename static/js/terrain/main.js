@@ -34,7 +34,7 @@ const { page, map, open } = mountGroundPage({
   kinds: () => (tool === "profile" ? (points.length ? [] : ["line"]) : null),
 });
 const showList = mountModelList(page.canCurate, {
-  show: ({ geometry }) => map.fit(boxAround(geometry.coordinates.flat())),
+  show: ({ geometry }) => map.fit(boxAround(geometry.type === "Polygon" ? geometry.coordinates.flat() : geometry.coordinates.flat(2))),
   point: (model) => layer.showModels(map.map, models, model?.id),
   remove: takeAway,
 });
