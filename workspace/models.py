@@ -31,6 +31,23 @@ class Role(models.TextChoices):
     ADMINISTRATOR = "administrator", "Administrator"
 
 
+class Theme(models.TextChoices):
+    SYSTEM = "system", "As the system"
+    LIGHT = "light", "Light"
+    DARK = "dark", "Dark"
+
+
+class Units(models.TextChoices):
+    METRIC = "metric", "Metres, kilometres, metres per second"
+    IMPERIAL = "imperial", "Feet, miles, miles per hour"
+
+
+class Language(models.TextChoices):
+    AS_THE_BROWSER = "", "As the browser"
+    ENGLISH = "en", "English"
+    GERMAN = "de", "Deutsch"
+
+
 class UserManager(DjangoUserManager["User"]):
     """What Django calls staff and superuser follows from the role, so neither is stored or asked for."""
 
@@ -51,6 +68,13 @@ class User(AbstractUser):
     user_permissions = None
     organisation = models.ForeignKey(Organisation, on_delete=models.PROTECT, default=DEFAULT_ORGANISATION_ID, related_name="users")
     role = models.CharField(max_length=20, choices=Role.choices, default=Role.VIEWER)
+    theme = models.CharField(max_length=10, choices=Theme.choices, default=Theme.SYSTEM)
+    units = models.CharField(
+        max_length=10, choices=Units.choices, default=Units.METRIC, help_text="what is shown; what is stored is metric"
+    )
+    time_zone = models.CharField(max_length=64, blank=True, help_text="IANA name; empty: the browser's")
+    language = models.CharField(max_length=5, choices=Language.choices, blank=True, default=Language.AS_THE_BROWSER)
+    single_keys = models.BooleanField(default=True, help_text="shortcuts of one key on the pages")
 
     objects = UserManager()
 
@@ -84,12 +108,64 @@ class ApiToken(models.Model):
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     expires_at = models.DateTimeField()
     revoked_at = models.DateTimeField(null=True, blank=True)
+    last_used_at = models.DateTimeField(null=True, blank=True, help_text="to the minute")
 
     class Meta:
         ordering = ["-created_at"]
 
     def __str__(self) -> str:
         return f"{self.name} of {self.user}"
+
+
+class Invitation(models.Model):
+    """A link that lets one person make an account with a role. Only its SHA-256 is kept; the link itself is shown once."""
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="invitations")
+    email = models.EmailField(blank=True, help_text="where the link was sent; empty: handed over by other means")
+    role = models.CharField(max_length=20, choices=Role.choices, default=Role.VIEWER)
+    token_sha256 = models.CharField(max_length=64, unique=True, editable=False)
+    invited_by = models.ForeignKey(User, on_delete=models.SET_NULL, null=True, blank=True, related_name="invitations_sent")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    expires_at = models.DateTimeField()
+    revoked_at = models.DateTimeField(null=True, blank=True)
+    accepted_at = models.DateTimeField(null=True, blank=True)
+    accepted_by = models.OneToOneField(User, on_delete=models.SET_NULL, null=True, blank=True, related_name="invitation")
+
+    class Meta:
+        ordering = ["-created_at"]
+        constraints = [models.CheckConstraint(condition=models.Q(role__in=Role.values), name="invitation_role_known")]
+
+    def __str__(self) -> str:
+        return f"{self.get_role_display()} {self.email or self.pk}"
+
+
+class SignInOutcome(models.TextChoices):
+    SIGNED_IN = "signed-in", "Signed in"
+    WRONG = "wrong", "Wrong name or password"
+    HELD_BACK = "held-back", "Too many tries"
+    SIGNED_OUT = "signed-out", "Signed out"
+
+
+class SignInEntry(models.Model):
+    """One try to sign in, or a signing out. A name that nobody has is not kept: people type passwords there."""
+
+    user = models.ForeignKey(User, on_delete=models.CASCADE, null=True, blank=True, related_name="sign_ins")
+    outcome = models.CharField(max_length=12, choices=SignInOutcome.choices)
+    address = models.CharField(max_length=45, blank=True, help_text="IP address")
+    user_agent = models.CharField(max_length=200, blank=True)
+    recorded_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["-recorded_at", "-pk"]
+        verbose_name_plural = "sign-in entries"
+        constraints = [models.CheckConstraint(condition=models.Q(outcome__in=SignInOutcome.values), name="sign_in_outcome_known")]
+        indexes = [
+            models.Index(fields=["-recorded_at", "-id"], name="sign_in_newest_idx"),
+            models.Index(fields=["user", "-recorded_at"], name="sign_in_of_user_idx"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.get_outcome_display()} {self.user or 'unknown'}"
 
 
 class JobState(models.TextChoices):

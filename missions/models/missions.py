@@ -1,4 +1,4 @@
-"""What is to be flown, by whom, in which order."""
+"""Missions: targets, UAVs, routes and waypoints, and selections kept for later."""
 
 import uuid
 
@@ -8,43 +8,8 @@ from django.db.models import Q
 from django.db.models.functions import Now
 
 from inspection.models import Asset
+from missions.models.fleet import EndAction, Uav
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
-
-
-class EndAction(models.TextChoices):
-    HOVER = "hover", "Hover at the last target"
-    RETURN = "return", "Return to start"
-    LAND = "land", "Land at the last target"
-
-
-class Uav(models.Model):
-    """An uncrewed aircraft of an organisation. `location` is where it stands or was last reported."""
-
-    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uavs")
-    name = models.CharField(max_length=100)
-    base_name = models.CharField(max_length=100, blank=True)
-    location = models.PointField(srid=4326)
-    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
-    cruise_speed_mps = models.FloatField(default=12.0)
-    battery_percent = models.FloatField(null=True, blank=True)
-    sensor = models.CharField(max_length=100, blank=True)
-    end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
-    created_at = models.DateTimeField(db_default=Now(), editable=False)
-    updated_at = models.DateTimeField(auto_now=True)
-
-    class Meta:
-        ordering = ["name"]
-        verbose_name = "UAV"
-        verbose_name_plural = "UAVs"
-        constraints = [
-            models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
-            models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
-            models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
-            models.CheckConstraint(condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="uav_battery_percent"),
-        ]
-
-    def __str__(self) -> str:
-        return self.name
 
 
 class MissionState(models.TextChoices):
@@ -80,6 +45,7 @@ class Mission(models.Model):
     flat_ground_assumed = models.BooleanField(null=True, blank=True)
     total_length_m = models.FloatField(null=True, blank=True)
     longest_route_m = models.FloatField(null=True, blank=True)
+    last_plan = models.JSONField(null=True, blank=True, help_text="summary of the plan before the present one, to compare with")
     plan_warnings = models.JSONField(default=list, blank=True, help_text="what the plan says about UAVs that cannot start")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)
@@ -197,3 +163,24 @@ class Waypoint(models.Model):
 
     def __str__(self) -> str:
         return f"{self.sequence} {self.kind}"
+
+
+class SavedSelection(models.Model):
+    """Targets that somebody picked and will want again; the whole organisation may use them."""
+
+    organisation = models.ForeignKey(
+        Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="saved_selections"
+    )
+    author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="saved_selections")
+    name = models.CharField(max_length=100)
+    targets = models.JSONField(help_text="as in a mission's request, each with the label it had")
+    revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    updated_at = models.DateTimeField(auto_now=True)
+
+    class Meta:
+        ordering = ["name"]
+        constraints = [models.UniqueConstraint(fields=["organisation", "name"], name="saved_selection_name_unique")]
+
+    def __str__(self) -> str:
+        return self.name

@@ -1,0 +1,135 @@
+"""What flies: UAVs, their types and bases, and what lets a UAV connect."""
+
+from django.contrib.gis.db import models
+from django.contrib.postgres.fields import ArrayField
+from django.db.models import Q
+from django.db.models.functions import Now
+
+from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
+
+
+class EndAction(models.TextChoices):
+    HOVER = "hover", "Hover at the last target"
+    RETURN = "return", "Return to start"
+    LAND = "land", "Land at the last target"
+
+
+class UavType(models.Model):
+    """What UAVs of one make have in common; a UAV's own values come before these."""
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uav_types")
+    name = models.CharField(max_length=100)
+    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
+    cruise_speed_mps = models.FloatField(default=12.0)
+    battery_wh = models.FloatField(null=True, blank=True, help_text="watt-hours of a full battery")
+    mass_kg = models.FloatField(null=True, blank=True, help_text="kilograms at take-off")
+    sensors = ArrayField(models.CharField(max_length=50), default=list, blank=True)
+    revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    updated_at = models.DateTimeField(auto_now=True)
+
+    class Meta:
+        ordering = ["name"]
+        verbose_name = "UAV type"
+        constraints = [
+            models.UniqueConstraint(fields=["organisation", "name"], name="uav_type_name_unique"),
+            models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_type_range_positive"),
+            models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_type_speed_positive"),
+            models.CheckConstraint(condition=Q(battery_wh=None) | Q(battery_wh__gt=0), name="uav_type_battery_positive"),
+            models.CheckConstraint(condition=Q(mass_kg=None) | Q(mass_kg__gt=0), name="uav_type_mass_positive"),
+        ]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class Base(models.Model):
+    """A place where UAVs stand and take off."""
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="bases")
+    name = models.CharField(max_length=100)
+    location = models.PointField(srid=4326)
+    note = models.CharField(max_length=300, blank=True)
+    revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    updated_at = models.DateTimeField(auto_now=True)
+
+    class Meta:
+        ordering = ["name"]
+        constraints = [models.UniqueConstraint(fields=["organisation", "name"], name="base_name_unique")]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class UavState(models.TextChoices):
+    ACTIVE = "active", "Active"
+    MAINTENANCE = "maintenance", "In maintenance"
+    RETIRED = "retired", "Retired"
+
+
+class Uav(models.Model):
+    """An uncrewed aircraft of an organisation. `location` is where it stands or was last reported."""
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uavs")
+    name = models.CharField(max_length=100)
+    uav_type = models.ForeignKey(UavType, on_delete=models.PROTECT, null=True, blank=True, related_name="uavs")
+    base = models.ForeignKey(Base, on_delete=models.PROTECT, null=True, blank=True, related_name="uavs")
+    base_name = models.CharField(max_length=100, blank=True, help_text="the base's name where it is one of the list; else as it was typed")
+    state = models.CharField(max_length=12, choices=UavState.choices, default=UavState.ACTIVE)
+    serial_number = models.CharField(max_length=100, blank=True)
+    mavlink_system_id = models.PositiveSmallIntegerField(null=True, blank=True, unique=True, help_text="1 to 254; one vehicle each")
+    location = models.PointField(srid=4326)
+    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
+    cruise_speed_mps = models.FloatField(default=12.0)
+    battery_percent = models.FloatField(null=True, blank=True)
+    sensor = models.CharField(max_length=100, blank=True)
+    end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
+    updated_at = models.DateTimeField(auto_now=True)
+
+    class Meta:
+        ordering = ["name"]
+        verbose_name = "UAV"
+        verbose_name_plural = "UAVs"
+        constraints = [
+            models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
+            models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
+            models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
+            models.CheckConstraint(condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="uav_battery_percent"),
+            models.CheckConstraint(condition=Q(state__in=UavState.values), name="uav_state_known"),
+            models.CheckConstraint(condition=Q(mavlink_system_id=None) | Q(mavlink_system_id__range=(1, 254)), name="uav_system_id_range"),
+        ]
+
+    def __str__(self) -> str:
+        return self.name
+
+
+class CredentialKind(models.TextChoices):
+    LINK_TOKEN = "link-token", "Token of the HTTP link"
+    MAVLINK_KEY = "mavlink-key", "MAVLink signing key"
+
+
+class UavCredential(models.Model):
+    """What a UAV proves itself with. Neither a token nor a key is kept: a token's SHA-256, and the salt that a key is derived from."""
+
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="credentials")
+    kind = models.CharField(max_length=12, choices=CredentialKind.choices)
+    token_sha256 = models.CharField(max_length=64, null=True, blank=True, unique=True, editable=False)
+    key_salt = models.CharField(max_length=64, blank=True, editable=False)
+    created_by = models.ForeignKey(User, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    last_used_at = models.DateTimeField(null=True, blank=True)
+    revoked_at = models.DateTimeField(null=True, blank=True)
+
+    class Meta:
+        ordering = ["-created_at"]
+        verbose_name = "UAV credential"
+        constraints = [
+            models.UniqueConstraint(fields=["uav", "kind"], condition=Q(revoked_at=None), name="uav_credential_one_in_force"),
+            models.CheckConstraint(condition=Q(kind__in=CredentialKind.values), name="uav_credential_kind_known"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.get_kind_display()} of {self.uav}"
