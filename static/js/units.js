@@ -1,72 +1,120 @@
-/** SI and ISO times become text here and nowhere else. A no-break space stands before each unit, minus is −. */
+/** SI and ISO times become text here and nowhere else, in the units, the time zone and the language of whoever reads.
+ *
+ * A no-break space stands before each unit, minus is −. What is stored and sent stays metric and UTC.
+ */
+
+import { language, localeOf, t, tn } from "./text.js";
 
 const SPACE = "\u00a0";
+const FOOT_M = 0.3048; // international foot
+const MILE_M = 1609.344; // international mile
+const MPH_MPS = 0.44704;
+const ACRE_M2 = 4046.8564224;
+const LOCALE = localeOf(language);
+
+const preferences = globalThis.document?.documentElement.dataset ?? {};
+export const isImperial = preferences.units === "imperial";
+const zone = preferences.timeZone ? { timeZone: preferences.timeZone } : {};
 
 function grouped(value, digits = 0) {
-  return value.toLocaleString("en-GB", { minimumFractionDigits: digits, maximumFractionDigits: digits }).replace("-", "−");
+  return value.toLocaleString(LOCALE, { minimumFractionDigits: digits, maximumFractionDigits: digits }).replace("-", "−");
 }
+
+/** A bare figure, grouped as the reader is used to. */
+export const numberText = grouped;
+
+const withUnit = (figure, unit) => `${figure}${SPACE}${unit}`;
 
 export function lengthText(length_m) {
   if (length_m === null || length_m === undefined) return "—";
-  if (length_m < 999.5) return `${grouped(Math.round(length_m))}${SPACE}m`;
+  if (isImperial) {
+    const length_ft = length_m / FOOT_M;
+    if (length_ft < 1000) return withUnit(grouped(Math.round(length_ft)), "ft");
+    const length_mi = length_m / MILE_M;
+    return withUnit(grouped(length_mi, length_mi < 999.95 ? 1 : 0), "mi");
+  }
+  if (length_m < 999.5) return withUnit(grouped(Math.round(length_m)), "m");
   const length_km = length_m / 1000;
-  return `${grouped(length_km, length_km < 999.95 ? 1 : 0)}${SPACE}km`;
+  return withUnit(grouped(length_km, length_km < 999.95 ? 1 : 0), "km");
 }
 
+/** What long distances are typed in: { unit, metres } of one. */
+export const LONG_UNIT = isImperial ? { unit: "mi", metres: MILE_M } : { unit: "km", metres: 1000 };
+/** What heights and short distances are typed in. */
+export const SHORT_UNIT = isImperial ? { unit: "ft", metres: FOOT_M } : { unit: "m", metres: 1 };
+/** What speeds are typed in. */
+export const SPEED_UNIT = isImperial ? { unit: "mph", mps: MPH_MPS } : { unit: "m/s", mps: 1 };
+
 export function areaText(area_m2) {
-  if (area_m2 < 100_000) return `${grouped(Math.round(area_m2))}${SPACE}m²`;
+  if (isImperial) {
+    const area_mi2 = area_m2 / MILE_M ** 2;
+    return area_mi2 < 0.1 ? withUnit(grouped(area_m2 / ACRE_M2, 1), "ac") : withUnit(grouped(area_mi2, area_mi2 < 10 ? 2 : 1), "mi²");
+  }
+  if (area_m2 < 100_000) return withUnit(grouped(Math.round(area_m2)), "m²");
   const area_km2 = area_m2 / 1e6;
-  return `${grouped(area_km2, area_km2 < 10 ? 2 : area_km2 < 999.95 ? 1 : 0)}${SPACE}km²`;
+  return withUnit(grouped(area_km2, area_km2 < 10 ? 2 : area_km2 < 999.95 ? 1 : 0), "km²");
 }
 
 export function durationText(duration_s) {
   if (duration_s === null || duration_s === undefined) return "—";
   const minutes = Math.round(duration_s / 60);
-  if (duration_s > 0 && minutes === 0) return `1${SPACE}min`;
-  if (minutes < 100) return `${minutes}${SPACE}min`;
+  if (duration_s > 0 && minutes === 0) return withUnit("1", "min");
+  if (minutes < 100) return withUnit(`${minutes}`, "min");
   const rest = minutes % 60;
-  return `${grouped(Math.floor(minutes / 60))}${SPACE}h${rest ? ` ${rest}${SPACE}min` : ""}`;
+  return `${withUnit(grouped(Math.floor(minutes / 60)), "h")}${rest ? ` ${withUnit(`${rest}`, "min")}` : ""}`;
 }
 
 export function heightText(height_m) {
-  return `${grouped(Math.round(height_m))}${SPACE}m`;
+  return isImperial ? withUnit(grouped(Math.round(height_m / FOOT_M)), "ft") : withUnit(grouped(Math.round(height_m)), "m");
 }
 
 export function speedText(speed_mps) {
-  return `${grouped(speed_mps, Number.isInteger(speed_mps) ? 0 : 1)}${SPACE}m/s`;
+  if (isImperial) return withUnit(grouped(Math.round(speed_mps / MPH_MPS)), "mph");
+  return withUnit(grouped(speed_mps, Number.isInteger(speed_mps) ? 0 : 1), "m/s");
 }
 
 export function percentText(percent) {
-  return `${grouped(Math.round(percent))}${SPACE}%`;
+  return withUnit(grouped(Math.round(percent)), "%");
 }
 
 export function voltageText(voltage_kv) {
-  return `${grouped(voltage_kv, Number.isInteger(voltage_kv) ? 0 : 1)}${SPACE}kV`;
+  return withUnit(grouped(voltage_kv, Number.isInteger(voltage_kv) ? 0 : 1), "kV");
 }
 
-/** People read latitude first; everything else in the program has longitude first. */
+/** People read latitude first; everything else in the program has longitude first. The decimal sign is a point in every language: it is typed and copied. */
 export function coordinateText([longitude, latitude]) {
-  return `${grouped(latitude, 4)}, ${grouped(longitude, 4)}`;
+  return [latitude, longitude].map((degrees) => degrees.toFixed(4).replace("-", "−")).join(", ");
 }
 
+/** countText(3, "target") → "3 targets". The catalogue holds the noun as [one, other]. */
 export function countText(count, singular, plural = `${singular}s`) {
-  return `${grouped(count)} ${count === 1 ? singular : plural}`;
+  return tn(count, `{count} ${singular}`, `{count} ${plural}`);
 }
 
-const isSameDay = (a, b) => a.getFullYear() === b.getFullYear() && a.getMonth() === b.getMonth() && a.getDate() === b.getDate();
+const partsOf = (date) => new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
 
 export function clockText(iso) {
-  return new Date(iso).toLocaleTimeString("en-GB", { hour: "2-digit", minute: "2-digit" });
+  return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
 }
 
 /** "now", "today, 11:40", "yesterday, 09:12", "10 Sep", "10 Sep 2025". */
 export function whenText(iso, now = new Date()) {
   const then = new Date(iso);
-  if (now - then < 60_000 && now >= then) return "now";
-  if (isSameDay(then, now)) return `today, ${clockText(iso)}`;
-  const yesterday = new Date(now.getFullYear(), now.getMonth(), now.getDate() - 1);
-  if (isSameDay(then, yesterday)) return `yesterday, ${clockText(iso)}`;
-  const parts = { day: "numeric", month: "short" };
-  if (then.getFullYear() !== now.getFullYear()) parts.year = "numeric";
-  return then.toLocaleDateString("en-GB", parts);
+  if (now - then < 60_000 && now >= then) return t("now");
+  if (partsOf(then) === partsOf(now)) return t("today, {time}", { time: clockText(iso) });
+  if (partsOf(then) === partsOf(new Date(now - 86_400_000))) return t("yesterday, {time}", { time: clockText(iso) });
+  return dayText(iso, now);
+}
+
+/** "10 Sep", with the year where it is another one. */
+export function dayText(iso, now = new Date()) {
+  const then = new Date(iso);
+  const parts = { ...zone, day: "numeric", month: "short" };
+  if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
+  return then.toLocaleDateString(LOCALE, parts);
+}
+
+/** Day, time and the zone's name in full: for tooltips. */
+export function exactText(iso) {
+  return new Date(iso).toLocaleString(LOCALE, { ...zone, dateStyle: "medium", timeStyle: "long" });
 }
