@@ -64,3 +64,13 @@ class MissionPage(SignedInPage):
             "extent": ground_extent(),
             "bounds": mission_bounds(mission_id) if mission_id else None,
         } | raster_maps()
+
+
+class FleetPage(SignedInPage):
+    """UAVs, their types and bases."""
+
+    template_name = "fleet.html"
+    extra_context = {"section": "fleet"}
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"extent": ground_extent()} | raster_maps()

@@ -10,8 +10,11 @@ from workspace.account_pages import (
     NewPasswordSetPage,
     PasswordChangedPage,
 )
+from workspace.people_pages import AccountPage, AdministrationPage
 
 urlpatterns = [
+    path("account", AccountPage.as_view(), name="account"),
+    path("administration", AdministrationPage.as_view(), name="administration"),
     path("lost-password", LostPasswordPage.as_view(), name="lost-password"),
     path("lost-password/sent", LostPasswordSentPage.as_view(), name="lost-password-sent"),
     path("new-password/<uidb64>/<token>", NewPasswordPage.as_view(), name="new-password"),

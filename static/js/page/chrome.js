@@ -17,6 +17,7 @@ export function startChrome({ bindings = [] } = {}) {
     { keys: ["g m"], words: "Go to the missions", act: go("/") },
     { keys: ["g a"], words: "Go to the assets", act: go("/assets") },
     { keys: ["g z"], words: "Go to the zones", act: go("/zones") },
+    { keys: ["g u"], words: "Go to the UAVs", act: go("/uavs") },
     { keys: ["?"], words: "Show the keys", act: () => showKeys(all) },
   ];
   listenToKeys(all);
