@@ -22,7 +22,7 @@ CHROMIUM_FLAGS = [
 ]  # fmt: skip
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
 PASSWORD = "inspect-the-lines"
-USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator"}
+USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator", "ada": "administrator"}
 NEW_USERS = f"""
 from workspace.models import User
 for name, role in {USERS!r}.items():

@@ -61,7 +61,7 @@ function row(mission) {
       "td",
       { class: "uavs" },
       mission.uav_count
-        ? h("span", { class: "letters", "aria-label": countText(mission.uav_count, "UAV") }, Array.from({ length: mission.uav_count }, (_, sequence) => h("span", { class: `letter route-${routeNumber(sequence)}`, "aria-hidden": "true" }, routeLetter(sequence))))
+        ? h("span", { class: "letters", role: "img", "aria-label": countText(mission.uav_count, "UAV") }, Array.from({ length: mission.uav_count }, (_, sequence) => h("span", { class: `letter route-${routeNumber(sequence)}`, "aria-hidden": "true" }, routeLetter(sequence))))
         : h("span", { class: "caption" }, "none"),
     ),
     h("td", { class: "number distance" }, isPlanned ? lengthText(mission.total_length_m) : "—"),

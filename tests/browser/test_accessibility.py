@@ -1,0 +1,55 @@
+"""What axe finds on every page, in light and dark, wide and narrow."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page
+
+from tests.browser.conftest import PROJECT_DIR, Visitor
+from tests.browser.operator_map import stores_mission
+
+pytestmark = pytest.mark.browser
+
+AXE = PROJECT_DIR / "node_modules" / "axe-core" / "axe.min.js"
+RUN_AXE = """async () => (await axe.run(document, { resultTypes: ["violations"] })).violations
+    .filter(({ impact }) => impact === "serious" || impact === "critical")
+    .map(({ id, nodes }) => `${id}: ${nodes.map(({ target, any }) => target.join(" ") + " " + (any[0]?.message ?? "")).join(" | ")}`)"""
+FOR_STRANGERS = ["/sign-in", "/lost-password", "/lost-password/sent"]
+FOR_OPERATORS = ["/", "/missions/new", "/uavs", "/assets", "/assets/gaps", "/terrain", "/zones", "/account", "/change-password", "/no-such-page"]
+FOR_CURATORS = ["/imports"]
+FOR_ADMINISTRATORS = ["/administration"]
+VIEWS: list[dict[str, Any]] = [
+    {"theme": "light", "size": (1440, 900)},
+    {"theme": "dark", "size": (1440, 900)},
+    {"theme": "light", "size": (390, 844), "touch": True},
+    {"theme": "dark", "size": (390, 844), "touch": True},
+]
+
+
+def faults(page: Page) -> list[str]:
+    page.evaluate(AXE.read_text())  # over the debugging protocol: the page's own policy would refuse it
+    return page.evaluate(RUN_AXE)
+
+
+def looks_at(page: Page, paths: list[str]) -> dict[str, list[str]]:
+    """Of each page, what axe finds serious or critical once it has loaded."""
+    found = {}
+    for path in paths:
+        page.goto(path)
+        if page.locator("script[type=module]").count():
+            page.locator("html[data-loaded]").wait_for(state="attached")
+        found[path] = faults(page)
+    return {path: words for path, words in found.items() if words}
+
+
+@pytest.mark.parametrize("view", VIEWS, ids=lambda view: f"{view['theme']}-{view['size'][0]}")
+def test_axe_finds_nothing_serious_on_any_page(visitor: Visitor, view: dict[str, Any]) -> None:
+    assert AXE.exists(), f"{Path(AXE).name} is missing; scripts/setup installs it"
+    found = looks_at(visitor.opens(**view), FOR_STRANGERS)
+    page = visitor.signs_in("opal", **view)
+    found |= looks_at(page, [*FOR_OPERATORS, stores_mission(page, f"Looked at in {view['theme']} at {view['size'][0]}")])
+    found |= looks_at(visitor.signs_in("cora", **view), FOR_CURATORS)
+    found |= looks_at(visitor.signs_in("ada", **view), FOR_ADMINISTRATORS)
+    visitor.complaints[:] = [words for words in visitor.complaints if "404" not in words]  # the page that is not there
+    assert found == {}
