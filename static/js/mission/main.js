@@ -61,6 +61,8 @@ startChrome({
   ],
 });
 
+store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
+
 function planningKeys() {
   const choose = (tool) => () => store.update({ tool });
   return [

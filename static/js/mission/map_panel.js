@@ -107,6 +107,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   }
   map.on("movestart", () => {
     closeChoice();
+    tip(null);
     pointed = null; // what was under the pointer moves away from it
     ringHovered(store.state);
   });

@@ -19,8 +19,12 @@ export function mountWorkbench({ dockOnPhone }) {
   phone.addEventListener("change", place);
   place();
 
-  dragSheet(workbench, byId("sheet-handle"));
+  const setHeight = dragSheet(workbench, byId("sheet-handle"));
   return {
+    /** On a phone a sheet that covers the map makes room: something is to be done there. */
+    showMap() {
+      if (phone.matches && workbench.dataset.sheet === "full") setHeight("half");
+    },
     foldSide: () => toggle(workbench, "side"),
     foldDock: () => toggle(workbench, "dock"),
     isPhone: () => phone.matches,
@@ -68,4 +72,5 @@ function dragSheet(workbench, handle) {
     }
     setHeight(HEIGHTS[(HEIGHTS.indexOf(workbench.dataset.sheet) + 1) % HEIGHTS.length]);
   });
+  return setHeight;
 }
