@@ -4,6 +4,7 @@ python -m scripts.prepare [--osm FILE]... [--zones FILE]...
 """
 
 import argparse
+import hashlib
 import json
 import os
 import secrets
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import django
 from django.apps import apps
+from django.contrib.staticfiles.finders import get_finders
 from django.core.management import CommandError, call_command
 from django.db import connection
 from django.db.migrations.executor import MigrationExecutor
@@ -42,6 +44,20 @@ def migrate() -> None:
     if executor.migration_plan(executor.loader.graph.leaf_nodes()):
         with step("Database migrations"):
             call_command("migrate", interactive=False, verbosity=0)
+
+
+def collect_static_files(places: Places) -> None:
+    """Copy and rename them, unless they are as they were the last time: looking into all of them takes seconds."""
+    digest = hashlib.sha256()
+    for finder in get_finders():
+        for name, storage in finder.list([]):
+            digest.update(f"{name} {storage.size(name)} {storage.get_modified_time(name)}\n".encode())
+    stamp = places.static / ".collected"
+    if stamp.exists() and stamp.read_text() == digest.hexdigest():
+        return
+    with step("Static files"):
+        call_command("collectstatic", interactive=False, verbosity=0)
+        stamp.write_text(digest.hexdigest())
 
 
 def is_without_ground() -> bool:
@@ -96,8 +112,7 @@ def main() -> None:
     django.setup()
 
     migrate()
-    with step("Static files"):
-        call_command("collectstatic", interactive=False, verbosity=0)
+    collect_static_files(places)
     if places.first_load.exists() or is_without_ground():
         # Noted until all is done: a load that is interrupted is taken up again. ./run notes it before it makes a database.
         if not places.first_load.exists():

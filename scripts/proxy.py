@@ -198,6 +198,12 @@ http {{
             alias {_quoted(f"{places.static}/")};
             add_header Cache-Control no-cache;
 {headers}
+        }}
+        # A name that changes with the content: browsers keep such a file for a year and do not ask again.
+        location ~ "^/static/(?<hashed>.+\\.[0-9a-f]{{12}}\\.[a-z0-9]+)$" {{
+            alias "{_quoted(places.static)[1:-1]}/$hashed";
+            add_header Cache-Control "public, max-age=31536000, immutable";
+{headers}
         }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}{links}
 {failures_for_people}
 {failures_for_programs}

@@ -1,6 +1,8 @@
 /** Elements made from data. Text is always set as text. */
 
-const SPRITE = "/static/lib/icons.svg";
+import { staticAddress } from "./static_address.js";
+
+const SPRITE = staticAddress("lib/icons.svg");
 const SVG = "http://www.w3.org/2000/svg";
 
 /** h("button", { class: "button", onclick: save, disabled: true }, icon("x"), "Save") */

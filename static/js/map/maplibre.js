@@ -1,7 +1,8 @@
 /** Where the map library is, said once. */
 
 import * as maplibre from "/static/lib/maplibre-gl/maplibre-gl.mjs";
+import { staticAddress } from "../static_address.js";
 
-maplibre.setWorkerUrl(new URL("/static/lib/maplibre-gl/maplibre-gl-worker.mjs", location.origin).href);
+maplibre.setWorkerUrl(staticAddress("lib/maplibre-gl/maplibre-gl-worker.mjs"));
 
 export { maplibre };

@@ -1,0 +1,6 @@
+/** Where a static file is that is loaded by name and not imported: its address changes with its content, so the page says it. */
+
+export function staticAddress(name) {
+  const said = globalThis.document?.querySelector(`meta[name="static:${name}"]`);
+  return new URL(said?.content ?? `/static/${name}`, globalThis.location?.origin ?? "http://localhost").href;
+}
