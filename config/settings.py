@@ -162,6 +162,8 @@ globals().update(mail_settings(os.environ.get("SPANWISE_EMAIL_URL", "console://"
 DEFAULT_FROM_EMAIL = os.environ.get("SPANWISE_EMAIL_FROM", "Spanwise <spanwise@localhost>")
 
 LANGUAGE_CODE = "en-gb"
+LANGUAGES = [("en", "English"), ("de", "Deutsch")]
+LOCALE_PATHS = [BASE_DIR / "locale"]
 TIME_ZONE = "UTC"
 USE_I18N = True
 USE_TZ = True
@@ -220,6 +222,8 @@ SPECTACULAR_SETTINGS = {
         "GapState": "inspection.models.GapState",
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
+        "UavState": "missions.models.UavState",
+        "CredentialKind": "missions.models.CredentialKind",
         "HeightReference": "inspection.models.HeightReference",
         "FeatureType": ["Feature"],
         "FeatureCollectionType": ["FeatureCollection"],

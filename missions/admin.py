@@ -8,18 +8,48 @@ from django.db.models import QuerySet
 from django.http import HttpRequest
 
 from inspection.admin_map import GeoJSONField
-from missions.models import InspectionTarget, Mission, MissionUav, Route, Uav, Waypoint
+from missions.models import Base, InspectionTarget, Mission, MissionUav, Route, Uav, UavCredential, UavType, Waypoint
 from workspace.admin import ReadOnlyAdmin
 
 
 @admin.register(Uav)
 class UavAdmin(admin.ModelAdmin):
     formfield_overrides = {models.GeometryField: {"form_class": GeoJSONField}}
-    list_display = ["name", "base_name", "max_range_m", "cruise_speed_mps", "battery_percent", "sensor", "end_action", "organisation"]
-    list_filter = ["base_name", "end_action", "organisation"]
+    list_display = ["name", "state", "uav_type", "base_name", "battery_percent", "located_at", "mavlink_system_id", "organisation"]
+    list_filter = ["state", "uav_type", "base_name", "end_action", "organisation"]
+    list_select_related = ["uav_type", "organisation"]
+    search_fields = ["name", "base_name", "serial_number", "uav_type__name"]
+    readonly_fields = ["revision", "created_at", "updated_at"]
+
+
+@admin.register(UavType)
+class UavTypeAdmin(admin.ModelAdmin):
+    list_display = ["name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "sensors", "organisation"]
+    list_filter = ["organisation"]
     list_select_related = ["organisation"]
-    search_fields = ["name", "base_name"]
-    readonly_fields = ["created_at", "updated_at"]
+    search_fields = ["name"]
+    readonly_fields = ["revision", "created_at", "updated_at"]
+
+
+@admin.register(Base)
+class BaseAdmin(admin.ModelAdmin):
+    formfield_overrides = {models.GeometryField: {"form_class": GeoJSONField}}
+    list_display = ["name", "note", "organisation"]
+    list_filter = ["organisation"]
+    list_select_related = ["organisation"]
+    search_fields = ["name", "note"]
+    readonly_fields = ["revision", "created_at", "updated_at"]
+
+
+@admin.register(UavCredential)
+class UavCredentialAdmin(ReadOnlyAdmin):
+    """Made and revoked on the page of the fleet, where the secret can be shown once."""
+
+    list_display = ["uav", "kind", "created_by", "created_at", "last_used_at", "revoked_at"]
+    list_filter = ["kind", ("revoked_at", admin.EmptyFieldListFilter)]
+    list_select_related = ["uav", "created_by"]
+    search_fields = ["uav__name"]
+    exclude = ["token_sha256", "key_salt"]
 
 
 class _ReadOnlyInline(admin.TabularInline):

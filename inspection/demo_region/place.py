@@ -35,9 +35,13 @@ def lon_lat(east_m: float, north_m: float) -> LonLat:
 @dataclass(frozen=True)
 class BasedUav:
     name: str
-    sensor: str
+    sensors: tuple[str, ...]
     max_range_m: float
     cruise_speed_mps: float
+
+    @property
+    def type_name(self) -> str:
+        return self.name.rpartition(" ")[0]
 
 
 @dataclass(frozen=True)
@@ -52,16 +56,16 @@ BASES = (
         "Elmsgard depot",
         lon_lat(-9_050.0, 2_450.0),
         (
-            BasedUav("Kestrel 1", "RGB and thermal camera", 60_000.0, 14.0),
-            BasedUav("Kestrel 2", "RGB and thermal camera", 60_000.0, 14.0),
+            BasedUav("Kestrel 1", ("RGB camera", "Thermal camera"), 60_000.0, 14.0),
+            BasedUav("Kestrel 2", ("RGB camera", "Thermal camera"), 60_000.0, 14.0),
         ),
     ),
     Base(
         "Varneck depot",
         lon_lat(10_900.0, 3_150.0),
         (
-            BasedUav("Osprey 1", "RGB camera and lidar", 90_000.0, 18.0),
-            BasedUav("Osprey 2", "RGB camera and lidar", 90_000.0, 18.0),
+            BasedUav("Osprey 1", ("RGB camera", "Lidar"), 90_000.0, 18.0),
+            BasedUav("Osprey 2", ("RGB camera", "Lidar"), 90_000.0, 18.0),
         ),
     ),
 )

@@ -1,5 +1,6 @@
 """What flies: UAVs, their types and bases, and what lets a UAV connect."""
 
+from django.conf import settings
 from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
@@ -69,7 +70,10 @@ class UavState(models.TextChoices):
 
 
 class Uav(models.Model):
-    """An uncrewed aircraft of an organisation. `location` is where it stands or was last reported."""
+    """An uncrewed aircraft of an organisation.
+
+    `location` is where it stands or was last reported. Without a range or speed of its own it has its type's.
+    """
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uavs")
     name = models.CharField(max_length=100)
@@ -80,8 +84,9 @@ class Uav(models.Model):
     serial_number = models.CharField(max_length=100, blank=True)
     mavlink_system_id = models.PositiveSmallIntegerField(null=True, blank=True, unique=True, help_text="1 to 254; one vehicle each")
     location = models.PointField(srid=4326)
-    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
-    cruise_speed_mps = models.FloatField(default=12.0)
+    located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
+    max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")
+    cruise_speed_mps = models.FloatField(null=True, blank=True, help_text="empty = its type's, else the usual speed")
     battery_percent = models.FloatField(null=True, blank=True)
     sensor = models.CharField(max_length=100, blank=True)
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
@@ -104,6 +109,18 @@ class Uav(models.Model):
 
     def __str__(self) -> str:
         return self.name
+
+    @property
+    def range_m(self) -> float | None:
+        return self.uav_type.max_range_m if self.max_range_m is None and self.uav_type else self.max_range_m
+
+    @property
+    def speed_mps(self) -> float:
+        return self.cruise_speed_mps or (self.uav_type.cruise_speed_mps if self.uav_type else settings.FLIGHT_RULES.cruise_speed_mps)
+
+    @property
+    def sensors(self) -> list[str]:
+        return list(dict.fromkeys([*filter(None, [self.sensor]), *(self.uav_type.sensors if self.uav_type else [])]))
 
 
 class CredentialKind(models.TextChoices):

@@ -6,10 +6,10 @@ from django.conf import settings
 from rest_framework import serializers
 
 from missions.fields import FiniteFloatField, PositionField
+from missions.fleet_selectors import uavs_of_organisation
 from missions.models import EndAction, Objective, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
-from missions.selectors import uavs_of_organisation
 from missions.services import PlanRequest, TargetRequest, UavRequest
 
 FARTHEST_RANGE_M = 1e7
@@ -122,8 +122,8 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         known = {
             "name": stored.name,
             "position": stored.location.coords,
-            "max_range_m": stored.max_range_m,
-            "cruise_speed_mps": stored.cruise_speed_mps,
+            "max_range_m": stored.range_m,
+            "cruise_speed_mps": stored.speed_mps,
             "end_action": stored.end_action,
         }
     values = known | {field: uav[field] for field in uav if field != "id"}

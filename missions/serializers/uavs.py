@@ -5,34 +5,73 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.fields import FiniteFloatField, PositionField
-from missions.models import EndAction, Uav
+from missions.fleet_selectors import bases_of_organisation, types_of_organisation
+from missions.models import CredentialKind, EndAction, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS, above_zero
 
-PROPERTIES = ("name", "base_name", "max_range_m", "cruise_speed_mps", "battery_percent", "sensor", "end_action")
+OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "battery_percent", "sensor", "end_action")
+FROM_TYPE = ("max_range_m", "cruise_speed_mps")
 
 
 class UavPropertiesSerializer(serializers.Serializer):
+    """Range and speed are the UAV's own; where it has none (`null`), what comes back is its type's, and `from_type` names it."""
+
     name = serializers.CharField(max_length=100)
-    base_name = serializers.CharField(max_length=100, allow_blank=True, required=False)
-    max_range_m = FiniteFloatField(
-        allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: not limited"
+    type = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=2**63 - 1)
+    base = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=2**63 - 1)
+    base_name = serializers.CharField(
+        max_length=100, allow_blank=True, required=False, help_text="without `base`: the base of this name, if there is one, else a text"
     )
-    cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
+    state = serializers.ChoiceField(choices=UavState.choices, required=False)
+    serial_number = serializers.CharField(max_length=100, allow_blank=True, required=False)
+    mavlink_system_id = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=254, help_text="one vehicle each")
+    max_range_m = FiniteFloatField(
+        allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
+    )
+    cruise_speed_mps = FiniteFloatField(
+        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual"
+    )
     battery_percent = FiniteFloatField(allow_null=True, required=False, min_value=0, max_value=100)
-    sensor = serializers.CharField(max_length=100, allow_blank=True, required=False)
+    sensor = serializers.CharField(max_length=100, allow_blank=True, required=False, help_text="besides those of its type")
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    type_name = serializers.CharField(read_only=True)
+    sensors = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="its own and its type's")
+    from_type = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="which values are the type's")
+    located_at = serializers.DateTimeField(read_only=True, allow_null=True, help_text="when the position was set or reported")
+    mission_count = serializers.IntegerField(read_only=True)
+    credentials = serializers.ListField(
+        child=serializers.ChoiceField(choices=CredentialKind.choices), read_only=True, help_text="what it can prove itself with"
+    )
+    revision = serializers.IntegerField(read_only=True, help_text="the ETag")
+    updated_at = serializers.DateTimeField(read_only=True)
 
     def validate_max_range_m(self, value: float | None) -> float | None:
         return above_zero(value)
 
-    def validate_cruise_speed_mps(self, value: float) -> float | None:
+    def validate_cruise_speed_mps(self, value: float | None) -> float | None:
         return above_zero(value)
 
 
 class UavFlatSerializer(UavPropertiesSerializer):
-    """A UAV as one object: its properties and `position`. A GeoJSON Feature is taken as well."""
+    """A UAV as one object: its properties and `position`; a new one without it stands at its base. A GeoJSON Feature is taken too."""
 
-    position = PositionField()
+    position = PositionField(required=False)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        """`type` and `base` become rows of the organisation in the context."""
+        organisation = self.context["organisation"]
+        faults: dict[str, str] = {}
+        for field, name, rows in (("base", "base", bases_of_organisation), ("type", "uav_type", types_of_organisation)):
+            if field in attrs:
+                key = attrs.pop(field)
+                attrs[name] = None if key is None else rows(organisation).filter(pk=key).first()
+                if key is not None and attrs[name] is None:
+                    faults[field] = f"There is no {field} {key}."
+        if not self.partial and "position" not in attrs and attrs.get("base") is None and not faults:
+            faults["position"] = "A UAV needs a position, or a base to stand at."
+        if faults:
+            raise serializers.ValidationError(faults)
+        return attrs
 
 
 class PointSerializer(serializers.Serializer):
@@ -47,18 +86,40 @@ class UavFeatureSerializer(serializers.Serializer):
     properties = UavPropertiesSerializer()
 
 
+class UavNumbersSerializer(serializers.Serializer):
+    active = serializers.IntegerField()
+    maintenance = serializers.IntegerField()
+    retired = serializers.IntegerField()
+
+
 class UavCollectionSerializer(serializers.Serializer):
     type = serializers.ChoiceField(choices=["FeatureCollection"])
     features = UavFeatureSerializer(many=True)
+    numbers = UavNumbersSerializer(help_text="how many there are in each state, whatever state was asked for")
     next = serializers.CharField(allow_null=True)
 
 
 def uav_feature(uav: Uav) -> dict[str, Any]:
+    """uav: a row with its use, see fleet_selectors.with_use."""
+    properties = {field: getattr(uav, field) for field in OWN}
+    properties |= {"max_range_m": uav.range_m, "cruise_speed_mps": uav.speed_mps, "type": uav.uav_type_id, "base": uav.base_id}
+    properties |= {
+        "type_name": uav.uav_type.name if uav.uav_type else "",
+        "sensors": uav.sensors,
+        "from_type": [
+            field for field in FROM_TYPE if uav.uav_type and getattr(uav, field) is None and getattr(uav.uav_type, field) is not None
+        ],
+        "located_at": uav.located_at,
+        "mission_count": uav.mission_count,
+        "credentials": [credential.kind for credential in uav.credentials_in_force],
+        "revision": uav.revision,
+        "updated_at": uav.updated_at,
+    }
     return {
         "type": "Feature",
         "id": uav.pk,
         "geometry": {"type": "Point", "coordinates": list(uav.location.coords)},
-        "properties": {field: getattr(uav, field) for field in PROPERTIES},
+        "properties": properties,
     }
 
 

@@ -1,5 +1,17 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
+from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
+from missions.services.fleet import (
+    change_base,
+    change_uav_type,
+    create_base,
+    create_uav_type,
+    delete_base,
+    delete_uav_type,
+    restore_base,
+    restore_uav_type,
+)
+from missions.services.fleet_rows import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdTaken
 from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan
 from missions.services.missions import (
     MissionChange,
@@ -15,29 +27,40 @@ from missions.services.places import places_of
 from missions.services.plan_json import FLAT_GROUND, TERRAIN_MODEL
 from missions.services.planning import GraphOutdated, make_plan
 from missions.services.requests import InvalidRequest, PlanRequest, TargetRequest, UavRequest, request_from_json, request_to_json
-from missions.services.uavs import NameTaken, UavInUse, change_uav, create_uav, delete_uav
+from missions.services.uavs import change_uav, create_uav, delete_uav, restore_uav
 
 __all__ = [
     "FLAT_GROUND",
     "TERRAIN_MODEL",
+    "FleetChanged",
+    "FleetRowInUse",
     "GraphOutdated",
     "InvalidRequest",
     "MissionChange",
     "MissionChanged",
     "MissionFrozen",
     "NameTaken",
+    "NotDeleted",
     "NothingToPlan",
     "PlanRequest",
+    "SystemIdTaken",
     "TargetRequest",
-    "UavInUse",
     "UavRequest",
+    "change_base",
     "change_mission",
     "change_uav",
+    "change_uav_type",
+    "create_base",
     "create_mission",
     "create_uav",
+    "create_uav_type",
+    "delete_base",
     "delete_mission",
     "delete_uav",
+    "delete_uav_type",
+    "make_credential",
     "make_plan",
+    "mavlink_signing_key",
     "places_of",
     "plan_mission",
     "plan_mission_for_job",
@@ -45,6 +68,10 @@ __all__ = [
     "request_from_json",
     "request_of_mission",
     "request_to_json",
+    "restore_base",
     "restore_mission",
+    "restore_uav",
+    "restore_uav_type",
+    "revoke_credential",
     "store_plan",
 ]

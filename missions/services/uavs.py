@@ -3,71 +3,77 @@
 from typing import Any
 
 from django.contrib.gis.geos import Point
-from django.db import IntegrityError, transaction
-from django.db.models import ProtectedError
+from django.db import transaction
+from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from missions.models import Uav
+from missions.models import Base, Uav, UavType
+from missions.services.fleet_rows import deleted, facts_to_restore, locked, stored
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
-FIELDS = ("name", "base_name", "max_range_m", "cruise_speed_mps", "battery_percent", "sensor", "end_action")
-
-
-class NameTaken(Exception):
-    """Another UAV of the organisation has this name."""
+FIELDS = (
+    "name", "base_name", "state", "serial_number", "mavlink_system_id", "max_range_m", "cruise_speed_mps", "battery_percent", "sensor",
+    "end_action",
+)  # fmt: skip
 
 
-class UavInUse(Exception):
-    """A mission points at the UAV."""
+def create_uav(*, organisation: Organisation, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
+    """values has some of FIELDS, name among them, and perhaps `base` and `uav_type`; without a position it stands at its base.
+
+    Raises NameTaken or SystemIdTaken.
+    """
+    uav = Uav(organisation=organisation)
+    _put(uav, values)
+    _place(uav, position or LonLat(*values["base"].location.coords))
+    return stored(uav, actor=actor, action="create", before=None, facts=_facts)
 
 
-def create_uav(*, organisation: Organisation, actor: User, position: LonLat, values: dict[str, Any]) -> Uav:
-    """values has some of FIELDS, name among them. Raises NameTaken."""
-    uav = Uav(organisation=organisation, location=Point(*position, srid=4326), **values)
-    return _save(uav, actor, "create", before=None)
+def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None) -> Uav:
+    """Raises FleetChanged, NameTaken or SystemIdTaken."""
+    with transaction.atomic():
+        held = locked(uav, expected_revision)
+        before = _facts(held)
+        _put(held, values)
+        if position is not None:
+            _place(held, position)
+        held.revision += 1
+        return stored(held, actor=actor, action="change", before=before, facts=_facts)
 
 
-def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
-    """Raises NameTaken."""
-    before = _summary(uav)
+def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -> None:
+    """Its credentials go with it. Raises FleetChanged, or FleetRowInUse where a mission points at it."""
+    deleted(uav, actor=actor, expected_revision=expected_revision, facts=_facts)
+
+
+def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
+    """As it was when it was deleted, but without credentials. Raises NotDeleted, NameTaken or SystemIdTaken."""
+    facts = facts_to_restore(Uav, organisation=organisation, key=key)
+    uav = Uav(
+        pk=key, organisation=organisation, revision=facts["revision"] + 1, **{field: facts[field] for field in FIELDS},
+        base=Base.objects.filter(organisation=organisation, pk=facts["base"]).first(),
+        uav_type=UavType.objects.filter(organisation=organisation, pk=facts["uav_type"]).first(),
+    )  # fmt: skip
+    _place(uav, LonLat(*facts["position"]))
+    return stored(uav, actor=actor, action="restore", before=None, facts=_facts)
+
+
+def _put(uav: Uav, values: dict[str, Any]) -> None:
+    """A base gives its name; a name alone means the base that has it, if there is one."""
     for field, value in values.items():
         setattr(uav, field, value)
-    if position is not None:
-        uav.location = Point(*position, srid=4326)
-    return _save(uav, actor, "change", before=before)
+    if values.get("base") is not None:
+        uav.base_name = values["base"].name
+    elif "base" in values:
+        uav.base_name = values.get("base_name", "")
+    elif "base_name" in values:
+        uav.base = Base.objects.filter(organisation=uav.organisation, name=uav.base_name).first()
 
 
-def delete_uav(*, uav: Uav, actor: User) -> None:
-    """Raises UavInUse."""
-    before, key = _summary(uav), uav.pk
-    try:
-        with transaction.atomic():
-            uav.delete()
-            record_change(organisation=uav.organisation, actor=actor, action="delete", subject_type="uav", subject_id=key, before=before)
-    except ProtectedError as error:
-        raise UavInUse from error
+def _place(uav: Uav, position: LonLat) -> None:
+    uav.location = Point(*position, srid=4326)
+    uav.located_at = timezone.now()
 
 
-def _save(uav: Uav, actor: User, action: str, *, before: Any) -> Uav:
-    try:
-        with transaction.atomic():
-            uav.save()
-            record_change(
-                organisation=uav.organisation,
-                actor=actor,
-                action=action,
-                subject_type="uav",
-                subject_id=uav.pk,
-                before=before,
-                after=_summary(uav),
-            )
-    except IntegrityError as error:
-        if "uav_name_unique" in str(error):
-            raise NameTaken from error
-        raise
-    return uav
-
-
-def _summary(uav: Uav) -> dict[str, Any]:
-    return {"position": list(uav.location.coords)} | {field: getattr(uav, field) for field in FIELDS}
+def _facts(uav: Uav) -> dict[str, Any]:
+    own = {field: getattr(uav, field) for field in FIELDS}
+    return own | {"base": uav.base_id, "uav_type": uav.uav_type_id, "position": list(uav.location.coords), "revision": uav.revision}

@@ -1,7 +1,28 @@
 """The API's doors to planning, missions and UAVs."""
 
+from missions.views.credentials import UavCredentialDetail, UavCredentials
+from missions.views.fleet import BaseDetail, BaseList, BaseRestore, UavTypeDetail, UavTypeList, UavTypeRestore
 from missions.views.missions import MissionDetail, MissionHistory, MissionList, MissionPlan, MissionRestore
 from missions.views.plans import PlanList
-from missions.views.uavs import UavDetail, UavList
+from missions.views.uavs import UavDetail, UavList, UavMissions, UavRestore
 
-__all__ = ["MissionDetail", "MissionHistory", "MissionList", "MissionPlan", "MissionRestore", "PlanList", "UavDetail", "UavList"]
+__all__ = [
+    "BaseDetail",
+    "BaseList",
+    "BaseRestore",
+    "MissionDetail",
+    "MissionHistory",
+    "MissionList",
+    "MissionPlan",
+    "MissionRestore",
+    "PlanList",
+    "UavCredentialDetail",
+    "UavCredentials",
+    "UavDetail",
+    "UavList",
+    "UavMissions",
+    "UavRestore",
+    "UavTypeDetail",
+    "UavTypeList",
+    "UavTypeRestore",
+]

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from inspection.selectors import NoGraph
-from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NameTaken, NothingToPlan, UavInUse
+from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
 from workspace.errors import ApiProblem
 
 RETRY_AFTER_S = 3  # a new graph is built within seconds
@@ -31,7 +31,3 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
         raise ApiProblem(412 if has_precondition else 409, "mission_changed", message) from error
     except MissionFrozen as error:
         raise ApiProblem(409, "mission_frozen", "Only drafts and planned missions can be changed.") from error
-    except NameTaken as error:
-        raise ApiProblem(409, "name_taken", "Another UAV has this name.") from error
-    except UavInUse as error:
-        raise ApiProblem(409, "uav_in_use", "A mission uses this UAV. Remove it from its missions first.") from error

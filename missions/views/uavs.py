@@ -4,76 +4,176 @@ from typing import Any
 
 from django.http import Http404
 from django.urls import reverse
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, PolymorphicProxySerializer, extend_schema
+from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions import selectors, services
-from missions.models import Uav
+from missions import fleet_selectors, services
+from missions.models import Uav, UavState
+from missions.serializers.fleet import UavMissionPageSerializer
 from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSerializer, UavFlatSerializer, flat_uav, uav_feature
-from missions.views.problems import api_problems
+from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
+from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
+from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 
 INPUT = PolymorphicProxySerializer(
     component_name="UavWrite", serializers=[UavFlatSerializer, UavFeatureSerializer], resource_type_field_name=None
 )
-CONFLICT = {409: OpenApiResponse(description="The name is taken, or a mission uses the UAV.")}
 
 
-def _uav(user: User, uav_id: int) -> Uav:
-    uav = selectors.uavs_of_organisation(user.organisation).filter(pk=uav_id).first()
+def uav_or_404(user: User, uav_id: int) -> Uav:
+    uav = _uav_now(user, uav_id)
     if uav is None:
         raise Http404
     return uav
 
 
+def _uav_now(user: User, uav_id: int) -> Uav | None:
+    return fleet_selectors.with_use(fleet_selectors.uavs_of_organisation(user.organisation)).filter(pk=uav_id).first()
+
+
+def _feature_now(user: User, uav_id: int) -> Any:
+    uav = _uav_now(user, uav_id)
+    return uav_feature(uav) if uav else None
+
+
+def _answer(user: User, uav_id: int, *, status: int = 200) -> Response:
+    uav = uav_or_404(user, uav_id)
+    headers = etag_of(uav.revision) | ({"Location": reverse("api-uav", args=[uav.pk])} if status == 201 else {})
+    return Response(uav_feature(uav), status=status, headers=headers)
+
+
 def _values(request: Request, *, partial: bool) -> dict[str, Any]:
-    serializer = UavFlatSerializer(data=flat_uav(request.data), partial=partial)
+    context = {"organisation": request.user.organisation}
+    serializer = UavFlatSerializer(data=flat_uav(request.data), partial=partial, context=context)
     serializer.is_valid(raise_exception=True)
     return dict(serializer.validated_data)
+
+
+def _filters(request: Request) -> dict[str, Any]:
+    """Raises ApiProblem for what is no state or no id."""
+    words = {name: request.query_params.get(name, "").strip()[:100].replace("\0", "") for name in ("text", "state", "sensor")}
+    faults = {}
+    if words["state"] not in {"", fleet_selectors.EVERY_STATE, *UavState.values}:
+        faults["state"] = ["One of active, maintenance, retired, all."]
+    ids = {}
+    for name, field in (("base", "base"), ("type", "uav_type")):
+        text = request.query_params.get(name, "")
+        if text and not (text.isascii() and text.isdigit() and len(text) < 19):
+            faults[name] = ["A whole number is needed."]
+        elif text:
+            ids[field] = int(text)
+    if faults:
+        place, messages = next(iter(faults.items()))
+        raise ApiProblem(400, "invalid", f"{place}: {messages[0]}", details=faults)
+    return words | ids
 
 
 class UavList(APIView):
     @extend_schema(
         operation_id="list_uavs",
         summary="UAVs of one's organisation, by name",
-        parameters=[OpenApiParameter("text", str, description="part of the name or of the base's name"), *PAGE_PARAMETERS],
+        parameters=[
+            OpenApiParameter("text", str, description="part of the name, the base's name, the type's name or the serial number"),
+            OpenApiParameter(
+                "state", str, enum=[*UavState.values, fleet_selectors.EVERY_STATE], description="without it all but the retired ones"
+            ),
+            OpenApiParameter("base", int),
+            OpenApiParameter("type", int),
+            OpenApiParameter("sensor", str, description="part of the name of one of its sensors"),
+            *PAGE_PARAMETERS,
+        ],
         responses=UavCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
-        text = request.query_params.get("text", "").strip()[:100].replace("\0", "")
-        page = page_of(request, selectors.uavs_of_organisation(request.user.organisation, text=text), order=("name", "pk"))
-        return Response({"type": "FeatureCollection", "features": [uav_feature(uav) for uav in page.rows], "next": page.next})
+        filters = _filters(request)
+        found = fleet_selectors.uavs_that_match(request.user.organisation, **filters)
+        in_any_state = fleet_selectors.uavs_that_match(request.user.organisation, **filters | {"state": fleet_selectors.EVERY_STATE})
+        page = page_of(request, fleet_selectors.with_use(found), order=("name", "pk"))
+        return Response(
+            {
+                "type": "FeatureCollection",
+                "features": [uav_feature(uav) for uav in page.rows],
+                "numbers": fleet_selectors.numbers_by_state(in_any_state),
+                "next": page.next,
+            }
+        )
 
-    @extend_schema(operation_id="create_uav", summary="Register a UAV", request=INPUT, responses={201: UavFeatureSerializer, **CONFLICT})
+    @extend_schema(operation_id="create_uav", summary="Register a UAV", request=INPUT, responses={201: UavFeatureSerializer, **TAKEN})
     @idempotent
     def post(self, request: Request) -> Response:
         values = _values(request, partial=False)
-        position = values.pop("position")
-        with api_problems():
+        position = values.pop("position", None)
+        with fleet_problems():
             uav = services.create_uav(organisation=request.user.organisation, actor=request.user, position=position, values=values)
-        return Response(uav_feature(uav), status=201, headers={"Location": reverse("api-uav", args=[uav.pk])})
+        return _answer(request.user, uav.pk, status=201)
 
 
 class UavDetail(APIView):
     @extend_schema(operation_id="get_uav", summary="One UAV", responses=UavFeatureSerializer)
     def get(self, request: Request, uav_id: int) -> Response:
-        return Response(uav_feature(_uav(request.user, uav_id)))
+        return _answer(request.user, uav_id)
 
-    @extend_schema(operation_id="change_uav", summary="Change a UAV", request=INPUT, responses={200: UavFeatureSerializer, **CONFLICT})
+    @extend_schema(
+        operation_id="change_uav",
+        summary="Change a UAV, retire it, bring it back",
+        description="A retired UAV is not offered for new missions; those that have it keep it.",
+        parameters=[IF_MATCH_REQUIRED],
+        request=INPUT,
+        responses={200: UavFeatureSerializer, **CHANGE_ANSWERS},
+    )
     def patch(self, request: Request, uav_id: int) -> Response:
-        uav = _uav(request.user, uav_id)
+        uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
         values = _values(request, partial=True)
         position = values.pop("position", None)
-        with api_problems():
-            return Response(uav_feature(services.change_uav(uav=uav, actor=request.user, position=position, values=values)))
+        with fleet_problems(lambda: _feature_now(request.user, uav_id)):
+            services.change_uav(uav=uav, actor=request.user, position=position, values=values, expected_revision=revision)
+        return _answer(request.user, uav_id)
 
-    @extend_schema(operation_id="delete_uav", summary="Remove a UAV that no mission uses", responses={204: None, **CONFLICT})
+    @extend_schema(
+        operation_id="delete_uav",
+        summary="Remove a UAV that no mission uses",
+        description="Its credentials go with it and do not come back.",
+        parameters=[IF_MATCH_REQUIRED],
+        responses=DELETE_ANSWERS,
+    )
     def delete(self, request: Request, uav_id: int) -> Response:
-        with api_problems():
-            services.delete_uav(uav=_uav(request.user, uav_id), actor=request.user)
+        uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
+        with fleet_problems(lambda: _feature_now(request.user, uav_id)):
+            services.delete_uav(uav=uav, actor=request.user, expected_revision=revision)
         return Response(status=204)
+
+
+class UavRestore(APIView):
+    @extend_schema(
+        operation_id="restore_uav",
+        summary="Bring a deleted UAV back, without credentials",
+        request=None,
+        responses={200: UavFeatureSerializer, **RESTORE_CONFLICT},
+    )
+    def post(self, request: Request, uav_id: int) -> Response:
+        with fleet_problems():
+            services.restore_uav(organisation=request.user.organisation, actor=request.user, key=uav_id)
+        return _answer(request.user, uav_id)
+
+
+class UavMissions(APIView):
+    @extend_schema(
+        operation_id="list_missions_of_uav",
+        summary="Missions that use a UAV, the last changed first",
+        parameters=PAGE_PARAMETERS,
+        responses=UavMissionPageSerializer,
+    )
+    def get(self, request: Request, uav_id: int) -> Response:
+        missions = fleet_selectors.missions_of_uav(uav_or_404(request.user, uav_id))
+        page = page_of(request, missions, order=("-updated_at", "-pk"), default_limit=20)
+        return Response({"results": [_mission_json(mission) for mission in page.rows], "next": page.next})
+
+
+def _mission_json(mission: Any) -> dict[str, Any]:
+    return {"id": str(mission.pk), "name": mission.name, "state": mission.state, "updated_at": mission.updated_at}

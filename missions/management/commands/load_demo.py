@@ -1,4 +1,4 @@
-"""manage.py load_demo: put the demo region's UAVs at their bases, and make the first administrator of an empty installation."""
+"""manage.py load_demo: the demo region's UAVs, their types and bases, and the first administrator of an empty installation."""
 
 from pathlib import Path
 from typing import Any
@@ -6,9 +6,11 @@ from typing import Any
 from django.contrib.gis.geos import Point
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import transaction
+from django.utils import timezone
 
-from inspection.demo_region import BASES
-from missions.models import Uav
+from inspection.demo_region import BASES, BasedUav
+from inspection.demo_region import Base as PlannedBase
+from missions.models import Base, Uav, UavType
 from workspace.models import DEFAULT_ORGANISATION_ID, Role, User
 
 
@@ -33,23 +35,32 @@ class Command(BaseCommand):
 
 
 def _create_uavs() -> list[bool]:
-    """A UAV that is there already stays as it is, wherever it stands now."""
-    return [
-        Uav.objects.get_or_create(
-            organisation_id=DEFAULT_ORGANISATION_ID,
-            name=uav.name,
-            defaults={
-                "base_name": base.name,
-                "location": Point(*base.position, srid=4326),
-                "max_range_m": uav.max_range_m,
-                "cruise_speed_mps": uav.cruise_speed_mps,
-                "battery_percent": 100.0,
-                "sensor": uav.sensor,
-            },
-        )[1]
-        for base in BASES
-        for uav in base.uavs
-    ]
+    """What is there already stays as it is, a UAV wherever it stands now."""
+    return [_create_uav(uav, _base(base)) for base in BASES for uav in base.uavs]
+
+
+def _base(planned: PlannedBase) -> Base:
+    location = Point(*planned.position, srid=4326)
+    return Base.objects.get_or_create(organisation_id=DEFAULT_ORGANISATION_ID, name=planned.name, defaults={"location": location})[0]
+
+
+def _create_uav(uav: BasedUav, base: Base) -> bool:
+    """Range, speed and sensors are its type's: the UAV's name without its number."""
+    facts = {"max_range_m": uav.max_range_m, "cruise_speed_mps": uav.cruise_speed_mps, "sensors": list(uav.sensors)}
+    uav_type, _ = UavType.objects.get_or_create(organisation_id=DEFAULT_ORGANISATION_ID, name=uav.type_name, defaults=facts)
+    _, is_new = Uav.objects.get_or_create(
+        organisation_id=DEFAULT_ORGANISATION_ID,
+        name=uav.name,
+        defaults={
+            "uav_type": uav_type,
+            "base": base,
+            "base_name": base.name,
+            "location": base.location,
+            "located_at": timezone.now(),
+            "battery_percent": 100.0,
+        },
+    )
+    return is_new
 
 
 def _create_first_administrator(name: str, password: str) -> str:

@@ -1,0 +1,77 @@
+"""Reads of the fleet: UAVs, their types, bases and credentials, always within one organisation."""
+
+from typing import Any
+
+from django.db.models import Count, Prefetch, Q, QuerySet
+
+from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
+from workspace.models import AuditEntry, Organisation
+
+EVERY_STATE = "all"
+
+
+def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:
+    """With the type and the base that each belongs to."""
+    return Uav.objects.filter(organisation=organisation).select_related("uav_type", "base")
+
+
+def uavs_that_match(
+    organisation: Organisation, *, text: str = "", state: str = "", base: int | None = None, uav_type: int | None = None, sensor: str = ""
+) -> QuerySet[Uav]:
+    """Without a state all but the retired ones."""
+    uavs = uavs_of_organisation(organisation)
+    if text:
+        of_the_uav = Q(name__icontains=text) | Q(base_name__icontains=text) | Q(serial_number__icontains=text)
+        uavs = uavs.filter(of_the_uav | Q(uav_type__name__icontains=text))
+    if base is not None:
+        uavs = uavs.filter(base=base)
+    if uav_type is not None:
+        uavs = uavs.filter(uav_type=uav_type)
+    if sensor:
+        uavs = uavs.filter(Q(sensor__icontains=sensor) | Q(uav_type__sensors__icontains=sensor))
+    if state == EVERY_STATE:
+        return uavs
+    return uavs.filter(state=state) if state else uavs.exclude(state=UavState.RETIRED)
+
+
+def with_use(uavs: QuerySet[Uav]) -> QuerySet[Uav]:
+    """With the number of missions that use each, and what it can prove itself with."""
+    of_today = Q(mission_uavs__mission__deleted_at=None)
+    in_force = UavCredential.objects.filter(revoked_at=None).order_by("kind")
+    return uavs.annotate(mission_count=Count("mission_uavs__mission", filter=of_today, distinct=True)).prefetch_related(
+        Prefetch("credentials", in_force, to_attr="credentials_in_force")
+    )
+
+
+def numbers_by_state(uavs: QuerySet[Uav]) -> dict[str, int]:
+    counted = dict(uavs.order_by().values_list("state").annotate(Count("pk")))
+    return {state: counted.get(state, 0) for state in UavState.values}
+
+
+def types_of_organisation(organisation: Organisation, *, text: str = "") -> QuerySet[UavType]:
+    return UavType.objects.filter(organisation=organisation, name__icontains=text).annotate(uav_count=Count("uavs"))
+
+
+def bases_of_organisation(organisation: Organisation, *, text: str = "") -> QuerySet[Base]:
+    return Base.objects.filter(organisation=organisation, name__icontains=text).annotate(uav_count=Count("uavs"))
+
+
+def missions_of_uav(uav: Uav) -> QuerySet[Mission]:
+    return Mission.objects.filter(organisation=uav.organisation_id, deleted_at=None, mission_uavs__uav=uav).distinct()
+
+
+def credentials_of_uav(uav: Uav) -> QuerySet[UavCredential]:
+    return uav.credentials.select_related("created_by")
+
+
+def last_change(subject_type: str, subject_id: int) -> AuditEntry | None:
+    entries = AuditEntry.objects.filter(subject_type=subject_type, subject_id=str(subject_id)).select_related("actor")
+    return entries.order_by("-recorded_at", "-pk").first()
+
+
+def facts_when_deleted(organisation: Organisation, subject_type: str, subject_id: int) -> dict[str, Any] | None:
+    """What was known of a row of the fleet when it was deleted; None where its last change was another one."""
+    entry = last_change(subject_type, subject_id)
+    if entry is None or entry.action != "delete" or entry.organisation_id != organisation.pk:
+        return None
+    return entry.before

@@ -1,0 +1,116 @@
+"""UAV types, bases and credentials, in and out."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from missions.fields import FiniteFloatField, PositionField
+from missions.models import Base, CredentialKind, UavCredential, UavType
+from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS, above_zero
+
+MOST_SENSORS = 12
+LARGEST_BATTERY_WH = 1e6
+HEAVIEST_KG = 1e5
+
+
+class UavTypeSerializer(serializers.Serializer):
+    """What UAVs of one make have in common. A UAV's own values come before these."""
+
+    id = serializers.IntegerField(read_only=True)
+    name = serializers.CharField(max_length=100)
+    max_range_m = FiniteFloatField(allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery")
+    cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
+    battery_wh = FiniteFloatField(allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery")
+    mass_kg = FiniteFloatField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off")
+    sensors = serializers.ListField(child=serializers.CharField(max_length=50), required=False, max_length=MOST_SENSORS)
+    uav_count = serializers.IntegerField(read_only=True)
+    revision = serializers.IntegerField(read_only=True, help_text="the ETag")
+    updated_at = serializers.DateTimeField(read_only=True)
+
+    def validate_max_range_m(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_cruise_speed_mps(self, value: float) -> float | None:
+        return above_zero(value)
+
+    def validate_battery_wh(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_mass_kg(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_sensors(self, value: list[str]) -> list[str]:
+        return list(dict.fromkeys(value))
+
+
+class BaseSerializer(serializers.Serializer):
+    """A place where UAVs stand and take off."""
+
+    id = serializers.IntegerField(read_only=True)
+    name = serializers.CharField(max_length=100)
+    position = PositionField()
+    note = serializers.CharField(max_length=300, allow_blank=True, required=False)
+    uav_count = serializers.IntegerField(read_only=True)
+    revision = serializers.IntegerField(read_only=True, help_text="the ETag")
+    updated_at = serializers.DateTimeField(read_only=True)
+
+
+class UavTypePageSerializer(serializers.Serializer):
+    results = UavTypeSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class BasePageSerializer(serializers.Serializer):
+    results = BaseSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class CredentialInputSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=CredentialKind.choices)
+
+
+class CredentialSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    kind = serializers.ChoiceField(choices=CredentialKind.choices)
+    created_at = serializers.DateTimeField()
+    created_by = serializers.CharField(allow_null=True)
+    last_used_at = serializers.DateTimeField(allow_null=True)
+    revoked_at = serializers.DateTimeField(allow_null=True)
+
+
+class NewCredentialSerializer(CredentialSerializer):
+    secret = serializers.CharField(help_text="the token, or the 32 bytes of the key in hexadecimal; it cannot be read again")
+
+
+class CredentialPageSerializer(serializers.Serializer):
+    results = CredentialSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class UavMissionSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    name = serializers.CharField()
+    state = serializers.CharField()
+    updated_at = serializers.DateTimeField()
+
+
+class UavMissionPageSerializer(serializers.Serializer):
+    results = UavMissionSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+def uav_type_json(row: UavType) -> dict[str, Any]:
+    names = (
+        "name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "sensors", "uav_count", "revision", "updated_at",
+    )  # fmt: skip
+    return {"id": row.pk} | {name: getattr(row, name) for name in names}
+
+
+def base_json(row: Base) -> dict[str, Any]:
+    names = ("name", "note", "uav_count", "revision", "updated_at")
+    return {"id": row.pk, "position": list(row.location.coords)} | {name: getattr(row, name) for name in names}
+
+
+def credential_json(row: UavCredential) -> dict[str, Any]:
+    names = ("kind", "created_at", "last_used_at", "revoked_at")
+    return {"id": row.pk, "created_by": row.created_by.username if row.created_by else None} | {name: getattr(row, name) for name in names}
