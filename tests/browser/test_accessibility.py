@@ -16,7 +16,18 @@ RUN_AXE = """async () => (await axe.run(document, { resultTypes: ["violations"] 
     .filter(({ impact }) => impact === "serious" || impact === "critical")
     .map(({ id, nodes }) => `${id}: ${nodes.map(({ target, any }) => target.join(" ") + " " + (any[0]?.message ?? "")).join(" | ")}`)"""
 FOR_STRANGERS = ["/sign-in", "/lost-password", "/lost-password/sent"]
-FOR_OPERATORS = ["/", "/missions/new", "/uavs", "/assets", "/assets/gaps", "/terrain", "/zones", "/account", "/change-password", "/no-such-page"]
+FOR_OPERATORS = [
+    "/",
+    "/missions/new",
+    "/uavs",
+    "/assets",
+    "/assets/gaps",
+    "/terrain",
+    "/zones",
+    "/account",
+    "/change-password",
+    "/no-such-page",
+]
 FOR_CURATORS = ["/imports"]
 FOR_ADMINISTRATORS = ["/administration"]
 VIEWS: list[dict[str, Any]] = [
