@@ -22,6 +22,7 @@ SOFT_LIMIT_S = 540
 HARD_LIMIT_S = 600
 REPORT_INTERVAL_S = 1.0  # how often the job's row hears of the progress, and the solver of a wish to stop
 
+STOPPED = "Stopped; the best plan until then is kept"
 NO_GRAPH = "There is no network yet: import infrastructure first, or wait until it has been linked."
 
 
@@ -82,7 +83,7 @@ def _work(job_id: str, do: Callable[[Job, _Watch], None]) -> None:
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def solve_plan(job_id: str) -> None:
-    """A plan that is not stored: it becomes the job's result."""
+    """A plan that is not stored: it becomes the job's result. Stopped on the way, it is the best plan found until then."""
 
     def do(job: Job, watch: _Watch) -> None:
         plan = services.make_plan(
@@ -91,20 +92,22 @@ def solve_plan(job_id: str) -> None:
             on_progress=watch.on_progress,
             search_s=settings.ROUTING_RULES.large_plan_search_s,
         )
-        if watch.is_cancelled:
-            raise JobCancelled
-        finish_job(job=job, result=plan, message="Planned")
+        finish_job(job=job, result=plan, message=STOPPED if watch.is_cancelled else "Planned")
 
     _work(job_id, do)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def plan_mission(job_id: str) -> None:
-    """A mission's plan, stored if the mission is still the one that was asked for."""
+    """A mission's plan, stored if the mission is still the one that was asked for; stopped on the way, the best found until then."""
 
     def do(job: Job, watch: _Watch) -> None:
         services.plan_mission_for_job(
-            job=job, stop=watch.stop, on_progress=watch.on_progress, search_s=settings.ROUTING_RULES.large_plan_search_s
+            job=job,
+            stop=watch.stop,
+            on_progress=watch.on_progress,
+            search_s=settings.ROUTING_RULES.large_plan_search_s,
+            message=lambda: STOPPED if watch.is_cancelled else "Planned",
         )
 
     _work(job_id, do)

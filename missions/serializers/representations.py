@@ -29,6 +29,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
         "targets": [_target(row) for row in mission.targets.all()],
         "plan": _plan(mission),
+        "last_plan": mission.last_plan,
     }
 
 

@@ -69,6 +69,43 @@ class PlanSerializer(serializers.Serializer):
     unassigned = UnassignedSerializer(many=True)
 
 
+class LastTargetSerializer(serializers.Serializer):
+    """A target as it was picked."""
+
+    asset = serializers.IntegerField(allow_null=True)
+    position = PositionField(allow_null=True)
+    stretch = serializers.ListField(child=PositionField(), allow_null=True)
+    label = serializers.CharField()
+
+
+class LastStopSerializer(LastTargetSerializer):
+    at_m = serializers.FloatField(help_text="metres flown until there")
+
+
+class LastRouteSerializer(serializers.Serializer):
+    uav = serializers.CharField(help_text="name")
+    uav_id = serializers.IntegerField(allow_null=True)
+    length_m = serializers.FloatField()
+    duration_s = serializers.FloatField()
+    stops = LastStopSerializer(many=True)
+    off_network = serializers.ListField(
+        child=serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2),
+        help_text="stretches [from, to] of the route away from the network [m]",
+    )
+
+
+class LastPlanSerializer(serializers.Serializer):
+    """A plan that another one has replaced, to compare with."""
+
+    planned_at = serializers.DateTimeField()
+    objective = serializers.ChoiceField(choices=Objective.choices)
+    return_to_start = serializers.BooleanField()
+    total_length_m = serializers.FloatField()
+    duration_s = serializers.FloatField(help_text="of the longest route in time")
+    routes = LastRouteSerializer(many=True)
+    unassigned = LastTargetSerializer(many=True)
+
+
 class JobLinkSerializer(serializers.Serializer):
     job = serializers.UUIDField(help_text="its state: GET the address in Location")
     mission = serializers.UUIDField(required=False)
@@ -116,6 +153,7 @@ class MissionSerializer(serializers.Serializer):
     uavs = MissionUavSerializer(many=True)
     targets = MissionTargetSerializer(many=True)
     plan = PlanSerializer(allow_null=True)
+    last_plan = LastPlanSerializer(allow_null=True, help_text="the plan before the present one, in short")
 
 
 class MissionSummarySerializer(serializers.Serializer):

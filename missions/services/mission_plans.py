@@ -1,5 +1,6 @@
 """Storing a plan on its mission: all of it or nothing, and only on the mission that it was made for."""
 
+from collections.abc import Callable
 from typing import Any
 
 from django.contrib.gis.geos import LineString, Point
@@ -40,19 +41,18 @@ def plannable_request(*, mission: Mission) -> PlanRequest:
     return request
 
 
-def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnProgress, search_s: float) -> None:
+def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnProgress, search_s: float, message: Callable[[], str]) -> None:
     """Plan the job's mission, and store the plan and the job's end together: neither is ever there without the other.
 
-    Raises JobCancelled if the user stopped it, and what plan_mission raises.
+    Once the user stops it, the best plan found until then is stored; `message` says at the end how it went. Raises JobCancelled if
+    another worker holds the job by now, and what plan_mission raises.
     """
     mission = Mission.objects.get(pk=job.parameters["mission"])
     request = plannable_request(mission=mission)
     plan = make_plan(request=request, stop=stop, on_progress=on_progress, search_s=search_s)
-    if stop():
-        raise JobCancelled
     with transaction.atomic():
         planned = store_plan(mission=mission, actor=job.created_by, revision=job.parameters["revision"], plan=plan)
-        if not finish_job(job=job, result={"mission": str(planned.pk), "revision": planned.revision}, message="Planned"):
+        if not finish_job(job=job, result={"mission": str(planned.pk), "revision": planned.revision}, message=message()):
             raise JobCancelled
 
 

@@ -11,6 +11,7 @@ from django.utils import timezone
 from inspection.geodesy import LonLat
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.routing.problem import Objective
+from missions.services.last_plan import summary_of_plan
 from missions.services.places import places_of
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest, task_from_json, task_to_json
 from workspace.models import Organisation, User
@@ -116,7 +117,8 @@ def lock_mission(*, mission_id: UUID, expected_revision: int | None) -> Mission:
 
 
 def drop_plan(*, mission: Mission) -> None:
-    """Back to a draft; the caller holds the row and saves it."""
+    """Back to a draft; the caller holds the row and saves it. The plan that goes is remembered in short."""
+    mission.last_plan = summary_of_plan(mission=mission) or mission.last_plan
     mission.routes.all().delete()
     mission.targets.update(unassigned_reason="", unassigned_message="")
     mission.state = MissionState.DRAFT

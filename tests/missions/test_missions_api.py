@@ -293,14 +293,15 @@ def test_a_jobs_plan_is_not_stored_on_a_mission_that_was_changed_meanwhile(here:
     assert not Route.objects.exists()
 
 
-def test_a_cancelled_job_stores_no_plan(here: World, client: Client, settings: Any) -> None:
+def test_a_stopped_job_stores_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:
     settings.ROUTING_RULES = replace(settings.ROUTING_RULES, large_plan_search_s=0.3)
     mission, job = large_mission(here, client)
     with mock.patch("missions.tasks._Watch.stop", return_value=True):
         tasks.plan_mission(str(job.pk))
     job.refresh_from_db()
     mission.refresh_from_db()
-    assert (job.state, mission.state) == ("cancelled", "draft")
+    assert (job.state, mission.state) == ("done", "planned")
+    assert mission.revision == job.result["revision"]
 
 
 def test_a_plan_for_an_older_revision_changes_nothing(here: World, client: Client) -> None:
