@@ -1,0 +1,59 @@
+/** What a search may go to that is no asset: coordinates, no-fly zones, bases and UAVs by name. */
+
+import { get } from "../api.js";
+import { t } from "../text.js";
+import { coordinateText } from "../units.js";
+import { positionIn } from "./coordinates_read.js";
+
+const COORDINATES_ZOOM = 15;
+const MOST_ZONES = 4;
+const MOST_NAMED = 4;
+
+/** The place that coordinates name, as a list of one or none: [{ icon, label, detail, position, zoom }]. */
+export function coordinatesFound(text) {
+  const found = positionIn(text);
+  if (!found) return [];
+  const orders = { letters: t("Coordinates"), "latitude first": t("Coordinates, latitude first"), "longitude first": t("Coordinates, longitude first: the first figure can be no latitude") };
+  return [{ icon: "map-pin", label: coordinateText(found.position), detail: orders[found.order], position: found.position, zoom: COORDINATES_ZOOM }];
+}
+
+/** Of [{ name, position, icon, detail }], those whose name holds the text; at most four. */
+export function namedFound(text, things) {
+  const wanted = text.trim().toLocaleLowerCase();
+  if (!wanted) return [];
+  return things.filter(({ name }) => name.toLocaleLowerCase().includes(wanted)).slice(0, MOST_NAMED).map(({ name, ...rest }) => ({ label: name, zoom: COORDINATES_ZOOM - 1, ...rest }));
+}
+
+/** Zones by name: [{ icon, label, detail, box }]. */
+async function zonesFound(text, signal) {
+  const { data } = await get(`/zones?text=${encodeURIComponent(text)}&limit=${MOST_ZONES}`, { signal });
+  return data.features.map(({ geometry, properties }) => ({ icon: "zone", label: properties.name, detail: t("No-fly zone"), box: boxOf(geometry.coordinates) }));
+}
+
+function boxOf(coordinates) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [longitude, latitude] of coordinates.flat(2)) {
+    box[0] = Math.min(box[0], longitude);
+    box[1] = Math.min(box[1], latitude);
+    box[2] = Math.max(box[2], longitude);
+    box[3] = Math.max(box[3], latitude);
+  }
+  return box;
+}
+
+/**
+ * Places for a text: [{ icon, label, detail, and position with zoom, or box }]. A text that is a pair of coordinates names nothing else.
+ * `things` are what the page knows by name, such as UAVs: [{ name, position, icon, detail }].
+ */
+export async function placesFound(text, { signal, things = [] } = {}) {
+  const coordinates = coordinatesFound(text);
+  if (coordinates.length || !text.trim()) return coordinates;
+  return [...namedFound(text, things), ...(await zonesFound(text.trim(), signal))];
+}
+
+/** Brings a found place into view. */
+export function goTo(map, place, fit) {
+  if (place.box) return fit(place.box);
+  const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  return map.easeTo({ center: place.position, zoom: Math.max(map.getZoom(), place.zoom), duration: calm ? 0 : 350 });
+}
