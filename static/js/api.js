@@ -1,5 +1,7 @@
 /** The one module that fetches: CSRF, the error shape, and words for what went wrong. */
 
+import { t } from "./text.js";
+
 const ROOT = "/api/v1";
 
 export class ApiError extends Error {
@@ -20,7 +22,7 @@ export class ApiError extends Error {
   }
 }
 
-const SIGNED_OUT = "You are signed out. Your selection is kept in this browser.";
+const SIGNED_OUT = t("You are signed out. Your selection is kept in this browser.");
 
 /** Also where the session ended and the page's CSRF token with it. */
 export function isSignedOut(status, code, message) {
@@ -63,10 +65,10 @@ async function problemOf(response) {
   }
   const detail = status === 400 ? firstDetail(error.details) : "";
   const words = {
-    413: "That is too much for one request.",
-    429: "Too many requests. Wait a moment, then try again.",
-    502: "The server cannot be reached.",
-    504: "The server did not answer in time.",
+    413: t("That is too much for one request."),
+    429: t("Too many requests. Wait a moment, then try again."),
+    502: t("The server cannot be reached."),
+    504: t("The server did not answer in time."),
   };
   if (isSignedOut(status, error.code, error.message)) return new ApiError(SIGNED_OUT, { status: 401, code: "not_authenticated" });
   const message = detail || error.message || words[status] || `The server answered with ${status}.`;
@@ -91,7 +93,7 @@ export async function request(method, path, { body, bytes, headers = {}, signal 
     response = await fetch(address, send);
   } catch (error) {
     if (error.name === "AbortError") throw error;
-    throw new ApiError("The server cannot be reached.", { code: "server_away" });
+    throw new ApiError(t("The server cannot be reached."), { code: "server_away" });
   }
   if (!response.ok) throw await problemOf(response);
   const text = await response.text();
@@ -115,7 +117,7 @@ const pause = (ms, signal) =>
 export async function follow(jobId, { onProgress, signal, every_ms = 700 } = {}) {
   for (;;) {
     const { data: job } = await get(`/jobs/${jobId}`, { signal });
-    if (job.state === "failed") throw new ApiError(job.error?.message ?? "The job failed.", { status: 500, code: job.error?.code ?? "" });
+    if (job.state === "failed") throw new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" });
     if (job.state === "done" || job.state === "cancelled") return job;
     onProgress?.(job);
     await pause(every_ms, signal);

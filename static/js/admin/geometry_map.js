@@ -2,6 +2,7 @@
 
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
+import { t } from "../text.js";
 import { outlineOf, parseGeometry, pointText, positionsOf } from "./geometry_text.js";
 
 const NOTHING = { type: "FeatureCollection", features: [] };
@@ -11,7 +12,7 @@ for (const field of document.querySelectorAll("[data-geometry]")) {
   const note = field.querySelector(".geometry-note");
   const hint = note.textContent;
   const isPoint = "isPoint" in field.dataset;
-  const view = createMap(field.querySelector(".geometry-map"), { under: "", describe: "Map of the geometry" });
+  const view = createMap(field.querySelector(".geometry-map"), { under: "", describe: t("Map of the geometry") });
   let point = null;
 
   const tell = (fault) => {

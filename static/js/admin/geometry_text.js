@@ -1,5 +1,7 @@
 /** GeoJSON text to geometry and back. The server checks again and is stricter. */
 
+import { t } from "../text.js";
+
 const DIGITS = 7; // about a centimetre
 
 /** { geometry } or { fault: sentence }; neither for empty text. */
@@ -9,12 +11,12 @@ export function parseGeometry(text) {
   try {
     geometry = JSON.parse(text);
   } catch {
-    return { fault: "This is not JSON." };
+    return { fault: t("This is not JSON.") };
   }
-  if (!geometry?.type || !Array.isArray(geometry.coordinates)) return { fault: "A GeoJSON geometry has a type and coordinates." };
+  if (!geometry?.type || !Array.isArray(geometry.coordinates)) return { fault: t("A GeoJSON geometry has a type and coordinates.") };
   const positions = positionsOf(geometry);
   const isSound = ([longitude, latitude]) => Number.isFinite(longitude) && Number.isFinite(latitude) && Math.abs(longitude) <= 180 && Math.abs(latitude) <= 90;
-  if (!positions.length || !positions.every(isSound)) return { fault: "A position is longitude, then latitude, in degrees." };
+  if (!positions.length || !positions.every(isSound)) return { fault: t("A position is longitude, then latitude, in degrees.") };
   return { geometry };
 }
 

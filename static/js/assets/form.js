@@ -1,13 +1,14 @@
 /** The facts of an asset as fields. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
 import { HIGHEST_KV, voltsOf } from "./voltages.js";
 
 const SUBTYPES = {
-  tower: [["tower", "Tower"], ["pole", "Pole"], ["portal", "Portal"]],
-  line: [["line", "Line"], ["minor_line", "Minor line"], ["cable", "Cable"]],
-  railway: [["rail", "Railway"], ["light_rail", "Light rail"], ["tram", "Tramway"], ["subway", "Subway"]],
-  bridge: [["area", "Bridge"]],
+  tower: [["tower", t("Tower")], ["pole", t("Pole")], ["portal", t("Portal")]],
+  line: [["line", t("Line")], ["minor_line", t("Minor line")], ["cable", t("Cable")]],
+  railway: [["rail", t("Railway")], ["light_rail", t("Light rail")], ["tram", t("Tramway")], ["subway", t("Subway")]],
+  bridge: [["area", t("Bridge")]],
 };
 
 const field = (id, words, input, unit) => h("div", { class: "field" }, h("label", { for: id }, words), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input);
@@ -32,12 +33,12 @@ export function assetForm(feature, kind, kept) {
   const element = h(
     "form",
     { class: "record-form", onsubmit: (event) => event.preventDefault() },
-    field("asset-subtype", "Type", subtype),
-    h("div", { class: "pair" }, field("asset-ref", "Ref", ref), field("asset-name", "Name", name)),
-    field("asset-operator", "Operator", operator),
-    isPower && h("div", { class: "pair" }, field("asset-voltages", "Voltages, highest first", voltages, "kV"), kind === "line" ? field("asset-circuits", "Circuits", circuits) : field("asset-height", "Height above ground", height, "m")),
-    !isPower && field("asset-height", "Height above ground", height, "m"),
-    h("label", { class: "switch-line" }, flyable, "Part of the flying network"),
+    field("asset-subtype", t("Type"), subtype),
+    h("div", { class: "pair" }, field("asset-ref", t("Ref"), ref), field("asset-name", t("Name"), name)),
+    field("asset-operator", t("Operator"), operator),
+    isPower && h("div", { class: "pair" }, field("asset-voltages", t("Voltages, highest first"), voltages, "kV"), kind === "line" ? field("asset-circuits", t("Circuits"), circuits) : field("asset-height", t("Height above ground"), height, "m")),
+    !isPower && field("asset-height", t("Height above ground"), height, "m"),
+    h("label", { class: "switch-line" }, flyable, t("Part of the flying network")),
   );
   return {
     element,

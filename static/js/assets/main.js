@@ -2,11 +2,12 @@
 
 import { byId, h } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
+import { t } from "../text.js";
 import { coordinateText, countText, lengthText, voltageText, whenText } from "../units.js";
 import { assetForm } from "./form.js";
 
-const KINDS = [["tower", "Towers"], ["line", "Lines"], ["railway", "Railways"], ["bridge", "Bridges"]];
-const NAMES = { tower: "Power tower", line: "Power line", railway: "Railway", bridge: "Bridge" };
+const KINDS = [["tower", t("Towers")], ["line", t("Lines")], ["railway", t("Railways")], ["bridge", t("Bridges")]];
+const NAMES = { tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge") };
 const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
 const PAGE = 60;
 const TYPING_MS = 250;
@@ -22,7 +23,7 @@ function sourceWords({ properties }) {
     const kind = { n: "node", w: "way", r: "relation" }[osm[0]];
     return [h("a", { href: `https://www.openstreetmap.org/${kind}/${osm.slice(1)}`, rel: "noreferrer", target: "_blank" }, `OpenStreetMap ${kind} ${osm.slice(1)}`), source ? `, ${source.file_name}` : ""];
   }
-  return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : ["Drawn here"];
+  return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : [t("Drawn here")];
 }
 
 function details(feature) {
@@ -30,16 +31,16 @@ function details(feature) {
   const tags = Object.entries(properties.tags ?? {});
   return [
     h("p", { class: "caption" }, [NAMES[properties.kind], properties.detail].filter(Boolean).join(" · ")),
-    properties.vanished_at && h("div", { class: "notice warning" }, h("p", {}, h("strong", {}, "Off the ground. "), `Since ${whenText(properties.vanished_at)}; missions still know it.`)),
-    properties.is_edited && h("p", { class: "caption" }, "Edited by hand: imports leave it alone."),
+    properties.vanished_at && h("div", { class: "notice warning" }, h("p", {}, h("strong", {}, `${t("Off the ground.")} `), `Since ${whenText(properties.vanished_at)}; missions still know it.`)),
+    properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(
       "dl",
       { class: "facts" },
-      term("Ref", properties.ref), term("Name", properties.name), term("Operator", properties.operator),
-      term("Voltages", properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")), term("Circuits", properties.circuits && String(properties.circuits)),
-      term("Height", properties.height_m && `${properties.height_m}\u00a0m above ground`), term("Length", properties.length_m && lengthText(properties.length_m)),
-      term("Network", properties.is_flyable ? "" : "Not part of the flying network"), term("Place", coordinateText(properties.centre)),
-      term("Source", sourceWords(feature)), term("Licence", properties.source?.licence), term("Attribution", properties.source?.attribution), term("Fetched", properties.source?.fetched_at && whenText(properties.source.fetched_at)), term("Changed", whenText(properties.updated_at)),
+      term(t("Ref"), properties.ref), term(t("Name"), properties.name), term(t("Operator"), properties.operator),
+      term(t("Voltages"), properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")), term(t("Circuits"), properties.circuits && String(properties.circuits)),
+      term(t("Height"), properties.height_m && `${properties.height_m}\u00a0m above ground`), term(t("Length"), properties.length_m && lengthText(properties.length_m)),
+      term(t("Network"), properties.is_flyable ? "" : t("Not part of the flying network")), term(t("Place"), coordinateText(properties.centre)),
+      term(t("Source"), sourceWords(feature)), term(t("Licence"), properties.source?.licence), term(t("Attribution"), properties.source?.attribution), term(t("Fetched"), properties.source?.fetched_at && whenText(properties.source.fetched_at)), term(t("Changed"), whenText(properties.updated_at)),
     ),
     tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, `${countText(tags.length, "tag")} of the source`), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
   ].filter(Boolean);
@@ -48,11 +49,11 @@ function details(feature) {
 const records = mountRecordPage({
   path: "/assets",
   key: "asset",
-  findWords: "Find an asset",
-  backWords: "All assets",
+  findWords: t("Find an asset"),
+  backWords: t("All assets"),
   pickKinds: ["tower", "line", "railway", "bridge"],
   newChoices: [
-    { value: "tower", icon: "tower", words: "Tower" }, { value: "line", icon: "line", words: "Power line" }, { value: "railway", icon: "railway", words: "Railway" }, { value: "bridge", icon: "bridge", words: "Bridge" },
+    { value: "tower", icon: "tower", words: t("Tower") }, { value: "line", icon: "line", words: t("Power line") }, { value: "railway", icon: "railway", words: t("Railway") }, { value: "bridge", icon: "bridge", words: t("Bridge") },
   ],
   newTitle: (kind) => `New ${NAMES[kind].toLowerCase()}`,
   choiceOf: (feature) => feature.properties.kind,
@@ -65,7 +66,7 @@ const records = mountRecordPage({
   details,
   form: assetForm,
   followsView: () => filter.inView,
-  row: ({ properties }) => ({ icon: properties.kind, name: properties.label, detail: properties.detail || NAMES[properties.kind], chip: properties.is_flyable ? "" : "not flown" }),
+  row: ({ properties }) => ({ icon: properties.kind, name: properties.label, detail: properties.detail || NAMES[properties.kind], chip: properties.is_flyable ? "" : t("not flown") }),
   listQuery(map) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);
@@ -75,8 +76,8 @@ const records = mountRecordPage({
   },
   nothing: () =>
     filter.text || filter.kind || filter.inView
-      ? [h("strong", {}, "Nothing found."), h("span", {}, "Other words, another kind, or a larger part of the map may have it.")]
-      : [h("strong", {}, "No assets yet."), h("span", {}, "Bring in an OpenStreetMap file, or take the visible area from Overpass."), h("a", { class: "button", href: "/imports" }, "Import a file")],
+      ? [h("strong", {}, t("Nothing found.")), h("span", {}, t("Other words, another kind, or a larger part of the map may have it."))]
+      : [h("strong", {}, t("No assets yet.")), h("span", {}, t("Bring in an OpenStreetMap file, or take the visible area from Overpass.")), h("a", { class: "button", href: "/imports" }, t("Import a file"))],
 });
 
 let timer = 0;
@@ -90,7 +91,7 @@ byId("record-in-view").addEventListener("change", (event) => {
   records.load();
 });
 byId("asset-kinds").append(
-  ...[["", "All"], ...KINDS].map(([value, words]) =>
+  ...[["", t("All")], ...KINDS].map(([value, words]) =>
     h("label", {}, h("input", { type: "radio", name: "kind", value, checked: value === "", onchange: () => ((filter.kind = value), records.load()) }), h("span", { class: "segment" }, words)),
   ),
 );

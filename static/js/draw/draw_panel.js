@@ -1,40 +1,41 @@
 /** What stands beside a drawing: tools, how long or large it is, what is wrong, and its vertices as a table for keys and screen readers. */
 
 import { h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { areaText, lengthText } from "../units.js";
 import { measure } from "./measure.js";
 import { circleOf, positionAt, removeRing as removeRingOf, removeVertex, verticesOf } from "./shape.js";
 
 const MOST_ROWS = 200;
 const ASK = {
-  point: "Click where it stands.",
-  line: "Click along the line; Enter or a click on the last point ends it.",
-  area: "Click round the area; Enter or a click on the first point closes it.",
-  circle: "Click the centre, then how far it reaches.",
+  point: t("Click where it stands."),
+  line: t("Click along the line; Enter or a click on the last point ends it."),
+  area: t("Click round the area; Enter or a click on the first point closes it."),
+  circle: t("Click the centre, then how far it reaches."),
 };
 
 const HINTS = {
-  point: "Drag it to its place, or write where it stands under Points.",
-  line: "Drag a point; drag the small one between two to add another.",
-  area: "Drag a point; drag the small one between two to add another.",
-  circle: "Drag the centre, or the point on the rim.",
+  point: t("Drag it to its place, or write where it stands under Points."),
+  line: t("Drag a point; drag the small one between two to add another."),
+  area: t("Drag a point; drag the small one between two to add another."),
+  circle: t("Drag the centre, or the point on the rim."),
 };
-const HOLD = matchMedia("(pointer: coarse)").matches ? " Hold a point to remove it." : " Alt-click removes one; with Ctrl or Alt nothing snaps.";
-const MOVING = "Drag the whole shape, or move it with the arrow keys.";
+const HOLD = matchMedia("(pointer: coarse)").matches ? ` ${t("Hold a point to remove it.")}` : ` ${t("Alt-click removes one; with Ctrl or Alt nothing snaps.")}`;
+const MOVING = t("Drag the whole shape, or move it with the arrow keys.");
 
 const button = (words, name, act, rest = {}) => h("button", { type: "button", class: "button", onclick: act, ...rest }, icon(name, "small"), words);
 const tool = (words, name, act) => h("button", { type: "button", class: "icon-button", "aria-label": words, title: words, onclick: act }, icon(name));
 
 /** Returns { element, update(state), preview(shape), verdict(of the server) }; show(position) moves the map. */
 export function createDrawPanel(editor, { show }) {
-  const undo = tool("Undo (Ctrl+Z)", "undo-2", () => editor.undo());
-  const redo = tool("Redo (Ctrl+Shift+Z)", "redo-2", () => editor.redo());
-  const finish = button("Finish", "check", () => editor.finish());
-  const hole = button("Hole", "circle-dashed", () => editor.startHole(), { title: "Draw a hole in the area" });
-  const part = button("Part", "plus", () => editor.startPart(), { title: "Draw another part of the area" });
-  const move = button("Move", "hand", () => editor.moveWhole(!now.isMoving), { title: "Move the whole shape by dragging, or with the arrow keys" });
-  const remove = button("Remove point", "trash-2", () => editor.removeChosen());
-  const removeRing = button("Remove hole", "trash-2", () => editor.removeRing());
+  const undo = tool(t("Undo (Ctrl+Z)"), "undo-2", () => editor.undo());
+  const redo = tool(t("Redo (Ctrl+Shift+Z)"), "redo-2", () => editor.redo());
+  const finish = button(t("Finish"), "check", () => editor.finish());
+  const hole = button(t("Hole"), "circle-dashed", () => editor.startHole(), { title: t("Draw a hole in the area") });
+  const part = button(t("Part"), "plus", () => editor.startPart(), { title: t("Draw another part of the area") });
+  const move = button(t("Move"), "hand", () => editor.moveWhole(!now.isMoving), { title: t("Move the whole shape by dragging, or with the arrow keys") });
+  const remove = button(t("Remove point"), "trash-2", () => editor.removeChosen());
+  const removeRing = button(t("Remove hole"), "trash-2", () => editor.removeRing());
   const ask = h("p", { class: "caption" });
   const figures = h("p", { class: "draw-figures", role: "status" });
   const coming = h("p", { class: "draw-figures", "aria-hidden": "true", hidden: true }); // follows the pointer: not read out
@@ -42,15 +43,15 @@ export function createDrawPanel(editor, { show }) {
   const rows = h("tbody", {});
   const rest = h("p", { class: "caption", hidden: true });
   const radius = h("input", { class: "input", id: "draw-radius", type: "number", min: 1, max: 500_000, step: 1, onchange: (event) => editor.setRadius(Number(event.target.value)) });
-  const radiusField = h("div", { class: "field" }, h("label", { for: "draw-radius" }, "Radius"), h("div", { class: "with-unit" }, radius, h("span", { class: "unit" }, "m")));
+  const radiusField = h("div", { class: "field" }, h("label", { for: "draw-radius" }, t("Radius")), h("div", { class: "with-unit" }, radius, h("span", { class: "unit" }, "m")));
   const table = h(
     "details",
     { class: "draw-vertices" },
-    h("summary", {}, "Points"),
-    h("p", { class: "caption" }, "Choose a point by its number; the arrow keys then move it, Del removes it."),
-    h("table", {}, h("caption", { class: "unseen" }, "Points with longitude and latitude in degrees"), h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Point"), h("th", { scope: "col" }, "Longitude"), h("th", { scope: "col" }, "Latitude"))), rows),
+    h("summary", {}, t("Points")),
+    h("p", { class: "caption" }, t("Choose a point by its number; the arrow keys then move it, Del removes it.")),
+    h("table", {}, h("caption", { class: "unseen" }, t("Points with longitude and latitude in degrees")), h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Point"), h("th", { scope: "col" }, t("Longitude")), h("th", { scope: "col" }, t("Latitude")))), rows),
     rest,
-    h("button", { type: "button", class: "text-button add-point", onclick: () => editor.addInMiddle() }, "Add a point in the middle of the map"),
+    h("button", { type: "button", class: "text-button add-point", onclick: () => editor.addInMiddle() }, t("Add a point in the middle of the map")),
   );
   const addPoint = table.querySelector(".add-point");
   table.addEventListener("toggle", () => table.open && now?.shape && fill());
@@ -61,7 +62,7 @@ export function createDrawPanel(editor, { show }) {
     const at = () => verticesOf(now.shape)[index].at;
     const degrees = (axis) =>
       h("td", {}, h("input", {
-        class: "input", type: "number", step: "any", "aria-label": `${axis ? "Latitude" : "Longitude"} of point ${index + 1}`,
+        class: "input", type: "number", step: "any", "aria-label": `${axis ? t("Latitude") : t("Longitude")} of point ${index + 1}`,
         onchange: (event) => {
           const position = [...positionAt(now.shape, at())];
           const value = Number(event.target.value);
@@ -105,7 +106,7 @@ export function createDrawPanel(editor, { show }) {
     move.setAttribute("aria-pressed", String(now.isMoving));
     remove.hidden = !chosen || isDrawing || removeVertex(shape, chosen) === shape;
     removeRing.hidden = !chosen || isDrawing || removeRingOf(shape, chosen) === shape;
-    removeRing.lastChild.textContent = chosen?.[1] > 0 ? "Remove hole" : "Remove part";
+    removeRing.lastChild.textContent = chosen?.[1] > 0 ? t("Remove hole") : t("Remove part");
     addPoint.hidden = !isDrawing;
     ask.textContent = isDrawing ? ASK[shape.kind] : now.isMoving ? MOVING : HINTS[shape.kind] + (["line", "area"].includes(shape.kind) ? HOLD : "");
     figures.textContent = figuresOf(shape);
@@ -116,7 +117,7 @@ export function createDrawPanel(editor, { show }) {
     const wrong = isDrawing ? now.faults.filter((fault) => fault.sides.length) : now.faults.length ? now.faults : told ? [told] : [];
     faults.replaceChildren(
       ...wrong.slice(0, 5).map((fault) =>
-        h("p", { class: "field-error" }, icon("circle-alert", "small"), h("span", {}, fault.message, " ", fault.position && h("button", { type: "button", class: "text-button", onclick: () => show(fault.position) }, "See the place"))),
+        h("p", { class: "field-error" }, icon("circle-alert", "small"), h("span", {}, fault.message, " ", fault.position && h("button", { type: "button", class: "text-button", onclick: () => show(fault.position) }, t("See the place")))),
       ),
     );
     if (table.open) fill();
@@ -133,7 +134,7 @@ export function createDrawPanel(editor, { show }) {
   };
 
   return {
-    element: h("div", { class: "draw-panel" }, h("div", { class: "draw-tools", role: "toolbar", "aria-label": "Drawing" }, undo, redo, finish, hole, part, move, remove, removeRing), ask, figures, coming, radiusField, faults, table),
+    element: h("div", { class: "draw-panel" }, h("div", { class: "draw-tools", role: "toolbar", "aria-label": t("Drawing") }, undo, redo, finish, hole, part, move, remove, removeRing), ask, figures, coming, radiusField, faults, table),
     update(state) {
       now = state;
       told = null;

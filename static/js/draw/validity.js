@@ -1,15 +1,16 @@
 /** What is wrong with a shape while it is being drawn: said at once; the server has the last word before anything is stored. */
 
+import { t } from "../text.js";
 import { continuous } from "./measure.js";
 import { isInside, leastOf } from "./shape.js";
 
 export const MOST_CHECKED = 2_000; // vertices; of more the server says whether they cross
 const MOST_FAULTS = 20;
 const WORDS = {
-  point: "Click where it stands.",
-  line: "A line needs two points.",
-  area: "An area needs three points.",
-  circle: "Click the centre, then how far it reaches.",
+  point: t("Click where it stands."),
+  line: t("A line needs two points."),
+  area: t("An area needs three points."),
+  circle: t("Click the centre, then how far it reaches."),
 };
 const told = new WeakMap(); // shapes are values: what was found once holds
 
@@ -35,7 +36,7 @@ function found(shape, growing) {
 function repeated(shape) {
   const isSame = (a, b) => a[0] === b[0] && a[1] === b[1];
   return shape.parts.flat().flatMap((ring) =>
-    ring.filter((position, index) => index && isSame(position, ring[index - 1])).map((position) => ({ message: "Two points lie in one place.", position, sides: [] })),
+    ring.filter((position, index) => index && isSame(position, ring[index - 1])).map((position) => ({ message: t("Two points lie in one place."), position, sides: [] })),
   );
 }
 
@@ -43,7 +44,7 @@ function overTheDateLine(shape) {
   if (shape.kind !== "line") return [];
   const [path] = shape.parts[0];
   const index = path.findIndex((position, at) => at && Math.abs(position[0] - path[at - 1][0]) > 180);
-  return index > 0 ? [{ message: "A line cannot cross the 180th meridian: draw it as two.", position: path[index], sides: [[path[index - 1], path[index]]] }] : [];
+  return index > 0 ? [{ message: t("A line cannot cross the 180th meridian: draw it as two."), position: path[index], sides: [[path[index - 1], path[index]]] }] : [];
 }
 
 /** Sides of all rings, without jumps at the 180th meridian: { from, to, part, ring, index, size, low, high }. */
@@ -87,8 +88,8 @@ function meetingPlace(a, b) {
 }
 
 function meetingWords(a, b) {
-  if (a.ring === b.ring) return "The border crosses itself.";
-  return a.part === b.part ? "A hole crosses the border or another hole." : "Two parts cross each other.";
+  if (a.ring === b.ring) return t("The border crosses itself.");
+  return a.part === b.part ? t("A hole crosses the border or another hole.") : t("Two parts cross each other.");
 }
 
 function areNeighbours(a, b) {
@@ -131,11 +132,11 @@ function overlapOf({ from: a, to: b }, { from: c, to: d }) {
 
 function strayRings(shape) {
   const holes = shape.parts.flatMap(([outer, ...rest]) =>
-    rest.filter((hole) => hole.length >= 3 && !hole.some((position) => isInside(position, outer))).map((hole) => ({ message: "A hole lies outside of the area.", position: hole[0], sides: [] })),
+    rest.filter((hole) => hole.length >= 3 && !hole.some((position) => isInside(position, outer))).map((hole) => ({ message: t("A hole lies outside of the area."), position: hole[0], sides: [] })),
   );
   const parts = shape.parts.flatMap(([outer], index) =>
     shape.parts.some(([other, ...gaps], number) => number !== index && outer.every((position) => isInside(position, other)) && !gaps.some((gap) => isInside(outer[0], gap)))
-      ? [{ message: "A part lies within another.", position: outer[0], sides: [] }]
+      ? [{ message: t("A part lies within another."), position: outer[0], sides: [] }]
       : [],
   );
   return [...holes, ...parts];

@@ -1,6 +1,7 @@
 /** The side of the page: which gaps, and the list of them. */
 
 import { byId, h, icon, keyedList } from "../dom.js";
+import { t } from "../text.js";
 import { cutOffText, KINDS, STATES } from "./kinds.js";
 
 const TYPED_MS = 250;
@@ -67,7 +68,7 @@ export function mountGapList(on) {
     row.replaceChildren(
       icon(KINDS[kind].icon),
       h("span", { class: "what" }, h("strong", {}, title), h("small", {}, whose(asset))),
-      h("span", { class: "figure" }, cutOffText({ kind, cut_off_m }) || (details.is_advisory ? "may be right" : "")),
+      h("span", { class: "figure" }, cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : "")),
     );
     row.onpointerenter = row.onfocus = () => on.point(gap);
     row.onpointerleave = row.onblur = () => on.point(null);
@@ -85,13 +86,13 @@ export function mountGapList(on) {
   };
 
   function empty(hasSearched) {
-    if (!hasSearched) return [h("strong", {}, "The ground is being searched."), h("p", {}, "Gaps come up here when that is done."), h("div", { class: "skeleton" }), h("div", { class: "skeleton" })];
+    if (!hasSearched) return [h("strong", {}, t("The ground is being searched.")), h("p", {}, t("Gaps come up here when that is done.")), h("div", { class: "skeleton" }), h("div", { class: "skeleton" })];
     if (filter.kinds.size || filter.text || filter.inView) {
-      const what = filter.text ? `No gap matches “${filter.text}”.` : "No gap like that here.";
-      return [h("strong", {}, what), h("button", { class: "button", type: "button", onclick: clearFilters }, "Clear the filter")];
+      const what = filter.text ? `No gap matches “${filter.text}”.` : t("No gap like that here.");
+      return [h("strong", {}, what), h("button", { class: "button", type: "button", onclick: clearFilters }, t("Clear the filter"))];
     }
-    if (filter.state === "open") return [icon("circle-check"), h("strong", {}, "Nothing looks wrong here."), h("p", {}, "The ground is searched again after each change.")];
-    return [h("strong", {}, filter.state === "repaired" ? "Nothing has been repaired yet." : "Nothing has been left as it is.")];
+    if (filter.state === "open") return [icon("circle-check"), h("strong", {}, t("Nothing looks wrong here.")), h("p", {}, t("The ground is searched again after each change."))];
+    return [h("strong", {}, filter.state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been left as it is."))];
   }
 
   return {
@@ -102,7 +103,7 @@ export function mountGapList(on) {
       draw(gaps);
       end.replaceChildren(
         ...(gaps.length ? [] : [h("div", { class: "empty" }, empty(hasSearched))]),
-        ...(hasMore ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, "Show more")] : []),
+        ...(hasMore ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, t("Show more"))] : []),
       );
     },
     /** kinds: number by kind, then state. */

@@ -1,6 +1,7 @@
 /** The dock: the chosen gap in one sentence, its facts, and what can be done about it. */
 
 import { byId, h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { coordinateText, whenText } from "../units.js";
 import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 
@@ -33,20 +34,20 @@ export function mountGapPanel(canCurate, on) {
         { class: "gap-words" },
         h("h2", { class: "gap-sentence" }, properties.sentence),
         h("p", { class: "gap-assets" }, assetWords(properties)),
-        h("dl", { class: "gap-facts" }, [...factsOf(properties), ["Place", coordinateText(properties.position)]].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
+        h("dl", { class: "gap-facts" }, [...factsOf(properties), [t("Place"), coordinateText(properties.position)]].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
         caution && h("p", { class: "caption" }, caution),
         properties.state !== "open" && h("p", { class: "gap-decided" }, icon(properties.state === "repaired" ? "circle-check" : "hand"), decidedWords(properties)),
       ),
       h("div", { class: "gap-do" }, acts, said),
-      h("button", { class: "icon-button tight gap-close", type: "button", "aria-label": "Close", title: "Close (Esc)", onclick: on.close }, icon("x")),
+      h("button", { class: "icon-button tight gap-close", type: "button", "aria-label": t("Close"), title: t("Close (Esc)"), onclick: on.close }, icon("x")),
     );
   }
 
   function actsOf(gap) {
     const { repairs, state, kind } = gap.properties;
-    if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? "Curators can repair this." : "")];
-    const following = h("button", { class: "button primary", type: "button", onclick: on.next }, "Next gap");
-    if (state === "dismissed") return [following, h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), "Open it again")];
+    if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? t("Curators can repair this.") : "")];
+    const following = h("button", { class: "button primary", type: "button", onclick: on.next }, t("Next gap"));
+    if (state === "dismissed") return [following, h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), t("Open it again"))];
     if (state === "repaired") return [following];
     return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(kind)];
   }
@@ -59,7 +60,7 @@ export function mountGapPanel(canCurate, on) {
     previews(act, offer.preview);
     act.addEventListener("click", () => on.repair({ action: offer.action }));
     if (offer.parameter === "positions") {
-      return [act, h("button", { class: "button", type: "button", onclick: () => (on.place((count) => placing(offer, count)), placing(offer, 0)) }, icon("map-pin"), "Place them on the map")];
+      return [act, h("button", { class: "button", type: "button", onclick: () => (on.place((count) => placing(offer, count)), placing(offer, 0)) }, icon("map-pin"), t("Place them on the map"))];
     }
     if (offer.parameter === "voltages_v") return [offer.choices.length ? act : null, voltageForm(offer, !offer.choices.length)];
     return [act];
@@ -89,22 +90,22 @@ export function mountGapPanel(canCurate, on) {
     return h(
       "form",
       { class: "gap-form", onsubmit: submit },
-      h("label", { for: "gap-volts" }, "Voltage"),
+      h("label", { for: "gap-volts" }, t("Voltage")),
       h("span", { class: "with-unit" }, input, h("span", { class: "unit" }, "kV")),
-      h("button", { class: isFirst ? "button primary" : "button" }, "Set"),
+      h("button", { class: isFirst ? "button primary" : "button" }, t("Set")),
     );
   }
 
   function dismissAct(kind) {
     const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(kind));
     opener.addEventListener("click", () => {
-      const note = h("input", { class: "input", id: "gap-note", maxlength: LONGEST_NOTE, placeholder: "Why it is right", "aria-label": "Note", autocomplete: "off" });
+      const note = h("input", { class: "input", id: "gap-note", maxlength: LONGEST_NOTE, placeholder: t("Why it is right"), "aria-label": t("Note"), autocomplete: "off" });
       const form = h(
         "form",
         { class: "gap-form", onsubmit: (event) => (event.preventDefault(), on.dismiss(note.value.trim())) },
         note,
-        h("button", { class: "button primary" }, "Leave it"),
-        h("button", { class: "button quiet", type: "button", onclick: () => (form.replaceWith(opener), opener.focus()) }, "Cancel"),
+        h("button", { class: "button primary" }, t("Leave it")),
+        h("button", { class: "button quiet", type: "button", onclick: () => (form.replaceWith(opener), opener.focus()) }, t("Cancel")),
       );
       opener.replaceWith(form);
       note.focus();
@@ -114,11 +115,11 @@ export function mountGapPanel(canCurate, on) {
 
   /** While places are clicked on the map the acts say how many there are. */
   function placing(offer, count) {
-    const words = count ? `Place ${count === 1 ? "one tower" : `${count} towers`}` : "Click along the span";
+    const words = count ? `Place ${count === 1 ? t("one tower") : `${count} towers`}` : t("Click along the span");
     acts.replaceChildren(
       h("button", { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) }, words),
-      h("button", { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() }, icon("undo-2"), "Take one back"),
-      h("button", { class: "button quiet", type: "button", onclick: () => on.placeCancel() }, "Cancel"),
+      h("button", { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() }, icon("undo-2"), t("Take one back")),
+      h("button", { class: "button quiet", type: "button", onclick: () => on.placeCancel() }, t("Cancel")),
     );
   }
 
@@ -142,7 +143,7 @@ function assetWords({ asset, other_asset: other }) {
 }
 
 function decidedWords({ state, decided_by: who, decided_at: when, note }) {
-  const act = state === "repaired" ? (who ? "Repaired" : "No longer found") : "Left as it is";
+  const act = state === "repaired" ? (who ? t("Repaired") : t("No longer found")) : t("Left as it is");
   const by = who ? ` by ${who}` : "";
   return `${act}${by}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
 }

@@ -1,5 +1,6 @@
 /** What the kinds of gaps are called, and what their figure means. */
 
+import { t } from "../text.js";
 import { lengthText } from "../units.js";
 
 export const KINDS = {
@@ -28,16 +29,16 @@ export function cutOffText({ kind, cut_off_m: cutOff_m }) {
 
 /** Facts for the panel, beside what the sentence says: [term, value]. */
 export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
-  const cut = cutOff_m ? [[cutOffText({ kind, cut_off_m: cutOff_m }).startsWith("cuts") ? "Cuts off" : "Concerns", lengthText(cutOff_m)]] : [];
+  const cut = cutOff_m ? [[cutOffText({ kind, cut_off_m: cutOff_m }).startsWith("cuts") ? t("Cuts off") : t("Concerns"), lengthText(cutOff_m)]] : [];
   switch (kind) {
     case "long_span":
-      return [...cut, ["Beyond it", details.beyond_m ? lengthText(details.beyond_m) : "also reached another way"]];
+      return [...cut, [t("Beyond it"), details.beyond_m ? lengthText(details.beyond_m) : t("also reached another way")]];
     case "missing_support":
-      return [["Line", lengthText(details.line_m)], ["Without a tower", lengthText(details.without_tower_m)]];
+      return [[t("Line"), lengthText(details.line_m)], [t("Without a tower"), lengthText(details.without_tower_m)]];
     case "dead_end":
-      return [...cut, ["Hangs together with it", lengthText(details.network_m)]];
+      return [...cut, [t("Hangs together with it"), lengthText(details.network_m)]];
     case "impossible_voltage":
-      return [["As tagged", details.tagged || "—"]];
+      return [[t("As tagged"), details.tagged || "—"]];
     default:
       return cut;
   }
@@ -45,12 +46,12 @@ export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
 
 /** What Spanwise cannot know, where that matters. */
 export function cautionOf({ kind, details }) {
-  if (kind === "dead_end") return "Spanwise keeps no substations: if one stands here, leave the end as it is.";
-  if (kind === "missing_support") return "Vertices inside a substation may hang on its portals.";
-  if (kind === "long_span" && !details.is_impossible) return "A valley or a river may be crossed in one span.";
+  if (kind === "dead_end") return t("Spanwise keeps no substations: if one stands here, leave the end as it is.");
+  if (kind === "missing_support") return t("Vertices inside a substation may hang on its portals.");
+  if (kind === "long_span" && !details.is_impossible) return t("A valley or a river may be crossed in one span.");
   return "";
 }
 
 export function dismissWords(kind) {
-  return kind === "dead_end" ? "It is meant to end here" : "Leave it as it is";
+  return kind === "dead_end" ? t("It is meant to end here") : t("Leave it as it is");
 }

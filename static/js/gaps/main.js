@@ -5,6 +5,7 @@ import { byId } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { say, toast } from "../page/toast.js";
+import { t } from "../text.js";
 import { countText, whenText } from "../units.js";
 import * as layer from "./gap_layer.js";
 import { mountGapList } from "./gap_list.js";
@@ -38,8 +39,8 @@ const list = mountGapList({
 });
 const panel = mountGapPanel(page.canCurate, {
   repair,
-  dismiss: (note) => act(() => post(`/gaps/${chosen.id}/dismiss`, { note }), "Left as it is.", (id) => post(`/gaps/${id}/reopen`)),
-  reopen: () => act(() => post(`/gaps/${chosen.id}/reopen`), "On the open list again."),
+  dismiss: (note) => act(() => post(`/gaps/${chosen.id}/dismiss`, { note }), t("Left as it is."), (id) => post(`/gaps/${id}/reopen`)),
+  reopen: () => act(() => post(`/gaps/${chosen.id}/reopen`), t("On the open list again.")),
   preview: (collection) => layer.showRepair(map.map, collection),
   place: startPlacing,
   placeDone: (offer) => repair({ action: offer.action, positions: placed.positions }),
@@ -70,7 +71,7 @@ async function load({ more = false } = {}) {
     next = data.next;
     draw();
   } catch (error) {
-    toast(error.message, { label: "Try again", act: () => load({ more }) });
+    toast(error.message, { label: t("Try again"), act: () => load({ more }) });
   }
 }
 
@@ -91,7 +92,7 @@ async function look() {
       if (chosen && placed === null) await refreshChosen();
     }
   } catch {
-    byId("page-facts").textContent = "The server cannot be reached. Trying again.";
+    byId("page-facts").textContent = t("The server cannot be reached. Trying again.");
   }
 }
 
@@ -107,8 +108,8 @@ function tellFacts() {
   const open = Object.values(summary.kinds).reduce((total, byState) => total + byState.open, 0);
   const facts = byId("page-facts");
   facts.dataset.searching = String(!summary.is_current);
-  if (!summary.searched_at) facts.textContent = summary.is_current ? "Nothing to search yet" : "Searching the ground…";
-  else facts.textContent = `${countText(open, "gap")} open · ${summary.is_current ? `searched ${whenText(summary.searched_at)}` : "searching the changed ground…"}`;
+  if (!summary.searched_at) facts.textContent = summary.is_current ? t("Nothing to search yet") : t("Searching the ground…");
+  else facts.textContent = `${countText(open, "gap")} open · ${summary.is_current ? `searched ${whenText(summary.searched_at)}` : t("searching the changed ground…")}`;
 }
 
 async function choose(id, { stay = false } = {}) {
@@ -137,7 +138,7 @@ async function choose(id, { stay = false } = {}) {
     if (!stay) map.fit(boxOf(data));
     say(data.properties.sentence);
   } catch (error) {
-    toast(error.status === 404 ? "This gap is gone: its asset was taken away." : error.message);
+    toast(error.status === 404 ? t("This gap is gone: its asset was taken away.") : error.message);
   }
 }
 
@@ -174,8 +175,8 @@ async function repair(body) {
   try {
     const { data } = await post(`/gaps/${id}/repair`, body);
     stopPlacing();
-    const undo = () => settle(post(`/gaps/${id}/undo`, { entries: data.entries }), "Taken back.", id);
-    toast(data.said, { label: "Undo", act: undo });
+    const undo = () => settle(post(`/gaps/${id}/undo`, { entries: data.entries }), t("Taken back."), id);
+    toast(data.said, { label: t("Undo"), act: undo });
     await afterChange(id);
   } catch (error) {
     panel.busy(false);
@@ -189,7 +190,7 @@ async function act(change, words, back = null) {
   panel.busy(true);
   try {
     await change();
-    toast(words, back && { label: "Undo", act: () => settle(back(id), "On the open list again.", id) });
+    toast(words, back && { label: t("Undo"), act: () => settle(back(id), t("On the open list again."), id) });
     await afterChange(id);
   } catch (error) {
     panel.busy(false);
@@ -250,10 +251,10 @@ const showChosen = () => {
 
 open({
   bindings: [
-    { keys: ["/"], words: "Find", act: list.focusText },
-    { keys: ["j"], words: "Next gap", act: () => list.step(1) },
-    { keys: ["k"], words: "Previous gap", act: () => list.step(-1) },
-    { keys: ["enter"], words: "Show it on the map", act: showChosen },
+    { keys: ["/"], words: t("Find"), act: list.focusText },
+    { keys: ["j"], words: t("Next gap"), act: () => list.step(1) },
+    { keys: ["k"], words: t("Previous gap"), act: () => list.step(-1) },
+    { keys: ["enter"], words: t("Show it on the map"), act: showChosen },
     { keys: ["escape"], act: () => (placed ? (stopPlacing(), panel.show(chosen)) : chosen ? choose(null) : false) },
   ],
   async load() {

@@ -1,6 +1,7 @@
 /** Somebody else was faster: both versions side by side, and nothing is overwritten unseen. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
 import { clockText } from "../units.js";
 import { differences } from "./history_list.js";
 
@@ -18,14 +19,14 @@ export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
       "dialog",
       { "aria-labelledby": "conflict-title" },
       h("h2", { id: "conflict-title" }, `Changed by ${changed_by}${changed_at ? ` at ${clockText(changed_at)}` : ""}`),
-      h("p", {}, theirs ? "Nothing of yours is stored yet." : "It was taken off the ground. Nothing of yours is stored."),
-      theirs && [h("h3", {}, "What they changed"), list(differences(seen, theirs)), h("h3", {}, "What yours would change of that"), list(differences(theirs, mine))],
+      h("p", {}, theirs ? t("Nothing of yours is stored yet.") : t("It was taken off the ground. Nothing of yours is stored.")),
+      theirs && [h("h3", {}, t("What they changed")), list(differences(seen, theirs)), h("h3", {}, t("What yours would change of that")), list(differences(theirs, mine))],
       h(
         "div",
         { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: answer(null) }, "Go on editing"),
-        h("button", { type: "button", class: "button", onclick: answer("theirs") }, "Take theirs"),
-        theirs && h("button", { type: "button", class: "button danger", onclick: answer("mine") }, "Store mine over it"),
+        h("button", { type: "button", class: "button", onclick: answer(null) }, t("Go on editing")),
+        h("button", { type: "button", class: "button", onclick: answer("theirs") }, t("Take theirs")),
+        theirs && h("button", { type: "button", class: "button danger", onclick: answer("mine") }, t("Store mine over it")),
       ),
     );
     dialog.addEventListener("cancel", (event) => (event.preventDefault(), answer(null)()));

@@ -8,6 +8,7 @@ import { createMap } from "../map/map_view.js";
 import { rememberedUnder, rememberUnder, underChoices } from "../map/under.js";
 import { toggleMenu } from "../page/chrome.js";
 import { onTheme } from "../page/theme.js";
+import { t } from "../text.js";
 
 const SETTLED_MS = 350;
 const NEAR_ZOOM = 14;
@@ -22,7 +23,7 @@ export function mountGroundMap(page, on = {}) {
   const frame = container.parentElement;
   let under = rememberedUnder(page);
   let ground = null;
-  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: "Map", bounds: page.extent, extent: page.extent });
+  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: t("Map"), bounds: page.extent, extent: page.extent });
   const { map } = view;
   const hidden = new Set();
   const repainted = new Set();

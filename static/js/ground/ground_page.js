@@ -4,6 +4,7 @@ import { get } from "../api.js";
 import { byId } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountWorkbench } from "../page/workbench.js";
+import { t } from "../text.js";
 import { mountGroundMap } from "./ground_map.js";
 
 /**
@@ -19,11 +20,11 @@ export function mountGroundPage(on = {}) {
     startChrome({
       bindings: [
         ...bindings,
-        { keys: ["f"], words: "Fit everything", act: () => map.fitAll() },
-        { keys: ["+", "="], words: "Zoom in", act: () => map.zoom(1) },
-        { keys: ["-"], words: "Zoom out", act: () => map.zoom(-1) },
-        { keys: ["["], words: "Fold the side", act: layout.foldSide },
-        { keys: ["]"], words: "Fold the dock", act: layout.foldDock },
+        { keys: ["f"], words: t("Fit everything"), act: () => map.fitAll() },
+        { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
+        { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
+        { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
+        { keys: ["]"], words: t("Fold the dock"), act: layout.foldDock },
       ],
     });
     map.setGround((await get("/ground")).data);

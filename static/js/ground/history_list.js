@@ -1,16 +1,17 @@
 /** The history of an asset or a zone: who, when, from what to what, and the way back. */
 
 import { h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { clockText, whenText } from "../units.js";
 
 const ACTS = {
   created: "Drawn", changed: "Changed", deleted: "Taken off the ground", vanished: "No longer in its source", reverted: "Brought back to an earlier state",
-  restored: "Restored", "followed source": "Follows its source again", imported: "Imported",
+  restored: "Restored", "followed source": t("Follows its source again"), imported: "Imported",
 };
 const NAMES = {
-  ref: "Ref", name: "Name", operator: "Operator", voltages_v: "Voltages", circuits: "Circuits", height_m: "Height", is_flyable: "Part of the network", subtype: "Type",
-  geometry: "Shape", tags: "Tags", vanished: "Off the ground", restriction: "Restriction", reason: "Reason", schedule: "Schedule", circle: "Circle",
-  lower_limit_m: "Lower limit", lower_reference: "Lower limit counted", upper_limit_m: "Upper limit", upper_reference: "Upper limit counted", kind: "Kind", identifier: "Identifier",
+  ref: t("Ref"), name: "Name", operator: t("Operator"), voltages_v: t("Voltages"), circuits: t("Circuits"), height_m: t("Height"), is_flyable: t("Part of the network"), subtype: "Type",
+  geometry: t("Shape"), tags: t("Tags"), vanished: "Off the ground", restriction: t("Restriction"), reason: t("Reason"), schedule: t("Schedule"), circle: t("Circle"),
+  lower_limit_m: t("Lower limit"), lower_reference: t("Lower limit counted"), upper_limit_m: t("Upper limit"), upper_reference: t("Upper limit counted"), kind: "Kind", identifier: t("Identifier"),
 };
 const QUIET = new Set(["is_edited", "layer", "osm_type", "osm_id", "source_key", "max_voltage_v"]);
 
@@ -18,7 +19,7 @@ export const factName = (name) => NAMES[name] ?? name;
 
 /** A fact as people say it. */
 export function factText(name, value) {
-  if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length)) return "not stated";
+  if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length)) return t("not stated");
   if (name === "voltages_v") return value.map((volts) => `${volts / 1000}\u00a0kV`).join(", ");
   if (name === "geometry") return `${countPoints(value.coordinates)} points`;
   if (name.endsWith("_m")) return `${Math.round(value * 10) / 10}\u00a0m`;
@@ -53,9 +54,9 @@ export function historyList(entries, { revert = null, ring = () => {} } = {}) {
       h(
         "li",
         entry.before?.geometry ? { onpointerenter: () => ring([entry.before.geometry]), onpointerleave: () => ring() } : {},
-        h("div", { class: "history-head" }, h("strong", {}, ACTS[entry.action] ?? entry.action), h("span", { class: "caption", title: new Date(entry.recorded_at).toString() }, [entry.actor ?? (entry.file_name ? `from ${entry.file_name}` : "by a command"), momentText(entry.recorded_at)].join(" · "))),
+        h("div", { class: "history-head" }, h("strong", {}, ACTS[entry.action] ?? entry.action), h("span", { class: "caption", title: new Date(entry.recorded_at).toString() }, [entry.actor ?? (entry.file_name ? `from ${entry.file_name}` : t("by a command")), momentText(entry.recorded_at)].join(" · "))),
         h("dl", {}, differences(entry.before, entry.after).map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words)))),
-        revert && entry.id && entry.before && h("button", { type: "button", class: "text-button", onclick: () => revert(entry) }, icon("undo-2", "small"), "Bring back what was before"),
+        revert && entry.id && entry.before && h("button", { type: "button", class: "text-button", onclick: () => revert(entry) }, icon("undo-2", "small"), t("Bring back what was before")),
       ),
     ),
   );

@@ -14,6 +14,7 @@ import { piecesOf } from "../map/click_router.js";
 import { boxAround } from "../map/map_view.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { say, toast } from "../page/toast.js";
+import { t } from "../text.js";
 import { whenText } from "../units.js";
 import { askWhich } from "./conflict.js";
 import { createDraft } from "./draft.js";
@@ -72,7 +73,7 @@ export function mountRecordPage(about) {
   }
 
   const failed = (error, act) => {
-    toast(error.message, act ? { label: "Try again", act } : null);
+    toast(error.message, act ? { label: t("Try again"), act } : null);
     if (!(error instanceof ApiError)) throw error;
   };
 
@@ -115,7 +116,7 @@ export function mountRecordPage(about) {
     const none = byId("record-none");
     none.hidden = features.length > 0;
     if (!features.length) none.replaceChildren(...about.nothing());
-    byId("page-facts").textContent = features.length ? `${features.length}${next ? " or more" : ""} found` : "";
+    byId("page-facts").textContent = features.length ? `${features.length}${next ? ` ${t("or more")}` : ""} found` : "";
   }
 
   // look
@@ -161,7 +162,7 @@ export function mountRecordPage(about) {
         failed(error, more);
       }
     };
-    if (earlier) part.append(h("button", { type: "button", class: "text-button", onclick: more }, "Earlier changes"));
+    if (earlier) part.append(h("button", { type: "button", class: "text-button", onclick: more }, t("Earlier changes")));
     return part;
   }
 
@@ -169,16 +170,16 @@ export function mountRecordPage(about) {
     const { feature } = chosen;
     const isGone = feature.properties.vanished_at;
     const acts = page.canCurate && [
-      h("button", { type: "button", class: "button primary", onclick: () => startEdit(feature), disabled: Boolean(isGone) }, icon("pencil", "small"), "Edit"),
-      feature.properties.follows && h("button", { type: "button", class: "button", onclick: follow }, "Follow the source again"),
-      !isGone && h("button", { type: "button", class: "button danger", onclick: takeOff }, icon("trash-2", "small"), "Delete"),
+      h("button", { type: "button", class: "button primary", onclick: () => startEdit(feature), disabled: Boolean(isGone) }, icon("pencil", "small"), t("Edit")),
+      feature.properties.follows && h("button", { type: "button", class: "button", onclick: follow }, t("Follow the source again")),
+      !isGone && h("button", { type: "button", class: "button danger", onclick: takeOff }, icon("trash-2", "small"), t("Delete")),
     ];
     views.show.replaceChildren(
       h("button", { type: "button", class: "text-button back", onclick: () => back() }, icon("arrow-left", "small"), about.backWords),
       h("h2", { class: "record-title", tabindex: -1 }, about.title(feature)),
       ...about.details(feature),
       h("div", { class: "record-acts" }, acts || []),
-      h("h3", {}, icon("history", "small"), "History"),
+      h("h3", {}, icon("history", "small"), t("History")),
       historyPart(history),
     );
   }
@@ -198,7 +199,7 @@ export function mountRecordPage(about) {
       if (words) toast(words);
       await load();
     } catch (error) {
-      if (error.status === 412) toast(`${error.message}`, { label: "Look", act: () => choose(chosen.feature.id) });
+      if (error.status === 412) toast(`${error.message}`, { label: t("Look"), act: () => choose(chosen.feature.id) });
       else failed(error);
     }
   }
@@ -207,12 +208,12 @@ export function mountRecordPage(about) {
 
   function follow() {
     const { id } = chosen.feature;
-    change(async () => (await post(`${about.path}/${id}/follow-source`, undefined, match(chosen.etag)), await choose(id, { stay: true })), "It follows its source again.");
+    change(async () => (await post(`${about.path}/${id}/follow-source`, undefined, match(chosen.etag)), await choose(id, { stay: true })), t("It follows its source again."));
   }
 
   function revert(entry) {
     const { id } = chosen.feature;
-    change(async () => (await post(`${about.path}/${id}/revert`, { entry: entry.id }, match(chosen.etag)), await choose(id, { stay: true })), "What was before is back.");
+    change(async () => (await post(`${about.path}/${id}/revert`, { entry: entry.id }, match(chosen.etag)), await choose(id, { stay: true })), t("What was before is back."));
   }
 
   function takeOff() {
@@ -222,7 +223,7 @@ export function mountRecordPage(about) {
       await remove(`${about.path}/${id}`, match(chosen.etag));
       const { data } = await get(`${about.path}/${id}/history`);
       back();
-      toast(`${name} is taken off the ground.`, { label: "Undo", act: () => change(async () => (await post(`/history/${data.results[0].id}/undo`), await choose(id, { stay: true })), "It is back.") });
+      toast(`${name} is taken off the ground.`, { label: t("Undo"), act: () => change(async () => (await post(`/history/${data.results[0].id}/undo`), await choose(id, { stay: true })), t("It is back.")) });
     });
   }
 
@@ -238,9 +239,9 @@ export function mountRecordPage(about) {
     views.edit.replaceChildren(
       h("h2", { class: "record-title", tabindex: -1 }, feature ? about.title(feature) : about.newTitle(choice)),
       h("div", { id: "edit-fault" }),
-      h("h3", {}, "Shape"),
+      h("h3", {}, t("Shape")),
       panel.element,
-      h("h3", {}, "Facts"),
+      h("h3", {}, t("Facts")),
       form.element,
     );
     go("edit");
@@ -291,7 +292,7 @@ export function mountRecordPage(about) {
     leaveEdit();
     if (chosen) choose(chosen.feature.id, { stay: true });
     else go("find");
-    if (left) toast("Your edit is dropped.", { label: "Undo", act: () => !edit && goOnWith(left) });
+    if (left) toast("Your edit is dropped.", { label: t("Undo"), act: () => !edit && goOnWith(left) });
   }
 
   function shapeChange(shape) {
@@ -310,7 +311,7 @@ export function mountRecordPage(about) {
     const fault = error.code === "invalid_geometry" ? error.details : null;
     const words = fault?.message ? `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.` : error.message;
     byId("edit-fault").replaceChildren(
-      h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, "Not saved. "), words, " ", fault?.position && h("button", { type: "button", class: "text-button", onclick: () => showPlace(fault.position) }, "See the place"))),
+      h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, `${t("Not saved.")} `), words, " ", fault?.position && h("button", { type: "button", class: "text-button", onclick: () => showPlace(fault.position) }, t("See the place")))),
     );
     byId("side-scroll").scrollTop = 0;
   }
@@ -388,7 +389,7 @@ export function mountRecordPage(about) {
         "div",
         { class: "notice advisory" },
         icon("info"),
-        h("p", {}, h("strong", {}, "An edit was not saved. "), `It is from ${whenText(kept.kept_at)}. `, h("button", { type: "button", class: "text-button", onclick: goOn }, "Go on"), h("button", { type: "button", class: "text-button", onclick: () => (draft.drop(), byId("notices").replaceChildren()) }, "Throw it away")),
+        h("p", {}, h("strong", {}, `${t("An edit was not saved.")} `), `It is from ${whenText(kept.kept_at)}. `, h("button", { type: "button", class: "text-button", onclick: goOn }, t("Go on")), h("button", { type: "button", class: "text-button", onclick: () => (draft.drop(), byId("notices").replaceChildren()) }, t("Throw it away"))),
       ),
     );
   }
@@ -400,7 +401,7 @@ export function mountRecordPage(about) {
     const opener = byId("record-new");
     opener.hidden = false;
     const items = () => about.newChoices.map((choice) => ({ icon: choice.icon, label: choice.words, act: () => ((chosen = null), startEdit(null, { choice: choice.value })) }));
-    opener.addEventListener("click", () => (about.newChoices.length > 1 ? toggleMenu(opener, () => menuOf("New", items())) : items()[0].act()));
+    opener.addEventListener("click", () => (about.newChoices.length > 1 ? toggleMenu(opener, () => menuOf(t("New"), items())) : items()[0].act()));
   }
   map.onRecolour(() => editor.recolour());
 
@@ -414,19 +415,19 @@ export function mountRecordPage(about) {
   const arrow = (right, down) => (event) => (edit && !event.target.matches?.("input, textarea, select") ? editor.nudge(right * (event.shiftKey ? 10 : 1), down * (event.shiftKey ? 10 : 1)) : false);
   const bindings = [
     { keys: ["/"], words: about.findWords, act: () => (views.find.hidden ? false : byId("record-text").focus()) },
-    { keys: ["j"], words: "Next in the list", act: step(1) },
-    { keys: ["k"], words: "Previous in the list", act: step(-1) },
-    { keys: ["e"], words: "Edit", act: () => (chosen && !edit && page.canCurate ? startEdit(chosen.feature) : false) },
-    { keys: ["mod+z"], words: "Undo", act: whenEditing(editor.undo) },
-    { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: whenEditing(editor.redo) },
-    { keys: ["mod+s"], words: "Save", whileTyping: true, act: () => (edit ? (save(), true) : false) },
-    { keys: ["enter"], words: "End the drawing", act: (event) => (edit && !event.target.matches?.("button, a, summary, input") ? editor.finish() : false) },
-    { keys: ["delete", "backspace"], words: "Remove the chosen point", act: whenEditing(() => (editor.state.isDrawing ? editor.back() : editor.removeChosen())) },
+    { keys: ["j"], words: t("Next in the list"), act: step(1) },
+    { keys: ["k"], words: t("Previous in the list"), act: step(-1) },
+    { keys: ["e"], words: t("Edit"), act: () => (chosen && !edit && page.canCurate ? startEdit(chosen.feature) : false) },
+    { keys: ["mod+z"], words: t("Undo"), act: whenEditing(editor.undo) },
+    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: whenEditing(editor.redo) },
+    { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (edit ? (save(), true) : false) },
+    { keys: ["enter"], words: t("End the drawing"), act: (event) => (edit && !event.target.matches?.("button, a, summary, input") ? editor.finish() : false) },
+    { keys: ["delete", "backspace"], words: t("Remove the chosen point"), act: whenEditing(() => (editor.state.isDrawing ? editor.back() : editor.removeChosen())) },
     { keys: ["arrowleft", "shift+arrowleft"], act: arrow(-1, 0) },
     { keys: ["arrowright", "shift+arrowright"], act: arrow(1, 0) },
     { keys: ["arrowup", "shift+arrowup"], act: arrow(0, -1) },
     { keys: ["arrowdown", "shift+arrowdown"], act: arrow(0, 1) },
-    { keys: ["escape"], words: "A step back", act: () => (edit ? editor.back() || cancel() : chosen ? back() : false) },
+    { keys: ["escape"], words: t("A step back"), act: () => (edit ? editor.back() || cancel() : chosen ? back() : false) },
   ];
 
   async function start() {

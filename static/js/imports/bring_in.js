@@ -3,6 +3,7 @@
 import { ApiError, post } from "../api.js";
 import { byId, h, keyedList } from "../dom.js";
 import { say, toast } from "../page/toast.js";
+import { t } from "../text.js";
 import { fileCard } from "./file_card.js";
 import { guessKind, HEAD_BYTES, setNameOf } from "./kinds.js";
 import { createRememberedUploads, markOf } from "./remembered_uploads.js";
@@ -167,5 +168,5 @@ function listenToDrops(drop, take) {
 
 /** Said instead of the tools where somebody may not bring data in. */
 export function notAllowed() {
-  return h("div", { class: "notice advisory" }, h("p", {}, h("strong", {}, "Only curators bring data in."), " Ask an administrator for the curator role."));
+  return h("div", { class: "notice advisory" }, h("p", {}, h("strong", {}, t("Only curators bring data in.")), ` ${t("Ask an administrator for the curator role.")}`));
 }

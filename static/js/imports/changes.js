@@ -1,9 +1,10 @@
 /** The lines of a difference: counts as filters, what was and what would be, linked with the map. */
 
 import { byId, h, keyedList } from "../dom.js";
+import { t } from "../text.js";
 import { ACTIONS, factLines } from "./words.js";
 
-const SUBJECTS = { tower: "Tower", line: "Line", railway: "Railway", bridge: "Bridge", zone: "Zone", terrain: "Terrain" };
+const SUBJECTS = { tower: t("Tower"), line: t("Line"), railway: t("Railway"), bridge: t("Bridge"), zone: t("Zone"), terrain: t("Terrain") };
 
 /** acts: { filter(action), point(change or null), show(change), more() } */
 export function mountChanges(store, acts) {
@@ -63,7 +64,7 @@ function shortOf(properties) {
 function factsOf(properties) {
   const lines = factLines(properties);
   const isPair = properties.before !== null && properties.after !== null;
-  if (!lines.length) return h("p", { class: "change-facts caption" }, "Nothing else is known of it.");
+  if (!lines.length) return h("p", { class: "change-facts caption" }, t("Nothing else is known of it."));
   const value = (text, kind) => h("span", { class: kind }, text);
   return h(
     "dl",
@@ -73,7 +74,7 @@ function factsOf(properties) {
         "div",
         {},
         h("dt", {}, words),
-        h("dd", {}, isPair ? [h("span", { class: "unseen" }, "before "), value(before, "before"), h("span", { "aria-hidden": "true" }, " → "), h("span", { class: "unseen" }, ", after "), value(after, "after")] : value(after ?? before, "after")),
+        h("dd", {}, isPair ? [h("span", { class: "unseen" }, "before "), value(before, "before"), h("span", { "aria-hidden": "true" }, " → "), h("span", { class: "unseen" }, `${t(", after")} `), value(after, "after")] : value(after ?? before, "after")),
       ),
     ),
   );
@@ -84,10 +85,10 @@ function drawFilters(current, action, acts) {
   const counted = Object.keys(ACTIONS).filter((name) => current?.difference[name] > 0);
   place.hidden = counted.length === 0;
   const all = counted.reduce((sum, name) => sum + current.difference[name], 0);
-  const choices = [["", "", "All", all], ...counted.map((name) => [name, ACTIONS[name].sign, ACTIONS[name].short, current.difference[name]])];
+  const choices = [["", "", t("All"), all], ...counted.map((name) => [name, ACTIONS[name].sign, ACTIONS[name].short, current.difference[name]])];
   const had = place.contains(document.activeElement) ? document.activeElement.value : null;
   place.replaceChildren(
-    h("legend", { class: "unseen" }, "Which changes"),
+    h("legend", { class: "unseen" }, t("Which changes")),
     ...choices.map(([value, sign, words, count]) =>
       h(
         "label",

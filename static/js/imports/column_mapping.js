@@ -1,24 +1,25 @@
 /** What the columns of an asset file become: each with samples of its values; the file is read again with the answer. */
 
 import { h, icon } from "../dom.js";
+import { t } from "../text.js";
 
-const KINDS = { tower: "Towers", line: "Power lines", railway: "Railways", bridge: "Bridges" };
+const KINDS = { tower: t("Towers"), line: t("Power lines"), railway: t("Railways"), bridge: t("Bridges") };
 const BY_GEOMETRY = "by_geometry";
 const BY_COLUMN = "column";
 const MEANINGS = {
   key: "Key: tells them apart",
   kind: "Kind of asset",
-  ref: "Reference",
+  ref: t("Reference"),
   name: "Name",
-  operator: "Operator",
-  "voltage:V": "Voltage in V",
-  "voltage:kV": "Voltage in kV",
-  circuits: "Circuits",
-  "height:m": "Height in m",
-  "height:ft": "Height in feet",
+  operator: t("Operator"),
+  "voltage:V": t("Voltage in V"),
+  "voltage:kV": t("Voltage in kV"),
+  circuits: t("Circuits"),
+  "height:m": t("Height in m"),
+  "height:ft": t("Height in feet"),
   subtype: "Type within its kind",
 };
-const PLACES = { lon: "Longitude, or x", lat: "Latitude, or y", wkt: "Geometry as WKT" };
+const PLACES = { lon: t("Longitude, or x"), lat: t("Latitude, or y"), wkt: t("Geometry as WKT") };
 
 /** "voltage:kV" → "voltage": a meaning that only one column can have. */
 const roleOf = (meaning) => meaning.split(":")[0];
@@ -75,7 +76,7 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
   const kind = h(
     "select",
     { class: "input", id: `${id}-kind` },
-    [["", "Choose"], [BY_GEOMETRY, "Points towers, lines power lines, areas bridges"], ...Object.entries(KINDS), [BY_COLUMN, "What a column says"]].map(option),
+    [["", t("Choose")], [BY_GEOMETRY, t("Points towers, lines power lines, areas bridges")], ...Object.entries(KINDS), [BY_COLUMN, t("What a column says")]].map(option),
   );
   kind.value = stated.kind?.column ? BY_COLUMN : (stated.kind ?? "");
   const values = h("div", { class: "kind-values" });
@@ -84,10 +85,10 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
   function drawValues() {
     const name = Object.keys(meanings).find((known) => meanings[known] === "kind");
     const column = kind.value === BY_COLUMN && summary.columns.find((known) => known.name === name);
-    if (kind.value === BY_COLUMN && !column) return values.replaceChildren(h("p", { class: "caption" }, "Say below which column has the kind."));
+    if (kind.value === BY_COLUMN && !column) return values.replaceChildren(h("p", { class: "caption" }, t("Say below which column has the kind.")));
     values.replaceChildren(
       ...Object.entries((column && column.values) || {}).map(([value, rows], place) => {
-        const choice = h("select", { class: "input", id: `${id}-value-${place}` }, [["", "Left out"], ...Object.entries(KINDS)].map(option));
+        const choice = h("select", { class: "input", id: `${id}-value-${place}` }, [["", t("Left out")], ...Object.entries(KINDS)].map(option));
         choice.value = kindValues[value] ?? "";
         kindValues[value] = choice.value;
         choice.addEventListener("change", () => (kindValues[value] = choice.value));
@@ -108,14 +109,14 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
 
   const rows = summary.columns.map((column, place) => {
     const can = Object.entries(MEANINGS).filter(([meaning]) => meaning !== "kind" || column.values);
-    const choice = h("select", { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` }, [["", "Kept as a tag"], ...can, ...(isTable ? Object.entries(PLACES) : [])].map(option));
+    const choice = h("select", { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` }, [["", t("Kept as a tag")], ...can, ...(isTable ? Object.entries(PLACES) : [])].map(option));
     choices.set(column.name, choice);
     choice.addEventListener("change", () => {
       meanings = withMeaning(meanings, column.name, choice.value);
       if (choice.value === "kind") kind.value = BY_COLUMN;
       show();
     });
-    const samples = (column.samples ?? []).map(String).join(" · ") || "always empty";
+    const samples = (column.samples ?? []).map(String).join(" · ") || t("always empty");
     return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, column.name), h("span", { class: "caption", id: `${id}-${place}-samples`, title: samples }, samples)), choice);
   });
 
@@ -124,14 +125,14 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
   layer.value = summary.layer ?? "";
   const form = h(
     "form",
-    { class: "column-form", "aria-label": "What the columns are" },
-    (summary.layers ?? []).length > 1 && field("Layer", layer),
-    field("These are", kind),
+    { class: "column-form", "aria-label": t("What the columns are") },
+    (summary.layers ?? []).length > 1 && field(t("Layer"), layer),
+    field(t("These are"), kind),
     values,
-    h("p", { class: "field-label" }, "Columns"),
+    h("p", { class: "field-label" }, t("Columns")),
     rows,
-    field("Coordinate system", system, "Only where the file does not say it."),
-    h("div", { class: "row-acts" }, h("button", { type: "submit", class: summary.needs_mapping ? "button primary" : "button" }, icon("eye", "small"), "Show what would change")),
+    field(t("Coordinate system"), system, t("Only where the file does not say it.")),
+    h("div", { class: "row-acts" }, h("button", { type: "submit", class: summary.needs_mapping ? "button primary" : "button" }, icon("eye", "small"), t("Show what would change"))),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();
@@ -141,5 +142,5 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
     readAgain({ ...mapping, ...(crs || parameters.crs ? { crs: crs || null } : {}), ...(layer.options.length > 1 ? { layer: layer.value } : {}) });
   });
   show();
-  return h("details", { class: "import-facts", open: Boolean(summary.needs_mapping) }, h("summary", {}, "What the columns are"), form);
+  return h("details", { class: "import-facts", open: Boolean(summary.needs_mapping) }, h("summary", {}, t("What the columns are")), form);
 }

@@ -1,19 +1,20 @@
 /** One chosen file: what it is, where it comes from, and how far it is on its way. */
 
 import { h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { percentText } from "../units.js";
 import { KINDS, sizeText, VERTICAL_DATUMS } from "./words.js";
 
 const FIELDS = {
   osm: [],
-  zones: [["set_name", "Name of the set", "The set that this file is the newest state of"]],
-  assets: [["set_name", "Name of the set", "The set that this file is the newest state of"]],
-  terrain: [["vertical_datum", "Heights count from", "Where the file does not say it"]],
+  zones: [["set_name", t("Name of the set"), t("The set that this file is the newest state of")]],
+  assets: [["set_name", t("Name of the set"), t("The set that this file is the newest state of")]],
+  terrain: [["vertical_datum", t("Heights count from"), t("Where the file does not say it")]],
 };
 const PROVENANCE = [
-  ["licence", "Licence", "CC BY 4.0"],
-  ["attribution", "Attribution", "Who must be named"],
-  ["source_address", "Address", "https://…"],
+  ["licence", t("Licence"), "CC BY 4.0"],
+  ["attribution", t("Attribution"), t("Who must be named")],
+  ["source_address", t("Address"), "https://…"],
 ];
 let count = 0;
 
@@ -30,7 +31,7 @@ export function fileCard(item, acts) {
   const form = h(
     "form",
     { class: "stack", id: `${id}-form`, "aria-label": item.name, onsubmit: (event) => (event.preventDefault(), acts.start(item)) },
-    h("div", { class: "field" }, h("label", { for: `${id}-kind` }, "What it is"), kind),
+    h("div", { class: "field" }, h("label", { for: `${id}-kind` }, t("What it is")), kind),
     fields,
   );
   const element = h(
@@ -41,7 +42,7 @@ export function fileCard(item, acts) {
       { class: "file-head" },
       icon("file"),
       h("span", { class: "file-name" }, h("strong", {}, item.name), h("span", { class: "caption" }, sizeText(item.size))),
-      h("button", { type: "button", class: "icon-button tight", "aria-label": `Take ${item.name} off`, title: "Take it off", onclick: () => acts.drop(item) }, icon("x", "small")),
+      h("button", { type: "button", class: "icon-button tight", "aria-label": `Take ${item.name} off`, title: t("Take it off"), onclick: () => acts.drop(item) }, icon("x", "small")),
     ),
     form,
     status,
@@ -74,11 +75,11 @@ export function fileCard(item, acts) {
         h("div", { class: "field" }, h("label", { for: `${id}-${name}` }, words), name === "vertical_datum" ? datumChoice(name) : input("parameters", name, hint)),
       ),
       item.kind === "osm"
-        ? h("p", { class: "caption" }, "© OpenStreetMap contributors, ODbL.")
+        ? h("p", { class: "caption" }, t("© OpenStreetMap contributors, ODbL."))
         : h(
             "details",
             { open: item.kind === "zones" },
-            h("summary", {}, "Where it comes from"),
+            h("summary", {}, t("Where it comes from")),
             h("div", { class: "stack" }, PROVENANCE.map(([name, words, hint]) => h("div", { class: "field" }, h("label", { for: `${id}-${name}` }, words), input("provenance", name, hint, name === "source_address")))),
           ),
     );
@@ -110,23 +111,23 @@ function statusOf(item, acts, formId) {
   const share = () => h("span", { dataset: { share: "" } });
   const button = (words, act, look = "") => h("button", { type: "button", class: `button ${look}`.trim(), onclick: act }, words);
   const bar = () => h("div", { class: "progress", role: "progressbar", "aria-label": `Sending ${item.name}`, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
-  if (item.phase === "sending") return [h("div", { class: "job-words" }, h("span", {}, "Sending"), share()), bar(), h("div", { class: "row-acts" }, button("Stop", () => acts.stop(item)))];
-  if (item.phase === "starting") return [h("div", { class: "job-words" }, h("span", { role: "status" }, "Sent. It will be read now."))];
+  if (item.phase === "sending") return [h("div", { class: "job-words" }, h("span", {}, t("Sending")), share()), bar(), h("div", { class: "row-acts" }, button(t("Stop"), () => acts.stop(item)))];
+  if (item.phase === "starting") return [h("div", { class: "job-words" }, h("span", { role: "status" }, t("Sent. It will be read now.")))];
   if (item.phase === "waiting") {
     const wait = h("span", { dataset: { wait: "" } });
     return [
-      h("div", { class: "notice warning" }, icon("cloud-off"), h("p", {}, h("strong", { role: "status" }, "The connection was cut."), " ", share(), " is there and stays. Next try in ", wait, ". ", h("button", { type: "button", class: "text-button", onclick: () => item.wake?.() }, "Try now"))),
+      h("div", { class: "notice warning" }, icon("cloud-off"), h("p", {}, h("strong", { role: "status" }, t("The connection was cut.")), " ", share(), ` ${t("is there and stays. Next try in")} `, wait, ". ", h("button", { type: "button", class: "text-button", onclick: () => item.wake?.() }, t("Try now")))),
       bar(),
-      h("div", { class: "row-acts" }, button("Stop", () => acts.stop(item))),
+      h("div", { class: "row-acts" }, button(t("Stop"), () => acts.stop(item))),
     ];
   }
   if (item.phase === "lost") {
     return [
-      h("p", {}, share(), " is there already. Choose the same file again, and it goes on from there."),
-      h("div", { class: "row-acts" }, button("Choose the file", () => acts.choose(item))),
+      h("p", {}, share(), ` ${t("is there already. Choose the same file again, and it goes on from there.")}`),
+      h("div", { class: "row-acts" }, button(t("Choose the file"), () => acts.choose(item))),
     ];
   }
   const problem = item.phase === "failed" && h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", { dataset: { problem: "" } }));
-  const submit = h("button", { type: "submit", form: formId, class: "button primary" }, "Read the file"); // Enter in a field does the same
+  const submit = h("button", { type: "submit", form: formId, class: "button primary" }, t("Read the file")); // Enter in a field does the same
   return [problem, h("div", { class: "row-acts" }, submit)].filter(Boolean);
 }

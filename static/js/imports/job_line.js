@@ -1,6 +1,7 @@
 /** How far a job is, and the way to stop it. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
 import { percentText } from "../units.js";
 
 /** Returns { element, refresh(job) }; `cancel()` asks the job to stop. */
@@ -8,13 +9,13 @@ export function jobLine(what, cancel) {
   const words = h("span", {});
   const share = h("span", {});
   const bar = h("div", { class: "progress", role: "progressbar", "aria-label": what, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
-  const stop = h("button", { type: "button", class: "button", "aria-label": `Cancel: ${what}` }, "Cancel");
+  const stop = h("button", { type: "button", class: "button", "aria-label": `Cancel: ${what}` }, t("Cancel"));
   stop.addEventListener("click", () => {
     stop.disabled = true;
-    stop.textContent = "Stopping";
+    stop.textContent = t("Stopping");
     cancel().catch(() => {
       stop.disabled = false;
-      stop.textContent = "Cancel";
+      stop.textContent = t("Cancel");
     });
   });
   const element = h("div", { class: "import-job" }, h("div", { class: "job-words" }, words, share), bar, h("div", { class: "row-acts" }, stop));

@@ -1,6 +1,7 @@
 /** The list of what has come in, newest first. */
 
 import { byId, h, icon, keyedList } from "../dom.js";
+import { t } from "../text.js";
 import { percentText, whenText } from "../units.js";
 import { differenceSentence, isOpen, KINDS, ORIGINS, STATES, terrainSentence } from "./words.js";
 
@@ -57,7 +58,7 @@ export const titleOf = (proposal) => proposal.file_name || `${KINDS[proposal.kin
 
 function whatOf({ kind, summary, difference }) {
   const sentence = kind === "terrain" && summary.vertical_datum ? terrainSentence(summary, {}) : differenceSentence(difference);
-  return summary.needs_mapping ? "Columns to be explained" : sentence.replace(/\.$/, "");
+  return summary.needs_mapping ? t("Columns to be explained") : sentence.replace(/\.$/, "");
 }
 
 function secondLine(proposal) {

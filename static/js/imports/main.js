@@ -6,6 +6,7 @@ import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { say, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
+import { t } from "../text.js";
 import { countText } from "../units.js";
 import { mountBringIn, notAllowed } from "./bring_in.js";
 import { createChangesLayer, positionsOf } from "./changes_layer.js";
@@ -44,7 +45,7 @@ const changeAt = (point) => {
 
 function tell(error, title) {
   if (!(error instanceof ApiError)) throw error;
-  const words = error.isSignedOut ? ["Sign in to go on. ", h("a", { class: "text-button", href: signInAddress() }, "Sign in")] : [error.message];
+  const words = error.isSignedOut ? [`${t("Sign in to go on.")} `, h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))] : [error.message];
   byId("notices").replaceChildren(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, title), " ", ...words)));
 }
 const clearNotices = () => byId("notices").replaceChildren();
@@ -73,7 +74,7 @@ async function loadList({ more = false } = {}) {
 function tellFacts(proposals) {
   const waiting = proposals.filter(({ state }) => state === "ready").length;
   const working = proposals.filter(isOpen).length;
-  byId("page-facts").textContent = [working && `${working} being worked on`, waiting ? `${countText(waiting, "import")} to be decided` : "Nothing to be decided"].filter(Boolean).join(" · ");
+  byId("page-facts").textContent = [working && `${working} being worked on`, waiting ? `${countText(waiting, "import")} to be decided` : t("Nothing to be decided")].filter(Boolean).join(" · ");
 }
 
 const put = (proposal) => {
@@ -96,7 +97,7 @@ async function openProposal(id, { isNew = true, focus = true } = {}) {
     if (focus) byId("proposal-title").focus({ preventScroll: true });
     await loadChanges({ fit: true });
   } catch (error) {
-    tell(error, error.status === 404 ? "This import is not there." : "Not opened.");
+    tell(error, error.status === 404 ? t("This import is not there.") : t("Not opened."));
   }
 }
 
@@ -186,20 +187,20 @@ const acts = {
       if (proposal.state === "reading") put((await post(`/imports/${proposal.id}/discard`, {})).data);
       else await post(`/jobs/${proposal.job.id}/cancel`, {});
     } catch (error) {
-      tell(error, "Not stopped.");
+      tell(error, t("Not stopped."));
       throw error;
     }
   },
-  apply: (overwrites) => decide("apply", "Not applied.", () => post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } })),
+  apply: (overwrites) => decide("apply", t("Not applied."), () => post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } })),
   async discard() {
     const { current } = store.state;
-    await decide("discard", "Not discarded.", () => post(`/imports/${current.id}/discard`, {}));
+    await decide("discard", t("Not discarded."), () => post(`/imports/${current.id}/discard`, {}));
     if (store.state.current?.state !== "discarded") return;
     closeProposal();
     toast(`“${titleOf(current)}” is discarded. Nothing of it counts.`);
   },
   async readAgain(parameters) {
-    await decide("read", "Not read again.", () => patch(`/imports/${store.state.current.id}`, { parameters }));
+    await decide("read", t("Not read again."), () => patch(`/imports/${store.state.current.id}`, { parameters }));
     store.update(NO_CHANGES);
     showChanges();
   },
@@ -252,7 +253,7 @@ async function look() {
     }
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    if (error.isSignedOut) tell(error, "You are signed out.");
+    if (error.isSignedOut) tell(error, t("You are signed out."));
   }
 }
 
@@ -283,7 +284,7 @@ if (page.canCurate) {
   });
   addEventListener("popstate", openWhatTheAddressNames);
   open({
-    bindings: [{ keys: ["u"], words: "Choose a file", act: () => (store.state.current ? closeProposal() : undefined, bringIn.choose()) }],
+    bindings: [{ keys: ["u"], words: t("Choose a file"), act: () => (store.state.current ? closeProposal() : undefined, bringIn.choose()) }],
     async load() {
       changesLayer = createChangesLayer(map);
       changesLayer.addTo();

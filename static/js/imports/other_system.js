@@ -1,6 +1,7 @@
 /** Of an asset file that was refused because nobody knows where its coordinates are: the system is asked for, and the file read again. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
 
 const isAboutTheSystem = ({ place, message }) => place === "crs" || /\bsystem\b/.test(message);
 
@@ -10,9 +11,9 @@ export function otherSystem({ kind, faults, parameters, size_bytes }, readAgain)
   const system = h("input", { class: "input", id: "other-system", placeholder: "EPSG:2056", value: parameters.crs ?? "", maxlength: "40", required: true, autocomplete: "off" });
   const form = h(
     "form",
-    { class: "column-form", "aria-label": "Coordinate system" },
-    h("div", { class: "field" }, h("label", { for: "other-system" }, "Coordinate system of the file"), system, h("span", { class: "caption" }, "A code such as EPSG:25832. Ask whoever made the file.")),
-    h("div", { class: "row-acts" }, h("button", { type: "submit", class: "button primary" }, "Read again in this system")),
+    { class: "column-form", "aria-label": t("Coordinate system") },
+    h("div", { class: "field" }, h("label", { for: "other-system" }, t("Coordinate system of the file")), system, h("span", { class: "caption" }, t("A code such as EPSG:25832. Ask whoever made the file."))),
+    h("div", { class: "row-acts" }, h("button", { type: "submit", class: "button primary" }, t("Read again in this system"))),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();

@@ -2,6 +2,7 @@
 
 import { byId, h, icon } from "../dom.js";
 import { open as openDialog } from "../page/keyboard.js";
+import { t } from "../text.js";
 import { coordinateText, whenText } from "../units.js";
 import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
@@ -40,7 +41,7 @@ export function mountProposal(store, acts) {
 
   function draw(proposal, busy) {
     const hadFocus = panel.contains(document.activeElement) && document.activeElement.id;
-    line = isOpen(proposal) ? jobLine(proposal.state === "reading" ? "Reading" : "Applying", () => acts.cancel(proposal)) : null;
+    line = isOpen(proposal) ? jobLine(proposal.state === "reading" ? t("Reading") : t("Applying"), () => acts.cancel(proposal)) : null;
     panel.replaceChildren(...head(proposal, acts), ...body(proposal).filter(Boolean));
     byId("changes-panel").hidden = proposal.kind === "terrain" || !["ready", "applying", "applied"].includes(proposal.state);
     foot.replaceChildren(...decision(proposal, busy));
@@ -56,7 +57,7 @@ export function mountProposal(store, acts) {
       line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
       state === "ready" || state === "applied" || state === "applying" ? h("p", { class: "import-sentence", id: "import-sentence", role: "status" }, sentenceOf(proposal)) : null,
-      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, difference.unchanged === 1 ? "1 is as it was." : `${difference.unchanged.toLocaleString("en-GB")} are as they were.`),
+      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, difference.unchanged === 1 ? t("1 is as it was.") : `${difference.unchanged.toLocaleString("en-GB")} are as they were.`),
       ...notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       mapping(proposal),
       regionChoice(proposal),
@@ -75,7 +76,7 @@ export function mountProposal(store, acts) {
   function leaveOut({ kind, faults, parameters, size_bytes }) {
     if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
     const again = () => acts.readAgain({ leave_out_faulty: true });
-    return h("button", { type: "button", class: "button", id: "leave-out", onclick: again }, "Read again without the faulty rows");
+    return h("button", { type: "button", class: "button", id: "leave-out", onclick: again }, t("Read again without the faulty rows"));
   }
 
   /** Another difference: the file is read again for it. */
@@ -83,7 +84,7 @@ export function mountProposal(store, acts) {
     if (kind !== "osm" || state !== "ready") return null;
     const box = h("input", { class: "check", type: "checkbox", id: "replace-region", checked: Boolean(parameters.replace_region) });
     box.addEventListener("change", () => acts.readAgain({ replace_region: box.checked }));
-    return h("label", { class: "overwrite", title: "Also what another file brought in vanishes where this one covers the ground and does not have it" }, box, h("span", {}, "Replace the whole region with this file"));
+    return h("label", { class: "overwrite", title: t("Also what another file brought in vanishes where this one covers the ground and does not have it") }, box, h("span", {}, t("Replace the whole region with this file")));
   }
 
   function overwriteChoice(proposal) {
@@ -103,19 +104,19 @@ export function mountProposal(store, acts) {
     const count = touched(proposal.difference, { overwrites });
     const needsMapping = Boolean(proposal.summary.needs_mapping);
     const isIdle = needsMapping || (count === 0 && Object.keys(proposal.difference).length > 0);
-    const words = busy === "apply" ? "Applying" : count && proposal.kind !== "terrain" ? `Apply ${count.toLocaleString("en-GB")} ${count === 1 ? "change" : "changes"}` : "Apply";
-    const apply = h("button", { type: "button", class: needsMapping ? "button" : "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: needsMapping ? "Say first what the columns are" : isIdle ? "Nothing would change" : null }, words);
+    const words = busy === "apply" ? t("Applying") : count && proposal.kind !== "terrain" ? `Apply ${count.toLocaleString("en-GB")} ${count === 1 ? "change" : "changes"}` : t("Apply");
+    const apply = h("button", { type: "button", class: needsMapping ? "button" : "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null }, words);
     apply.addEventListener("click", () => (overwrites ? askFirst(proposal) : acts.apply(false)));
     return [h("div", { class: "foot-buttons" }, discard(busy), apply)];
   }
 
   function discard(busy) {
-    return h("button", { type: "button", class: "button", id: "discard", disabled: Boolean(busy), onclick: () => acts.discard() }, "Discard");
+    return h("button", { type: "button", class: "button", id: "discard", disabled: Boolean(busy), onclick: () => acts.discard() }, t("Discard"));
   }
 
   function askFirst(proposal) {
     const kept = proposal.difference.kept;
-    const what = kept === 1 ? "1 row that was edited by hand is" : `${kept.toLocaleString("en-GB")} rows that were edited by hand are`;
+    const what = kept === 1 ? t("1 row that was edited by hand is") : `${kept.toLocaleString("en-GB")} rows that were edited by hand are`;
     const dialog = h(
       "dialog",
       { "aria-labelledby": "overwrite-title" },
@@ -124,8 +125,8 @@ export function mountProposal(store, acts) {
       h(
         "form",
         { method: "dialog", class: "acts" },
-        h("button", { class: "button", autofocus: true }, "Keep the edits"),
-        h("button", { class: "button danger filled", onclick: () => acts.apply(true) }, "Overwrite and apply"),
+        h("button", { class: "button", autofocus: true }, t("Keep the edits")),
+        h("button", { class: "button danger filled", onclick: () => acts.apply(true) }, t("Overwrite and apply")),
       ),
     );
     openDialog(dialog);
@@ -137,16 +138,16 @@ export function mountProposal(store, acts) {
 function sentenceOf({ kind, state, difference, summary }) {
   if (kind === "terrain" && summary.vertical_datum) return terrainSentence(summary, difference);
   const sentence = Object.keys(difference).length ? differenceSentence(difference) : "";
-  if (summary.needs_mapping) return summary.words || "Say what the columns are.";
-  return state === "ready" && !sentence ? "Ready to be applied." : sentence;
+  if (summary.needs_mapping) return summary.words || t("Say what the columns are.");
+  return state === "ready" && !sentence ? t("Ready to be applied.") : sentence;
 }
 
 function head(proposal, acts) {
   const parts = [KINDS[proposal.kind].words, ORIGINS[proposal.origin], sizeText(proposal.size_bytes)].filter(Boolean);
   const who = [proposal.created_by, whenText(proposal.created_at)].filter(Boolean).join(", ");
-  const decided = proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state) ? `${proposal.state === "discarded" ? "Discarded" : "Applied"} by ${proposal.decided_by}, ${whenText(proposal.decided_at)}` : "";
+  const decided = proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state) ? `${proposal.state === "discarded" ? t("Discarded") : t("Applied")} by ${proposal.decided_by}, ${whenText(proposal.decided_at)}` : "";
   return [
-    h("a", { class: "back", id: "back-to-imports", href: "/imports", onclick: (event) => (event.preventDefault(), acts.back()) }, icon("arrow-left", "small"), "All imports"),
+    h("a", { class: "back", id: "back-to-imports", href: "/imports", onclick: (event) => (event.preventDefault(), acts.back()) }, icon("arrow-left", "small"), t("All imports")),
     h("div", { class: "proposal-head" }, h("h2", { id: "proposal-title", tabindex: "-1" }, titleOf(proposal)), stateChip(proposal)),
     h("p", { class: "caption" }, `${parts.join(" · ")} · ${who}`),
     decided && h("p", { class: "caption" }, decided),
@@ -154,17 +155,17 @@ function head(proposal, acts) {
 }
 
 function refusal({ faults }, acts) {
-  const [first, ...rest] = faults.length ? faults : [{ place: "", message: "The file could not be read.", position: null }];
+  const [first, ...rest] = faults.length ? faults : [{ place: "", message: t("The file could not be read."), position: null }];
   const said = (fault, isFirst) => [
     h(isFirst ? "strong" : "span", {}, fault.place ? `${fault.place}: ${fault.message}` : fault.message),
-    isFirst && " Nothing was imported. ",
-    fault.position && h("button", { type: "button", class: "text-button", title: coordinateText(fault.position), onclick: () => acts.place(fault.position) }, "See the place"),
+    isFirst && ` ${t("Nothing was imported.")} `,
+    fault.position && h("button", { type: "button", class: "text-button", title: coordinateText(fault.position), onclick: () => acts.place(fault.position) }, t("See the place")),
   ];
   return h(
     "div",
     {},
     h("div", { class: "notice critical", role: "alert" }, icon("octagon-alert"), h("p", {}, said(first, true))),
-    rest.length > 0 && h("ul", { class: "faults", "aria-label": "Further faults" }, rest.map((fault) => h("li", {}, said(fault, false)))),
+    rest.length > 0 && h("ul", { class: "faults", "aria-label": t("Further faults") }, rest.map((fault) => h("li", {}, said(fault, false)))),
   );
 }
 
@@ -173,27 +174,27 @@ function facts({ summary, provenance, state }) {
   const lines = [
     ...summaryLines(summary),
     ...[["licence", "licence"], ["attribution", "attribution"], ["source_address", "address"]].filter(([name]) => provenance[name]).map(([name, words]) => ({ words, value: provenance[name] })),
-    ...(provenance.fetched_at ? [{ words: "fetched", value: whenText(provenance.fetched_at) }] : []),
+    ...(provenance.fetched_at ? [{ words: t("fetched"), value: whenText(provenance.fetched_at) }] : []),
   ];
   if (!lines.length) return null;
-  return h("details", { class: "import-facts" }, h("summary", {}, "What is in the file"), h("dl", {}, lines.map(({ words, value }) => h("div", {}, h("dt", {}, words), h("dd", {}, value)))));
+  return h("details", { class: "import-facts" }, h("summary", {}, t("What is in the file")), h("dl", {}, lines.map(({ words, value }) => h("div", {}, h("dt", {}, words), h("dd", {}, value)))));
 }
 
 /** Earlier states of a zone set, each one press away from being proposed again. */
 function versions(setName, acts) {
   const list = h("ol", { class: "versions" });
-  const details = h("details", { class: "import-facts" }, h("summary", {}, "Roll the set back"), list);
+  const details = h("details", { class: "import-facts" }, h("summary", {}, t("Roll the set back")), list);
   details.addEventListener("toggle", async () => {
     if (!details.open || list.children.length) return;
     const { set, rows } = await acts.versions(setName);
-    if (rows.length < 2) return list.replaceChildren(h("li", { class: "caption" }, "There is no earlier version."));
+    if (rows.length < 2) return list.replaceChildren(h("li", { class: "caption" }, t("There is no earlier version.")));
     list.replaceChildren(
       ...rows.map((row, place) =>
         h(
           "li",
           {},
           h("span", {}, `Version ${row.version}: ${row.zone_count.toLocaleString("en-GB")} zones`, h("span", { class: "caption" }, [row.created_by, whenText(row.created_at)].filter(Boolean).join(", "))),
-          place === 0 ? h("span", { class: "caption" }, "now") : h("button", { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) }, icon("rotate-ccw", "small"), "Roll back"),
+          place === 0 ? h("span", { class: "caption" }, "now") : h("button", { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) }, icon("rotate-ccw", "small"), t("Roll back")),
         ),
       ),
     );

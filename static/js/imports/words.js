@@ -1,34 +1,35 @@
 /** What the page "Imports" says: kinds, states, differences and facts as words. */
 
+import { t } from "../text.js";
 import { countText } from "../units.js";
 
 const SPACE = "\u00a0";
 
 export const KINDS = {
   osm: { words: "OpenStreetMap", icon: "line" },
-  zones: { words: "No-fly zones", icon: "zone" },
-  assets: { words: "Asset file", icon: "tower" },
-  terrain: { words: "Terrain", icon: "mountain" },
+  zones: { words: t("No-fly zones"), icon: "zone" },
+  assets: { words: t("Asset file"), icon: "tower" },
+  terrain: { words: t("Terrain"), icon: "mountain" },
 };
 
 export const STATES = {
-  reading: { words: "Reading", icon: "loader-circle", chip: "active" },
-  refused: { words: "Refused", icon: "octagon-alert", chip: "failed" },
-  ready: { words: "To be decided", icon: "eye", chip: "approved" },
-  applying: { words: "Applying", icon: "loader-circle", chip: "active" },
-  applied: { words: "Applied", icon: "circle-check", chip: "" },
-  discarded: { words: "Discarded", icon: "circle-x", chip: "draft" },
+  reading: { words: t("Reading"), icon: "loader-circle", chip: "active" },
+  refused: { words: t("Refused"), icon: "octagon-alert", chip: "failed" },
+  ready: { words: t("To be decided"), icon: "eye", chip: "approved" },
+  applying: { words: t("Applying"), icon: "loader-circle", chip: "active" },
+  applied: { words: t("Applied"), icon: "circle-check", chip: "" },
+  discarded: { words: t("Discarded"), icon: "circle-x", chip: "draft" },
 };
 
 /** In the order in which they are said; the sign stands in the list and on the map. */
 export const ACTIONS = {
-  new: { words: "new", short: "New", sign: "+" },
-  changed: { words: "changed", short: "Changed", sign: "≠" },
-  vanished: { words: "vanished", short: "Vanished", sign: "−" },
-  kept: { words: "kept as edited by hand", short: "Kept", sign: "=" },
+  new: { words: t("new"), short: t("New"), sign: "+" },
+  changed: { words: t("changed"), short: t("Changed"), sign: "≠" },
+  vanished: { words: t("vanished"), short: t("Vanished"), sign: "−" },
+  kept: { words: t("kept as edited by hand"), short: t("Kept"), sign: "=" },
 };
 
-export const ORIGINS = { upload: "", overpass: "from Overpass", subscription: "from a subscription", roll_back: "roll-back" };
+export const ORIGINS = { upload: "", overpass: t("from Overpass"), subscription: t("from a subscription"), roll_back: "roll-back" };
 
 /** Where heights count from, for files that do not say it. */
 export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN2016", "NAVD88"];
@@ -42,13 +43,13 @@ export function differenceSentence(difference) {
   const parts = Object.keys(ACTIONS)
     .filter((action) => difference[action] > 0)
     .map((action) => `${number(difference[action])}${SPACE}${ACTIONS[action].words}`);
-  return parts.length ? `${parts.join(", ")}.` : "Nothing would change.";
+  return parts.length ? `${parts.join(", ")}.` : t("Nothing would change.");
 }
 
 /** "Heights from 431 m to 2,599 m above EGM96, in place of the earlier model of this name." */
 export function terrainSentence({ lowest_m, highest_m, vertical_datum }, difference) {
   const metres = (value) => `${number(Math.round(value)).replace("-", "−")}${SPACE}m`;
-  const again = difference.changed > 0 ? ", in place of the earlier model of this name" : "";
+  const again = difference.changed > 0 ? t(", in place of the earlier model of this name") : "";
   return `Heights from ${metres(lowest_m)} to ${metres(highest_m)} above ${vertical_datum}${again}.`;
 }
 
@@ -68,7 +69,7 @@ const UNITS = { m: "m", km: "km", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "k
 
 /** "height_m" → { words: "height", unit: "m" } */
 export function factName(name) {
-  if (name === "geometry") return { words: "shape", unit: "" };
+  if (name === "geometry") return { words: t("shape"), unit: "" };
   const parts = name.split("_");
   const unit = parts.length > 1 ? (UNITS[parts.at(-1)] ?? "") : "";
   if (unit) parts.pop();
@@ -83,7 +84,7 @@ export function factText(name, value) {
   if (value === false) return "no";
   if (typeof value === "number") return number(value).replace("-", "−");
   if (typeof value === "string") return value.length > 120 ? `${value.slice(0, 119)}…` : value;
-  if (isGeometry(value)) return "on the map";
+  if (isGeometry(value)) return t("on the map");
   if (Array.isArray(value)) return value.length && value.every((entry) => typeof entry !== "object") ? value.join(", ") : countText(value.length, "entry", "entries");
   if ("value_m" in value) return `${number(value.value_m)}${SPACE}m ${value.reference ?? ""}`.trim();
   const entries = Object.entries(value);
@@ -103,7 +104,7 @@ export function factLines({ before, after }) {
       const text = factText(name, facts[name]);
       return unit && typeof facts[name] === "number" ? `${text}${SPACE}${unit}` : text;
     };
-    if (isGeometry(before?.[name]) && isGeometry(after?.[name])) return { words, before: "dashed on the map", after: "drawn on the map" };
+    if (isGeometry(before?.[name]) && isGeometry(after?.[name])) return { words, before: t("dashed on the map"), after: t("drawn on the map") };
     return { words, before: side(before), after: side(after) };
   });
 }

@@ -1,6 +1,7 @@
 /** The bar around every page: theme, keys, account. */
 
 import { byId, h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
 
@@ -13,12 +14,12 @@ export function startChrome({ bindings = [] } = {}) {
   const go = (address) => () => void (location.href = address);
   const all = [
     ...bindings,
-    { keys: ["n"], words: readPage().canPlan ? "New mission" : "Go to the map", act: go("/missions/new") },
-    { keys: ["g m"], words: "Go to the missions", act: go("/") },
-    { keys: ["g a"], words: "Go to the assets", act: go("/assets") },
-    { keys: ["g z"], words: "Go to the zones", act: go("/zones") },
-    { keys: ["g u"], words: "Go to the UAVs", act: go("/uavs") },
-    { keys: ["?"], words: "Show the keys", act: () => showKeys(all) },
+    { keys: ["n"], words: readPage().canPlan ? t("New mission") : t("Go to the map"), act: go("/missions/new") },
+    { keys: ["g m"], words: t("Go to the missions"), act: go("/") },
+    { keys: ["g a"], words: t("Go to the assets"), act: go("/assets") },
+    { keys: ["g z"], words: t("Go to the zones"), act: go("/zones") },
+    { keys: ["g u"], words: t("Go to the UAVs"), act: go("/uavs") },
+    { keys: ["?"], words: t("Show the keys"), act: () => showKeys(all) },
   ];
   listenToKeys(all);
 

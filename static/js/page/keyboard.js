@@ -1,8 +1,9 @@
 /** Keys of the page, and the sheet that shows them. Single keys are off while somebody types. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
 
-const NAMES = { mod: "Ctrl", shift: "Shift", delete: "Del", escape: "Esc" };
+const NAMES = { mod: "Ctrl", shift: t("Shift"), delete: t("Del"), escape: t("Esc") };
 
 export function isTyping(target) {
   return target instanceof HTMLElement && (target.isContentEditable || target.matches("input:not([type=checkbox], [type=radio], [type=range]), textarea, select"));
@@ -50,10 +51,10 @@ export function showKeys(bindings) {
   const dialog = h(
     "dialog",
     { class: "keys", "aria-labelledby": "keys-title" },
-    h("h2", { id: "keys-title" }, "Keyboard"),
-    h("p", { class: "caption" }, "Single keys rest while you type."),
+    h("h2", { id: "keys-title" }, t("Keyboard")),
+    h("p", { class: "caption" }, t("Single keys rest while you type.")),
     h("dl", { class: "key-list" }, bindings.filter((binding) => binding.words).map((binding) => h("div", {}, h("dt", {}, caps(binding.keys[0])), h("dd", {}, binding.words)))),
-    h("form", { method: "dialog", class: "acts" }, h("button", { class: "button" }, "Close")),
+    h("form", { method: "dialog", class: "acts" }, h("button", { class: "button" }, t("Close"))),
   );
   open(dialog);
 }

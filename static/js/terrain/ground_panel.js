@@ -1,6 +1,7 @@
 /** The dock: the height of the ground at a place, or its profile along a line. */
 
 import { byId, h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { coordinateText, heightText, lengthText } from "../units.js";
 import { drawProfile, nearestSample, profileSentence, rowsOf } from "./profile_chart.js";
 
@@ -12,7 +13,7 @@ export function mountGroundPanel(on) {
   const panel = byId("terrain-panel");
   let shown = null; // { profile, towers, chart, figures, frame }
 
-  const closer = () => h("button", { class: "icon-button tight terrain-close", type: "button", "aria-label": "Close", title: "Close (Esc)", onclick: on.close }, icon("x"));
+  const closer = () => h("button", { class: "icon-button tight terrain-close", type: "button", "aria-label": t("Close"), title: t("Close (Esc)"), onclick: on.close }, icon("x"));
 
   function put(...content) {
     shown = null;
@@ -46,7 +47,7 @@ export function mountGroundPanel(on) {
     height(position, { ground_amsl_m, vertical_datum, source }) {
       const isKnown = ground_amsl_m !== null;
       put(
-        h("h2", { class: "terrain-sentence" }, isKnown ? `${heightText(ground_amsl_m)} above sea level` : "No terrain model knows the ground here."),
+        h("h2", { class: "terrain-sentence" }, isKnown ? `${heightText(ground_amsl_m)} above sea level` : t("No terrain model knows the ground here.")),
         h("p", { class: "caption" }, [coordinateText(position), isKnown && vertical_datum, isKnown && source].filter(Boolean).join(" · ")),
       );
     },
@@ -60,7 +61,7 @@ export function mountGroundPanel(on) {
           { class: "profile-head" },
           h("h2", { class: "terrain-sentence" }, title),
           h("p", { class: "caption" }, profileSentence(profile, towers)),
-          canStepBack && h("button", { class: "button quiet", type: "button", onclick: on.back }, icon("undo-2"), "Take the last point back"),
+          canStepBack && h("button", { class: "button quiet", type: "button", onclick: on.back }, icon("undo-2"), t("Take the last point back")),
         ),
         h("div", { class: "profile-body" }, figures, frame),
         tableOf(profile, towers),
@@ -85,7 +86,7 @@ function figuresAt({ profile, towers }, index) {
   const place = (term, words) => h("div", {}, h("dt", {}, term), h("dd", {}, words));
   if (index === null) {
     if (profile.lowest_m === null) return [];
-    return [h("dl", {}, place("Highest", heightText(profile.highest_m)), place("Lowest", heightText(profile.lowest_m)), place("Length", lengthText(profile.length_m)))];
+    return [h("dl", {}, place(t("Highest"), heightText(profile.highest_m)), place(t("Lowest"), heightText(profile.lowest_m)), place(t("Length"), lengthText(profile.length_m)))];
   }
   const ground = profile.ground_amsl_m[index];
   const tower = towers.find((candidate) => candidate.index === index);
@@ -93,25 +94,25 @@ function figuresAt({ profile, towers }, index) {
     h(
       "dl",
       {},
-      place("Ground", ground === null ? "not known" : heightText(ground)),
-      place("Along", lengthText(profile.distance_m[index])),
-      tower && place("Tower", towerText(tower)),
+      place(t("Ground"), ground === null ? t("not known") : heightText(ground)),
+      place(t("Along"), lengthText(profile.distance_m[index])),
+      tower && place(t("Tower"), towerText(tower)),
     ),
   ];
 }
 
-const towerText = ({ label, height_m }) => `${label}, ${height_m === null ? "height not stated" : heightText(height_m)}`;
+const towerText = ({ label, height_m }) => `${label}, ${height_m === null ? t("height not stated") : heightText(height_m)}`;
 
 function tableOf(profile, towers) {
-  const cells = ({ distance_m, ground_amsl_m, tower }) => [lengthText(distance_m), ground_amsl_m === null ? "not known" : heightText(ground_amsl_m), tower ? towerText(tower) : ""];
+  const cells = ({ distance_m, ground_amsl_m, tower }) => [lengthText(distance_m), ground_amsl_m === null ? t("not known") : heightText(ground_amsl_m), tower ? towerText(tower) : ""];
   return h(
     "details",
     { class: "profile-table" },
-    h("summary", {}, "As a table"),
+    h("summary", {}, t("As a table")),
     h(
       "table",
       {},
-      h("thead", {}, h("tr", {}, ["Along", "Ground above sea level", "Tower"].map((name) => h("th", { scope: "col" }, name)))),
+      h("thead", {}, h("tr", {}, [t("Along"), t("Ground above sea level"), t("Tower")].map((name) => h("th", { scope: "col" }, name)))),
       h("tbody", {}, rowsOf(profile, towers).map((row) => h("tr", {}, cells(row).map((words) => h("td", {}, words))))),
     ),
   );

@@ -6,6 +6,7 @@ import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { distance_m } from "../mission/span_strip.js";
 import { say, toast } from "../page/toast.js";
+import { t } from "../text.js";
 import { countText } from "../units.js";
 import { mountGroundPanel } from "./ground_panel.js";
 import { askToRemove, mountModelList } from "./model_list.js";
@@ -13,10 +14,10 @@ import { profileSentence, towersAlong } from "./profile_chart.js";
 import * as layer from "./terrain_layer.js";
 
 const HINTS = {
-  height: "Click the map: the height of the ground there.",
-  profile: "Click two or more points, or a power line.",
+  height: t("Click the map: the height of the ground there."),
+  profile: t("Click two or more points, or a power line."),
 };
-const KEYS_OF_PROFILE = " Backspace takes the last point back, Esc ends.";
+const KEYS_OF_PROFILE = ` ${t("Backspace takes the last point back, Esc ends.")}`;
 const MOST_SAMPLES = 1_500; // more than a drawing has pixels
 const REACH_PX = 24; // of the pointer from the profile's line, for the cursor
 const MOST_TOWER_PAGES = 10;
@@ -45,9 +46,9 @@ async function load() {
     models = (await get("/terrain")).data.features;
     showList(models);
     layer.showModels(map.map, models);
-    byId("page-facts").textContent = models.length ? `${countText(models.length, "model")}, newest on top` : "No models";
+    byId("page-facts").textContent = models.length ? `${countText(models.length, "model")}, newest on top` : t("No models");
   } catch (error) {
-    toast(error.message, { label: "Try again", act: load });
+    toast(error.message, { label: t("Try again"), act: load });
   }
 }
 
@@ -101,7 +102,7 @@ async function profileOfPoints() {
   layer.showLine(map.map, points, points);
   if (points.length < 2) {
     asked += 1;
-    if (points.length) panel.words("One point. Click the next.");
+    if (points.length) panel.words(t("One point. Click the next."));
     else panel.close();
     return;
   }
@@ -189,7 +190,7 @@ async function takeAway(model) {
     await remove(`/terrain/${model.id}`);
     toast(`${model.properties.file_name} removed.`);
   } catch (error) {
-    toast(error.status === 404 ? "It has been removed already." : error.message);
+    toast(error.status === 404 ? t("It has been removed already.") : error.message);
   }
   end();
   await load();
@@ -200,12 +201,12 @@ for (const input of document.querySelectorAll("#terrain-tools input")) input.add
 
 open({
   bindings: [
-    { keys: ["h"], words: "Height at a place", act: () => choose("height") },
-    { keys: ["p"], words: "Profile along a line", act: () => choose("profile") },
-    { keys: ["."], words: "On along the profile", act: step(1) },
-    { keys: [","], words: "Back along the profile", act: step(-1) },
-    { keys: ["backspace", "delete"], words: "Take the last point back", act: takePointBack },
-    { keys: ["escape"], words: "End", act: () => (!byId("dock").hidden || points.length ? end() : tool === "profile" ? choose("height") : false) },
+    { keys: ["h"], words: t("Height at a place"), act: () => choose("height") },
+    { keys: ["p"], words: t("Profile along a line"), act: () => choose("profile") },
+    { keys: ["."], words: t("On along the profile"), act: step(1) },
+    { keys: [","], words: t("Back along the profile"), act: step(-1) },
+    { keys: ["backspace", "delete"], words: t("Take the last point back"), act: takePointBack },
+    { keys: ["escape"], words: t("End"), act: () => (!byId("dock").hidden || points.length ? end() : tool === "profile" ? choose("height") : false) },
   ],
   async load() {
     layer.addTo(map.map);

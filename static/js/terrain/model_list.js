@@ -1,11 +1,12 @@
 /** The terrain models in the side: what counts on top first, where each is from, and how whole it is. */
 
 import { byId, h, icon } from "../dom.js";
+import { t } from "../text.js";
 import { countText, heightText, lengthText, whenText } from "../units.js";
 
 /** Shares below what shows in one digit are not rounded to none. */
 export function voidsText({ posts, voids }) {
-  if (posts === null || voids === null || !posts) return "not counted";
+  if (posts === null || voids === null || !posts) return t("not counted");
   if (!voids) return "none";
   const percent = (100 * voids) / posts;
   const share = percent < 0.1 ? "under 0.1" : percent.toLocaleString("en-GB", { maximumFractionDigits: 1 });
@@ -16,13 +17,13 @@ export function voidsText({ posts, voids }) {
 export function factsOf(properties) {
   const { lowest_m, highest_m, vertical_datum, resolution_m, attribution, licence, is_synthetic, imported_at } = properties;
   const facts = [
-    ["Heights", lowest_m === null || highest_m === null ? "not counted" : `${heightText(lowest_m)} to ${heightText(highest_m)}`],
-    ["Vertical datum", vertical_datum],
-    ["Posts every", lengthText(resolution_m)],
-    ["Voids", voidsText(properties)],
-    ["Source", attribution || (is_synthetic ? "Synthetic demo data" : "not stated")],
-    ["Licence", licence || "not stated"],
-    ["Imported", whenText(imported_at)],
+    [t("Heights"), lowest_m === null || highest_m === null ? t("not counted") : `${heightText(lowest_m)} to ${heightText(highest_m)}`],
+    [t("Vertical datum"), vertical_datum],
+    [t("Posts every"), lengthText(resolution_m)],
+    [t("Voids"), voidsText(properties)],
+    [t("Source"), attribution || (is_synthetic ? t("Synthetic demo data") : t("not stated"))],
+    [t("Licence"), licence || t("not stated")],
+    [t("Imported"), whenText(imported_at)],
   ];
   return facts;
 }
@@ -34,8 +35,8 @@ export function mountModelList(canCurate, on) {
 
   function row(model, index, count) {
     const { file_name } = model.properties;
-    const words = count > 1 ? (index === 0 ? "Counts on top" : "Fills what those above leave void") : "";
-    const opener = h("button", { class: "terrain-name", type: "button", title: "Show it on the map", onclick: () => on.show(model) }, icon("mountain"), h("strong", {}, file_name));
+    const words = count > 1 ? (index === 0 ? t("Counts on top") : t("Fills what those above leave void")) : "";
+    const opener = h("button", { class: "terrain-name", type: "button", title: t("Show it on the map"), onclick: () => on.show(model) }, icon("mountain"), h("strong", {}, file_name));
     for (const come of ["pointerenter", "focus"]) opener.addEventListener(come, () => on.point(model));
     for (const go of ["pointerleave", "blur"]) opener.addEventListener(go, () => on.point(null));
     return h(
@@ -45,7 +46,7 @@ export function mountModelList(canCurate, on) {
         "div",
         { class: "terrain-head" },
         opener,
-        canCurate && h("button", { class: "icon-button tight", type: "button", "aria-label": `Remove ${file_name}`, title: "Remove", onclick: () => on.remove(model) }, icon("trash-2")),
+        canCurate && h("button", { class: "icon-button tight", type: "button", "aria-label": `Remove ${file_name}`, title: t("Remove"), onclick: () => on.remove(model) }, icon("trash-2")),
       ),
       words && h("p", { class: "caption" }, words),
       h("dl", { class: "terrain-facts" }, factsOf(model.properties).map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
@@ -57,9 +58,9 @@ export function mountModelList(canCurate, on) {
       "div",
       { class: "empty" },
       icon("mountain"),
-      h("strong", {}, "No terrain here yet."),
-      h("p", {}, "Heights above sea level need a terrain model: a GeoTIFF or an HGT file."),
-      canCurate ? h("a", { class: "button", href: "/imports" }, "Import a file") : h("p", {}, "A curator can import one."),
+      h("strong", {}, t("No terrain here yet.")),
+      h("p", {}, t("Heights above sea level need a terrain model: a GeoTIFF or an HGT file.")),
+      canCurate ? h("a", { class: "button", href: "/imports" }, t("Import a file")) : h("p", {}, t("A curator can import one.")),
     );
 
   return (models) => {
@@ -76,12 +77,12 @@ export function askToRemove({ file_name }) {
       "dialog",
       { "aria-labelledby": "remove-title" },
       h("h2", { id: "remove-title" }, `Remove ${file_name}?`),
-      h("p", {}, "Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again."),
+      h("p", {}, t("Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again.")),
       h(
         "form",
         { method: "dialog", class: "acts" },
-        h("button", { class: "button", value: "keep" }, "Keep it"),
-        h("button", { class: "button danger", value: "remove" }, "Remove"),
+        h("button", { class: "button", value: "keep" }, t("Keep it")),
+        h("button", { class: "button danger", value: "remove" }, t("Remove")),
       ),
     );
     dialog.addEventListener("close", () => {

@@ -1,6 +1,7 @@
 /** The profile as a drawing: the ground from the side, towers that stand on it, and one cursor. */
 
 import { svg } from "../dom.js";
+import { t } from "../text.js";
 import { countText, heightText, lengthText } from "../units.js";
 
 export const EDGES = { left: 52, right: 14, top: 14, bottom: 20 };
@@ -152,5 +153,5 @@ function drawUnknown(element, profile, from, to, { x }, floor) {
   const start = x(profile.distance_m[Math.max(0, from - 1)]);
   const end = x(profile.distance_m[Math.min(profile.distance_m.length - 1, to + 1)]);
   element.append(svg("rect", { class: "unknown", x: start, y: EDGES.top, width: Math.max(1, end - start), height: floor - EDGES.top }));
-  if (end - start > 80) element.append(svg("text", { class: "unknown-words", x: (start + end) / 2, y: EDGES.top + 16, "text-anchor": "middle" }, "No terrain"));
+  if (end - start > 80) element.append(svg("text", { class: "unknown-words", x: (start + end) / 2, y: EDGES.top + 16, "text-anchor": "middle" }, t("No terrain")));
 }

@@ -1,6 +1,7 @@
 /** The facts of a zone as fields. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
 import { limitField } from "./heights.js";
 import { scheduleEditor } from "./schedule_editor.js";
 
@@ -12,15 +13,15 @@ export function zoneForm(feature, choice, kept) {
   const name = h("input", { class: "input", id: "zone-name", type: "text", maxlength: 255, required: true, value: facts.name ?? "", autocomplete: "off" });
   const restriction = h("input", { class: "input", id: "zone-restriction", type: "text", maxlength: 100, list: "restrictions", value: facts.restriction ?? "", autocomplete: "off" });
   const reason = h("input", { class: "input", id: "zone-reason", type: "text", maxlength: 255, value: facts.reason ?? "", autocomplete: "off" });
-  const lower = limitField("lower", "Lower limit", facts.lower_limit);
-  const upper = limitField("upper", "Upper limit", facts.upper_limit);
+  const lower = limitField("lower", t("Lower limit"), facts.lower_limit);
+  const upper = limitField("upper", t("Upper limit"), facts.upper_limit);
   const times = scheduleEditor(facts.schedule);
   return {
     element: h(
       "form",
       { class: "record-form", onsubmit: (event) => event.preventDefault() },
-      field("zone-name", "Name", name),
-      h("div", { class: "pair" }, field("zone-restriction", "Restriction", restriction), field("zone-reason", "Reason", reason)),
+      field("zone-name", t("Name"), name),
+      h("div", { class: "pair" }, field("zone-restriction", t("Restriction"), restriction), field("zone-reason", t("Reason"), reason)),
       h("datalist", { id: "restrictions" }, RESTRICTIONS.map((value) => h("option", { value }))),
       upper.element,
       lower.element,

@@ -1,15 +1,16 @@
 /** Height limits of a zone: words, a small drawing of the band, and the fields that edit them. */
 
 import { h, svg } from "../dom.js";
+import { t } from "../text.js";
 import { heightText } from "../units.js";
 
-export const REFERENCES = [["AGL", "above ground"], ["AMSL", "above sea level"], ["STD", "flight level"], ["WGS84", "above the ellipsoid"]];
+export const REFERENCES = [["AGL", t("above ground")], ["AMSL", t("above sea level")], ["STD", t("flight level")], ["WGS84", t("above the ellipsoid")]];
 const WORDS = Object.fromEntries(REFERENCES);
 const FOOT_M = 0.3048;
 const FLIGHT_LEVEL_M = 100 * FOOT_M;
 
 export function limitText(limit, side) {
-  if (!limit) return side === "lower" ? "lower limit not stated" : "upper limit not stated";
+  if (!limit) return side === "lower" ? t("lower limit not stated") : t("upper limit not stated");
   if (limit.reference === "STD") return `FL\u00a0${Math.round(limit.value_m / FLIGHT_LEVEL_M)}`;
   if (limit.value_m === 0 && limit.reference === "AGL") return "ground";
   return `${Math.round(limit.value_m).toLocaleString("en-GB")}\u00a0m ${WORDS[limit.reference] ?? ""}`.trim();
@@ -19,7 +20,7 @@ export function limitText(limit, side) {
 export function heightsText({ lower_limit: lower, upper_limit: upper }) {
   if (lower && upper) return `From ${limitText(lower, "lower")} to ${limitText(upper, "upper")}`;
   if (upper) return `Up to ${limitText(upper, "upper")}, lower limit not stated`;
-  return lower ? `From ${limitText(lower, "lower")}, upper limit not stated` : "Heights not stated";
+  return lower ? `From ${limitText(lower, "lower")}, upper limit not stated` : t("Heights not stated");
 }
 
 /** A column of air with the band in it; what is not stated is open, drawn as a dashed end. */
@@ -46,7 +47,7 @@ export function limitField(side, words, limit) {
   const reference = h(
     "select",
     { class: "input", "aria-label": `${words}, counted from` },
-    [["", "not stated"], ...REFERENCES].map(([key, text]) => h("option", { value: key, selected: key === (limit?.reference ?? "") }, text)),
+    [["", t("not stated")], ...REFERENCES].map(([key, text]) => h("option", { value: key, selected: key === (limit?.reference ?? "") }, text)),
   );
   const metres = h("p", { class: "caption", hidden: true });
   const factor = () => (reference.value === "STD" ? FLIGHT_LEVEL_M : unit.value === "ft" ? FOOT_M : 1);
@@ -55,7 +56,7 @@ export function limitField(side, words, limit) {
     value.required = reference.value !== "";
     unit.disabled = reference.value === "" || reference.value === "STD";
     metres.hidden = value.disabled || value.value === "" || factor() === 1;
-    metres.textContent = `${value.value}\u00a0${reference.value === "STD" ? "hundred feet of pressure altitude" : "ft"} = ${heightText(Number(value.value) * factor())}`;
+    metres.textContent = `${value.value}\u00a0${reference.value === "STD" ? t("hundred feet of pressure altitude") : "ft"} = ${heightText(Number(value.value) * factor())}`;
   };
   for (const part of [value, unit, reference]) part.addEventListener("input", adapt);
   adapt();

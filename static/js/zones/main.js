@@ -3,6 +3,7 @@
 import { byId, h, icon } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/furniture.js";
+import { t } from "../text.js";
 import { coordinateText, lengthText, whenText } from "../units.js";
 import { zoneForm } from "./form.js";
 import { bandDrawing, heightsText } from "./heights.js";
@@ -29,29 +30,29 @@ function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
 function details({ properties }) {
   const { source } = properties;
   return [
-    h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || "Restriction not stated"),
-    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, properties.schedule_words), properties.schedule && h("p", { class: "caption" }, "Counts at all heights and times for now"))),
+    h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || t("Restriction not stated")),
+    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, properties.schedule_words), properties.schedule && h("p", { class: "caption" }, t("Counts at all heights and times for now")))),
     ...(properties.schedule ?? []).slice(0, 3).filter((period) => Array.isArray(period.schedule)).map(weekDrawing),
-    properties.is_edited && h("p", { class: "caption" }, "Edited by hand: imports leave it alone."),
+    properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(
       "dl",
       { class: "facts" },
-      term("Circle", properties.circle && `${lengthText(properties.circle.radius_m)} round ${coordinateText(properties.circle.centre)}`), term("Identifier", properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
-      term("Set", properties.zone_set ?? "Drawn here"), term("File", source?.file_name), term("Licence", source ? source.licence || "not stated" : ""), term("Attribution", source?.attribution),
-      term("Valid", source ? validityText(source) || "not stated" : ""), term("Address", source?.source_address), term("Fetched", source?.fetched_at && whenText(source.fetched_at)), term("Imported", source?.imported_at && whenText(source.imported_at)), term("Changed", whenText(properties.updated_at)),
+      term(t("Circle"), properties.circle && `${lengthText(properties.circle.radius_m)} round ${coordinateText(properties.circle.centre)}`), term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
+      term(t("Set"), properties.zone_set ?? t("Drawn here")), term(t("File"), source?.file_name), term(t("Licence"), source ? source.licence || t("not stated") : ""), term(t("Attribution"), source?.attribution),
+      term(t("Valid"), source ? validityText(source) || t("not stated") : ""), term(t("Address"), source?.source_address), term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)), term(t("Imported"), source?.imported_at && whenText(source.imported_at)), term(t("Changed"), whenText(properties.updated_at)),
     ),
-    h("p", { class: "caption" }, "Facts as the source states them; whether you may fly is for you to judge."),
+    h("p", { class: "caption" }, t("Facts as the source states them; whether you may fly is for you to judge.")),
   ].filter(Boolean);
 }
 
 const records = mountRecordPage({
   path: "/zones",
   key: "zone",
-  findWords: "Find a zone",
-  backWords: "All zones",
+  findWords: t("Find a zone"),
+  backWords: t("All zones"),
   pickKinds: ["zone"],
-  newChoices: [{ value: "area", icon: "pentagon", words: "Area" }, { value: "circle", icon: "circle", words: "Circle" }],
-  newTitle: () => "New no-fly zone",
+  newChoices: [{ value: "area", icon: "pentagon", words: t("Area") }, { value: "circle", icon: "circle", words: t("Circle") }],
+  newTitle: () => t("New no-fly zone"),
   choiceOf: (feature) => (feature.properties.circle ? "circle" : "area"),
   shapeKind: (choice) => choice,
   checkKind: () => "zone",
@@ -62,7 +63,7 @@ const records = mountRecordPage({
   details,
   form: zoneForm,
   followsView: () => filter.inView,
-  row: ({ properties }) => ({ icon: "zone", name: properties.name, detail: heightsText(properties), chip: properties.schedule ? "at times" : "" }),
+  row: ({ properties }) => ({ icon: "zone", name: properties.name, detail: heightsText(properties), chip: properties.schedule ? t("at times") : "" }),
   listQuery(map) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);
@@ -72,8 +73,8 @@ const records = mountRecordPage({
   },
   nothing: () =>
     filter.text || filter.set || filter.inView
-      ? [h("strong", {}, "Nothing found."), h("span", {}, "Other words, or a larger part of the map may have it.")]
-      : [h("strong", {}, "No zones yet."), h("span", {}, "Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file."), h("a", { class: "button", href: "/imports" }, "Import a file")],
+      ? [h("strong", {}, t("Nothing found.")), h("span", {}, t("Other words, or a larger part of the map may have it."))]
+      : [h("strong", {}, t("No zones yet.")), h("span", {}, t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.")), h("a", { class: "button", href: "/imports" }, t("Import a file"))],
 });
 
 let timer = 0;
@@ -103,7 +104,7 @@ const sets = mountSetsPanel({
   },
 });
 
-const TABS = [["zones", "Zones"], ["sets", "Sets and sources"]];
+const TABS = [["zones", t("Zones")], ["sets", t("Sets and sources")]];
 function turnTo(tab) {
   byId("zone-sets").hidden = tab !== "sets";
   if (tab === "sets") {

@@ -1,7 +1,9 @@
 /** When a zone applies, as data: periods in the one form that is stored. Days and times of day are UTC. */
 
-export const DAYS = [["MON", "Mon"], ["TUE", "Tue"], ["WED", "Wed"], ["THU", "Thu"], ["FRI", "Fri"], ["SAT", "Sat"], ["SUN", "Sun"]];
-export const EVENTS = [["BMCT", "morning twilight"], ["SR", "sunrise"], ["SS", "sunset"], ["EECT", "end of evening twilight"]];
+import { t } from "../text.js";
+
+export const DAYS = [["MON", t("Mon")], ["TUE", t("Tue")], ["WED", t("Wed")], ["THU", t("Thu")], ["FRI", t("Fri")], ["SAT", t("Sat")], ["SUN", t("Sun")]];
+export const EVENTS = [["BMCT", t("morning twilight")], ["SR", "sunrise"], ["SS", "sunset"], ["EECT", t("end of evening twilight")]];
 // Where an event is drawn on the week bar: it moves with place and season, so its edge is drawn soft.
 const USUAL_H = { BMCT: 5.5, SR: 6, SS: 18, EECT: 18.5 };
 

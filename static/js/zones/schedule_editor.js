@@ -1,11 +1,12 @@
 /** Edits when a zone applies: periods with dates, days and times, and a week that shows them. */
 
 import { h, icon, svg } from "../dom.js";
+import { t } from "../text.js";
 import { DAYS, EVENTS, fromField, newEntry, newPeriod, timeFromField, timeToField, toField, weekOf } from "./schedule.js";
 
 const offsetWords = () => {
   const minutes = -new Date().getTimezoneOffset();
-  if (!minutes) return "Your clock shows UTC now.";
+  if (!minutes) return t("Your clock shows UTC now.");
   const hours = Math.floor(Math.abs(minutes) / 60);
   return `08:00 UTC is ${String((8 + Math.trunc(minutes / 60) + 24) % 24).padStart(2, "0")}:${String(Math.abs(minutes) % 60).padStart(2, "0")} on your clock now (UTC${minutes > 0 ? "+" : "−"}${hours}).`;
 };
@@ -17,7 +18,7 @@ export function weekDrawing(period) {
   const stretches = weekOf(period);
   return svg(
     "svg",
-    { class: "week", viewBox: `0 0 ${left + width + 4} ${7 * row + 16}`, role: "img", "aria-label": "The week, with the hours in which the zone applies" },
+    { class: "week", viewBox: `0 0 ${left + width + 4} ${7 * row + 16}`, role: "img", "aria-label": t("The week, with the hours in which the zone applies") },
     ...DAYS.map(([, words], day) => svg("text", { x: 0, y: day * row + 9, "font-size": 9 }, words)),
     ...DAYS.map((_, day) => svg("rect", { x: left, y: day * row + 1, width, height: row - 3, fill: "var(--pressed)" })),
     ...stretches.map(({ day, from_h, to_h, softStart, softEnd }) =>
@@ -31,7 +32,7 @@ export function weekDrawing(period) {
 export function scheduleEditor(schedule) {
   let periods = structuredClone(schedule ?? []);
   const body = h("div", { class: "record-form" });
-  const element = h("fieldset", {}, h("legend", {}, "When it applies"), body);
+  const element = h("fieldset", {}, h("legend", {}, t("When it applies")), body);
   const tell = () => element.dispatchEvent(new Event("input", { bubbles: true }));
   /** Everything is drawn anew; focus stays at the control that has the same place. */
   const change = (act) => () => {
@@ -50,7 +51,7 @@ export function scheduleEditor(schedule) {
     }));
 
   function side(entry, which, words) {
-    const event = h("select", { class: "input", "aria-label": words }, [["", "at a time"], ...EVENTS].map(([key, text]) => h("option", { value: key, selected: key === (entry[`${which}Event`] ?? "") }, text)));
+    const event = h("select", { class: "input", "aria-label": words }, [["", t("at a time")], ...EVENTS].map(([key, text]) => h("option", { value: key, selected: key === (entry[`${which}Event`] ?? "") }, text)));
     const time = h("input", { class: "input", type: "time", "aria-label": `${words}, UTC`, value: timeToField(entry[`${which}Time`]), disabled: Boolean(entry[`${which}Event`]) });
     event.addEventListener("change", change(() => {
       entry[`${which}Event`] = event.value || null;
@@ -64,7 +65,7 @@ export function scheduleEditor(schedule) {
     const has = (day) => entry.day.includes("ANY") || entry.day.includes(day);
     return h(
       "div",
-      { class: "days", role: "group", "aria-label": "Days" },
+      { class: "days", role: "group", "aria-label": t("Days") },
       DAYS.map(([key, words]) =>
         h("label", {}, h("input", {
           type: "checkbox", checked: has(key),
@@ -78,30 +79,30 @@ export function scheduleEditor(schedule) {
   }
 
   function draw() {
-    const always = h("label", { class: "switch-line" }, h("input", { class: "switch", type: "checkbox", role: "switch", checked: !periods.length, onchange: change(() => (periods = periods.length ? [] : [newPeriod()])) }), "Always");
+    const always = h("label", { class: "switch-line" }, h("input", { class: "switch", type: "checkbox", role: "switch", checked: !periods.length, onchange: change(() => (periods = periods.length ? [] : [newPeriod()])) }), t("Always"));
     body.replaceChildren(
       always,
       ...periods.map((period, number) =>
         h(
           "div",
           { class: "period" },
-          h("div", { class: "period-head" }, h("strong", {}, periods.length > 1 ? `Period ${number + 1}` : "Period"), h("button", { type: "button", class: "icon-button tight", "aria-label": "Remove the period", onclick: change(() => periods.splice(number, 1)) }, icon("x", "small"))),
-          h("div", { class: "time-row" }, moment(period, "startDateTime", "From, UTC", number), moment(period, "endDateTime", "Until, UTC", number)),
+          h("div", { class: "period-head" }, h("strong", {}, periods.length > 1 ? `Period ${number + 1}` : t("Period")), h("button", { type: "button", class: "icon-button tight", "aria-label": t("Remove the period"), onclick: change(() => periods.splice(number, 1)) }, icon("x", "small"))),
+          h("div", { class: "time-row" }, moment(period, "startDateTime", t("From, UTC"), number), moment(period, "endDateTime", t("Until, UTC"), number)),
           weekDrawing(period),
           ...period.schedule.map((entry, index) =>
             h(
               "div",
               { class: "entry" },
               days(entry),
-              side(entry, "start", "Begins"),
-              side(entry, "end", "Ends"),
-              h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.splice(index, 1)) }, "Remove these hours"),
+              side(entry, "start", t("Begins")),
+              side(entry, "end", t("Ends")),
+              h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.splice(index, 1)) }, t("Remove these hours")),
             ),
           ),
-          h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.push(newEntry())) }, period.schedule.length ? "Add hours" : "Only at certain hours"),
+          h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.push(newEntry())) }, period.schedule.length ? t("Add hours") : t("Only at certain hours")),
         ),
       ),
-      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, "Add a period"), h("p", { class: "caption" }, `Days and hours are UTC. ${offsetWords()}`)] : []),
+      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, t("Add a period")), h("p", { class: "caption" }, `Days and hours are UTC. ${offsetWords()}`)] : []),
     );
   }
   draw();
