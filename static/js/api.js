@@ -71,7 +71,7 @@ async function problemOf(response) {
     504: t("The server did not answer in time."),
   };
   if (isSignedOut(status, error.code, error.message)) return new ApiError(SIGNED_OUT, { status: 401, code: "not_authenticated" });
-  const message = detail || error.message || words[status] || `The server answered with ${status}.`;
+  const message = detail || error.message || words[status] || t("The server answered with {status}.", { status });
   return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null });
 }
 

@@ -68,6 +68,12 @@ export function heightText(height_m) {
   return isImperial ? withUnit(grouped(Math.round(height_m / FOOT_M)), "ft") : withUnit(grouped(Math.round(height_m)), "m");
 }
 
+/** To a tenth where there is one: for what was measured or typed. */
+export function exactHeightText(height_m) {
+  const figure = Math.round((height_m / SHORT_UNIT.metres) * 10) / 10;
+  return withUnit(grouped(figure, Number.isInteger(figure) ? 0 : 1), SHORT_UNIT.unit);
+}
+
 export function speedText(speed_mps) {
   if (isImperial) return withUnit(grouped(Math.round(speed_mps / MPH_MPS)), "mph");
   return withUnit(grouped(speed_mps, Number.isInteger(speed_mps) ? 0 : 1), "m/s");

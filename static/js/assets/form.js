@@ -25,7 +25,7 @@ export function assetForm(feature, kind, kept) {
   const subtype = h("select", { class: "input", id: "asset-subtype" }, [...subtypes, ...(isOther ? [[facts.subtype, facts.subtype]] : [])].map(([value, words]) => h("option", { value, selected: value === (facts.subtype || subtypes[0][0]) }, words)));
   const [ref, name, operator] = ["ref", "name", "operator"].map((key) => text(`asset-${key}`, facts[key]));
   const voltages = text("asset-voltages", (facts.voltages_v ?? []).map((volts) => volts / 1000).join(", "), 60);
-  const checkVoltages = () => voltages.setCustomValidity(voltsOf(voltages.value) ? "" : `Write kilovolts up to ${HIGHEST_KV}, such as 110, 20.`);
+  const checkVoltages = () => voltages.setCustomValidity(voltsOf(voltages.value) ? "" : t("Write kilovolts up to {most}, such as 110, 20.", { most: HIGHEST_KV }));
   voltages.addEventListener("input", checkVoltages);
   const circuits = number("asset-circuits", facts.circuits, { min: 1, max: 100, step: 1 });
   const height = number("asset-height", facts.height_m, { min: 0.1, max: 1000, step: "any" });

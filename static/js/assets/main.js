@@ -2,11 +2,12 @@
 
 import { byId, h } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
-import { t } from "../text.js";
-import { coordinateText, countText, lengthText, voltageText, whenText } from "../units.js";
+import { t, tn } from "../text.js";
+import { coordinateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
 import { assetForm } from "./form.js";
 
 const KINDS = [["tower", t("Towers")], ["line", t("Lines")], ["railway", t("Railways")], ["bridge", t("Bridges")]];
+const NEW_NAMES = { tower: t("New power tower"), line: t("New power line"), railway: t("New railway"), bridge: t("New bridge") };
 const NAMES = { tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge") };
 const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
 const PAGE = 60;
@@ -31,18 +32,18 @@ function details(feature) {
   const tags = Object.entries(properties.tags ?? {});
   return [
     h("p", { class: "caption" }, [NAMES[properties.kind], properties.detail].filter(Boolean).join(" · ")),
-    properties.vanished_at && h("div", { class: "notice warning" }, h("p", {}, h("strong", {}, `${t("Off the ground.")} `), `Since ${whenText(properties.vanished_at)}; missions still know it.`)),
+    properties.vanished_at && h("div", { class: "notice warning" }, h("p", {}, h("strong", {}, `${t("Off the ground.")} `), t("Since {when}; missions still know it.", { when: whenText(properties.vanished_at) }))),
     properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(
       "dl",
       { class: "facts" },
       term(t("Ref"), properties.ref), term(t("Name"), properties.name), term(t("Operator"), properties.operator),
       term(t("Voltages"), properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")), term(t("Circuits"), properties.circuits && String(properties.circuits)),
-      term(t("Height"), properties.height_m && `${properties.height_m}\u00a0m above ground`), term(t("Length"), properties.length_m && lengthText(properties.length_m)),
+      term(t("Height"), properties.height_m && t("{height} above ground", { height: exactHeightText(properties.height_m) })), term(t("Length"), properties.length_m && lengthText(properties.length_m)),
       term(t("Network"), properties.is_flyable ? "" : t("Not part of the flying network")), term(t("Place"), coordinateText(properties.centre)),
       term(t("Source"), sourceWords(feature)), term(t("Licence"), properties.source?.licence), term(t("Attribution"), properties.source?.attribution), term(t("Fetched"), properties.source?.fetched_at && whenText(properties.source.fetched_at)), term(t("Changed"), whenText(properties.updated_at)),
     ),
-    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, `${countText(tags.length, "tag")} of the source`), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
+    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, tn(tags.length, "{count} tag of the source", "{count} tags of the source")), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
   ].filter(Boolean);
 }
 
@@ -55,7 +56,7 @@ const records = mountRecordPage({
   newChoices: [
     { value: "tower", icon: "tower", words: t("Tower") }, { value: "line", icon: "line", words: t("Power line") }, { value: "railway", icon: "railway", words: t("Railway") }, { value: "bridge", icon: "bridge", words: t("Bridge") },
   ],
-  newTitle: (kind) => `New ${NAMES[kind].toLowerCase()}`,
+  newTitle: (kind) => NEW_NAMES[kind],
   choiceOf: (feature) => feature.properties.kind,
   shapeKind: (kind) => SHAPES[kind],
   checkKind: (kind) => kind,

@@ -1,7 +1,7 @@
 /** What stands beside a drawing: tools, how long or large it is, what is wrong, and its vertices as a table for keys and screen readers. */
 
 import { h, icon } from "../dom.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { areaText, lengthText } from "../units.js";
 import { measure } from "./measure.js";
 import { circleOf, positionAt, removeRing as removeRingOf, removeVertex, verticesOf } from "./shape.js";
@@ -49,7 +49,7 @@ export function createDrawPanel(editor, { show }) {
     { class: "draw-vertices" },
     h("summary", {}, t("Points")),
     h("p", { class: "caption" }, t("Choose a point by its number; the arrow keys then move it, Del removes it.")),
-    h("table", {}, h("caption", { class: "unseen" }, t("Points with longitude and latitude in degrees")), h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Point"), h("th", { scope: "col" }, t("Longitude")), h("th", { scope: "col" }, t("Latitude")))), rows),
+    h("table", {}, h("caption", { class: "unseen" }, t("Points with longitude and latitude in degrees")), h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("Point")), h("th", { scope: "col" }, t("Longitude")), h("th", { scope: "col" }, t("Latitude")))), rows),
     rest,
     h("button", { type: "button", class: "text-button add-point", onclick: () => editor.addInMiddle() }, t("Add a point in the middle of the map")),
   );
@@ -62,7 +62,7 @@ export function createDrawPanel(editor, { show }) {
     const at = () => verticesOf(now.shape)[index].at;
     const degrees = (axis) =>
       h("td", {}, h("input", {
-        class: "input", type: "number", step: "any", "aria-label": `${axis ? t("Latitude") : t("Longitude")} of point ${index + 1}`,
+        class: "input", type: "number", step: "any", "aria-label": axis ? t("Latitude of point {number}", { number: index + 1 }) : t("Longitude of point {number}", { number: index + 1 }),
         onchange: (event) => {
           const position = [...positionAt(now.shape, at())];
           const value = Number(event.target.value);
@@ -74,7 +74,7 @@ export function createDrawPanel(editor, { show }) {
       editor.choose(at());
       show(positionAt(now.shape, at()));
     };
-    return h("tr", {}, h("th", { scope: "row" }, h("button", { type: "button", class: "text-button", onclick: choose, "aria-label": `Point ${index + 1}` }, String(index + 1))), degrees(0), degrees(1));
+    return h("tr", {}, h("th", { scope: "row" }, h("button", { type: "button", class: "text-button", onclick: choose, "aria-label": t("Point {number}", { number: index + 1 }) }, String(index + 1))), degrees(0), degrees(1));
   }
 
   /** Rows stay while there are as many: focus stays where it is. */
@@ -91,7 +91,7 @@ export function createDrawPanel(editor, { show }) {
       row.querySelectorAll("input").forEach((input, axis) => (input.value = String(position[axis])));
     });
     rest.hidden = vertices.length <= MOST_ROWS;
-    rest.textContent = `${vertices.length - MOST_ROWS} more are on the map.`;
+    rest.textContent = tn(vertices.length - MOST_ROWS, "{count} more is on the map.", "{count} more are on the map.");
   }
 
   function draw() {
@@ -128,7 +128,7 @@ export function createDrawPanel(editor, { show }) {
     const [length_m, area_m2] = [exact.length_m ?? rough.length_m, exact.area_m2 ?? rough.area_m2];
     const number = verticesOf(shape).length;
     return [
-      circleOf(shape) && `${lengthText(shape.radius_m)} radius`, length_m && lengthText(length_m), area_m2 && areaText(area_m2),
+      circleOf(shape) && t("{radius} radius", { radius: lengthText(shape.radius_m) }), length_m && lengthText(length_m), area_m2 && areaText(area_m2),
       ["line", "area"].includes(shape.kind) && `${number} ${number === 1 ? "point" : "points"}`,
     ].filter(Boolean).join(", ");
   };

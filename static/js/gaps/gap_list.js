@@ -2,6 +2,7 @@
 
 import { byId, h, icon, keyedList } from "../dom.js";
 import { t } from "../text.js";
+import { numberText } from "../units.js";
 import { cutOffText, KINDS, STATES } from "./kinds.js";
 
 const TYPED_MS = 250;
@@ -88,7 +89,7 @@ export function mountGapList(on) {
   function empty(hasSearched) {
     if (!hasSearched) return [h("strong", {}, t("The ground is being searched.")), h("p", {}, t("Gaps come up here when that is done.")), h("div", { class: "skeleton" }), h("div", { class: "skeleton" })];
     if (filter.kinds.size || filter.text || filter.inView) {
-      const what = filter.text ? `No gap matches “${filter.text}”.` : t("No gap like that here.");
+      const what = filter.text ? t("No gap matches “{text}”.", { text: filter.text }) : t("No gap like that here.");
       return [h("strong", {}, what), h("button", { class: "button", type: "button", onclick: clearFilters }, t("Clear the filter"))];
     }
     if (filter.state === "open") return [icon("circle-check"), h("strong", {}, t("Nothing looks wrong here.")), h("p", {}, t("The ground is searched again after each change."))];
@@ -108,10 +109,10 @@ export function mountGapList(on) {
     },
     /** kinds: number by kind, then state. */
     counts(numbers) {
-      for (const { state, count } of radios) count.textContent = sum(Object.values(numbers).map((byState) => byState[state])).toLocaleString("en-GB");
+      for (const { state, count } of radios) count.textContent = numberText(sum(Object.values(numbers).map((byState) => byState[state])));
       for (const { kind, count, chip } of chips) {
         const number = numbers[kind]?.[filter.state] ?? 0;
-        count.textContent = number.toLocaleString("en-GB");
+        count.textContent = numberText(number);
         chip.hidden = !number && !filter.kinds.has(kind);
       }
     },

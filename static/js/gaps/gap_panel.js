@@ -1,7 +1,7 @@
 /** The dock: the chosen gap in one sentence, its facts, and what can be done about it. */
 
 import { byId, h, icon } from "../dom.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { coordinateText, whenText } from "../units.js";
 import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 
@@ -115,7 +115,7 @@ export function mountGapPanel(canCurate, on) {
 
   /** While places are clicked on the map the acts say how many there are. */
   function placing(offer, count) {
-    const words = count ? `Place ${count === 1 ? t("one tower") : `${count} towers`}` : t("Click along the span");
+    const words = count ? tn(count, "Place {count} tower", "Place {count} towers") : t("Click along the span");
     acts.replaceChildren(
       h("button", { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) }, words),
       h("button", { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() }, icon("undo-2"), t("Take one back")),
@@ -143,7 +143,9 @@ function assetWords({ asset, other_asset: other }) {
 }
 
 function decidedWords({ state, decided_by: who, decided_at: when, note }) {
-  const act = state === "repaired" ? (who ? t("Repaired") : t("No longer found")) : t("Left as it is");
-  const by = who ? ` by ${who}` : "";
-  return `${act}${by}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
+  const words = {
+    repaired: who ? t("Repaired by {name}", { name: who }) : t("No longer found"),
+    dismissed: who ? t("Left as it is by {name}", { name: who }) : t("Left as it is"),
+  };
+  return `${words[state]}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
 }

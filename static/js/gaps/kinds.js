@@ -4,32 +4,33 @@ import { t } from "../text.js";
 import { lengthText } from "../units.js";
 
 export const KINDS = {
-  ends_apart: { name: "Should join", icon: "line" },
-  dead_end: { name: "Dead ends", icon: "line" },
-  long_span: { name: "Long spans", icon: "tower" },
-  line_without_towers: { name: "Lines without towers", icon: "line" },
-  missing_support: { name: "Towers missing", icon: "tower" },
-  tower_on_no_line: { name: "Towers on no line", icon: "tower" },
-  bridge_without_way: { name: "Bridges without a way", icon: "bridge" },
-  impossible_voltage: { name: "Voltages", icon: "line" },
+  ends_apart: { name: t("Should join"), icon: "line" },
+  dead_end: { name: t("Dead ends"), icon: "line" },
+  long_span: { name: t("Long spans"), icon: "tower" },
+  line_without_towers: { name: t("Lines without towers"), icon: "line" },
+  missing_support: { name: t("Towers missing"), icon: "tower" },
+  tower_on_no_line: { name: t("Towers on no line"), icon: "tower" },
+  bridge_without_way: { name: t("Bridges without a way"), icon: "bridge" },
+  impossible_voltage: { name: t("Voltages"), icon: "line" },
 };
 
 export const STATES = [
-  { state: "open", name: "Open" },
-  { state: "dismissed", name: "Left as it is" },
-  { state: "repaired", name: "Repaired" },
+  { state: "open", name: t("Open") },
+  { state: "dismissed", name: t("Left as it is") },
+  { state: "repaired", name: t("Repaired") },
 ];
 
 /** "cuts off 34.2 km", or nothing where the gap cuts off nothing. */
 export function cutOffText({ kind, cut_off_m: cutOff_m }) {
   if (!cutOff_m) return "";
-  if (kind === "line_without_towers" || kind === "tower_on_no_line") return `concerns ${lengthText(cutOff_m)}`;
-  return `cuts off ${lengthText(cutOff_m)}`;
+  return onlyConcerns(kind) ? t("concerns {length}", { length: lengthText(cutOff_m) }) : t("cuts off {length}", { length: lengthText(cutOff_m) });
 }
+
+const onlyConcerns = (kind) => kind === "line_without_towers" || kind === "tower_on_no_line";
 
 /** Facts for the panel, beside what the sentence says: [term, value]. */
 export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
-  const cut = cutOff_m ? [[cutOffText({ kind, cut_off_m: cutOff_m }).startsWith("cuts") ? t("Cuts off") : t("Concerns"), lengthText(cutOff_m)]] : [];
+  const cut = cutOff_m ? [[onlyConcerns(kind) ? t("Concerns") : t("Cuts off"), lengthText(cutOff_m)]] : [];
   switch (kind) {
     case "long_span":
       return [...cut, [t("Beyond it"), details.beyond_m ? lengthText(details.beyond_m) : t("also reached another way")]];

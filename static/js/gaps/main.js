@@ -5,8 +5,8 @@ import { byId } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { say, toast } from "../page/toast.js";
-import { t } from "../text.js";
-import { countText, whenText } from "../units.js";
+import { t, tn } from "../text.js";
+import { whenText } from "../units.js";
 import * as layer from "./gap_layer.js";
 import { mountGapList } from "./gap_list.js";
 import { mountGapPanel } from "./gap_panel.js";
@@ -109,7 +109,7 @@ function tellFacts() {
   const facts = byId("page-facts");
   facts.dataset.searching = String(!summary.is_current);
   if (!summary.searched_at) facts.textContent = summary.is_current ? t("Nothing to search yet") : t("Searching the ground…");
-  else facts.textContent = `${countText(open, "gap")} open · ${summary.is_current ? `searched ${whenText(summary.searched_at)}` : t("searching the changed ground…")}`;
+  else facts.textContent = `${tn(open, "{count} gap open", "{count} gaps open")} · ${summary.is_current ? t("searched {when}", { when: whenText(summary.searched_at) }) : t("searching the changed ground…")}`;
 }
 
 async function choose(id, { stay = false } = {}) {

@@ -18,7 +18,7 @@ export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
     const dialog = h(
       "dialog",
       { "aria-labelledby": "conflict-title" },
-      h("h2", { id: "conflict-title" }, `Changed by ${changed_by}${changed_at ? ` at ${clockText(changed_at)}` : ""}`),
+      h("h2", { id: "conflict-title" }, changed_at ? t("Changed by {name} at {time}", { name: changed_by, time: clockText(changed_at) }) : t("Changed by {name}", { name: changed_by })),
       h("p", {}, theirs ? t("Nothing of yours is stored yet.") : t("It was taken off the ground. Nothing of yours is stored.")),
       theirs && [h("h3", {}, t("What they changed")), list(differences(seen, theirs)), h("h3", {}, t("What yours would change of that")), list(differences(theirs, mine))],
       h(

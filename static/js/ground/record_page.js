@@ -116,7 +116,7 @@ export function mountRecordPage(about) {
     const none = byId("record-none");
     none.hidden = features.length > 0;
     if (!features.length) none.replaceChildren(...about.nothing());
-    byId("page-facts").textContent = features.length ? `${features.length}${next ? ` ${t("or more")}` : ""} found` : "";
+    byId("page-facts").textContent = features.length ? next ? t("{count} or more found", { count: features.length }) : t("{count} found", { count: features.length }) : "";
   }
 
   // look
@@ -223,7 +223,7 @@ export function mountRecordPage(about) {
       await remove(`${about.path}/${id}`, match(chosen.etag));
       const { data } = await get(`${about.path}/${id}/history`);
       back();
-      toast(`${name} is taken off the ground.`, { label: t("Undo"), act: () => change(async () => (await post(`/history/${data.results[0].id}/undo`), await choose(id, { stay: true })), t("It is back.")) });
+      toast(t("{name} is taken off the ground.", { name }), { label: t("Undo"), act: () => change(async () => (await post(`/history/${data.results[0].id}/undo`), await choose(id, { stay: true })), t("It is back.")) });
     });
   }
 
@@ -389,7 +389,7 @@ export function mountRecordPage(about) {
         "div",
         { class: "notice advisory" },
         icon("info"),
-        h("p", {}, h("strong", {}, `${t("An edit was not saved.")} `), `It is from ${whenText(kept.kept_at)}. `, h("button", { type: "button", class: "text-button", onclick: goOn }, t("Go on")), h("button", { type: "button", class: "text-button", onclick: () => (draft.drop(), byId("notices").replaceChildren()) }, t("Throw it away"))),
+        h("p", {}, h("strong", {}, `${t("An edit was not saved.")} `), `${t("It is from {when}.", { when: whenText(kept.kept_at) })} `, h("button", { type: "button", class: "text-button", onclick: goOn }, t("Go on")), h("button", { type: "button", class: "text-button", onclick: () => (draft.drop(), byId("notices").replaceChildren()) }, t("Throw it away"))),
       ),
     );
   }

@@ -98,7 +98,7 @@ export function mountBringIn({ userId, onStarted }) {
         return post("/imports", body, { headers });
       }, hints);
       takeOff(item);
-      say(`${item.name} is being read.`);
+      say(t("{name} is being read.", { name: item.name }));
       onStarted(data, { isLast: !items.some(isUnderWay) });
     } catch (error) {
       if (error.name === "AbortError") return;

@@ -2,6 +2,7 @@
 
 import { byId, h, keyedList } from "../dom.js";
 import { t } from "../text.js";
+import { numberText } from "../units.js";
 import { ACTIONS, factLines } from "./words.js";
 
 const SUBJECTS = { tower: t("Tower"), line: t("Line"), railway: t("Railway"), bridge: t("Bridge"), zone: t("Zone"), terrain: t("Terrain") };
@@ -58,7 +59,7 @@ function shortOf(properties) {
   if (properties.action !== "changed" && properties.action !== "kept") return "";
   const names = factLines(properties).map(({ words }) => words);
   if (!names.length) return "";
-  return `: ${names.slice(0, 3).join(", ")}${names.length > 3 ? ` and ${names.length - 3} more` : ""}`;
+  return `: ${names.slice(0, 3).join(", ")}${names.length > 3 ? ` ${t("and {count} more", { count: numberText(names.length - 3) })}` : ""}`;
 }
 
 function factsOf(properties) {
@@ -74,7 +75,7 @@ function factsOf(properties) {
         "div",
         {},
         h("dt", {}, words),
-        h("dd", {}, isPair ? [h("span", { class: "unseen" }, "before "), value(before, "before"), h("span", { "aria-hidden": "true" }, " → "), h("span", { class: "unseen" }, `${t(", after")} `), value(after, "after")] : value(after ?? before, "after")),
+        h("dd", {}, isPair ? [h("span", { class: "unseen" }, `${t("before")} `), value(before, "before"), h("span", { "aria-hidden": "true" }, " → "), h("span", { class: "unseen" }, `${t(", after")} `), value(after, "after")] : value(after ?? before, "after")),
       ),
     ),
   );
@@ -94,7 +95,7 @@ function drawFilters(current, action, acts) {
         "label",
         {},
         h("input", { type: "radio", name: "change-filter", value, checked: action === value, onchange: () => acts.filter(value) }),
-        h("span", { class: "segment" }, h("span", { class: "change-word" }, sign && h("b", { class: value, "aria-hidden": "true" }, sign), words), h("small", {}, count.toLocaleString("en-GB"))),
+        h("span", { class: "segment" }, h("span", { class: "change-word" }, sign && h("b", { class: value, "aria-hidden": "true" }, sign), words), h("small", {}, numberText(count))),
       ),
     ),
   );

@@ -2,22 +2,23 @@
 
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
+import { countText } from "../units.js";
 
 const KINDS = { tower: t("Towers"), line: t("Power lines"), railway: t("Railways"), bridge: t("Bridges") };
 const BY_GEOMETRY = "by_geometry";
 const BY_COLUMN = "column";
 const MEANINGS = {
-  key: "Key: tells them apart",
-  kind: "Kind of asset",
+  key: t("Key: tells them apart"),
+  kind: t("Kind of asset"),
   ref: t("Reference"),
-  name: "Name",
+  name: t("Name"),
   operator: t("Operator"),
   "voltage:V": t("Voltage in V"),
   "voltage:kV": t("Voltage in kV"),
   circuits: t("Circuits"),
   "height:m": t("Height in m"),
   "height:ft": t("Height in feet"),
-  subtype: "Type within its kind",
+  subtype: t("Type within its kind"),
 };
 const PLACES = { lon: t("Longitude, or x"), lat: t("Latitude, or y"), wkt: t("Geometry as WKT") };
 
@@ -92,7 +93,7 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
         choice.value = kindValues[value] ?? "";
         kindValues[value] = choice.value;
         choice.addEventListener("change", () => (kindValues[value] = choice.value));
-        return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, value), h("span", { class: "caption" }, `${rows.toLocaleString("en-GB")} rows`)), choice);
+        return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, value), h("span", { class: "caption" }, countText(rows, "row"))), choice);
       }),
     );
   }

@@ -42,7 +42,7 @@ export function fileCard(item, acts) {
       { class: "file-head" },
       icon("file"),
       h("span", { class: "file-name" }, h("strong", {}, item.name), h("span", { class: "caption" }, sizeText(item.size))),
-      h("button", { type: "button", class: "icon-button tight", "aria-label": `Take ${item.name} off`, title: t("Take it off"), onclick: () => acts.drop(item) }, icon("x", "small")),
+      h("button", { type: "button", class: "icon-button tight", "aria-label": t("Take {name} off", { name: item.name }), title: t("Take it off"), onclick: () => acts.drop(item) }, icon("x", "small")),
     ),
     form,
     status,
@@ -110,7 +110,7 @@ export function fileCard(item, acts) {
 function statusOf(item, acts, formId) {
   const share = () => h("span", { dataset: { share: "" } });
   const button = (words, act, look = "") => h("button", { type: "button", class: `button ${look}`.trim(), onclick: act }, words);
-  const bar = () => h("div", { class: "progress", role: "progressbar", "aria-label": `Sending ${item.name}`, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
+  const bar = () => h("div", { class: "progress", role: "progressbar", "aria-label": t("Sending {name}", { name: item.name }), "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
   if (item.phase === "sending") return [h("div", { class: "job-words" }, h("span", {}, t("Sending")), share()), bar(), h("div", { class: "row-acts" }, button(t("Stop"), () => acts.stop(item)))];
   if (item.phase === "starting") return [h("div", { class: "job-words" }, h("span", { role: "status" }, t("Sent. It will be read now.")))];
   if (item.phase === "waiting") {

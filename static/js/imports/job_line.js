@@ -9,7 +9,7 @@ export function jobLine(what, cancel) {
   const words = h("span", {});
   const share = h("span", {});
   const bar = h("div", { class: "progress", role: "progressbar", "aria-label": what, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
-  const stop = h("button", { type: "button", class: "button", "aria-label": `Cancel: ${what}` }, t("Cancel"));
+  const stop = h("button", { type: "button", class: "button", "aria-label": t("Cancel: {what}", { what }) }, t("Cancel"));
   stop.addEventListener("click", () => {
     stop.disabled = true;
     stop.textContent = t("Stopping");

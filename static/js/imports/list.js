@@ -65,8 +65,8 @@ function secondLine(proposal) {
   const who = proposal.decided_by ?? proposal.created_by;
   const when = whenText(proposal.decided_at ?? proposal.created_at);
   const what = {
-    reading: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
-    applying: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : "waiting"),
+    reading: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : t("waiting")),
+    applying: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : t("waiting")),
     refused: () => proposal.faults[0]?.message ?? "",
     ready: () => whatOf(proposal),
     applied: () => whatOf(proposal),

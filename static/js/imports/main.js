@@ -6,8 +6,8 @@ import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { say, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
-import { t } from "../text.js";
-import { countText } from "../units.js";
+import { t, tn } from "../text.js";
+import { numberText } from "../units.js";
 import { mountBringIn, notAllowed } from "./bring_in.js";
 import { createChangesLayer, positionsOf } from "./changes_layer.js";
 import { mountChanges } from "./changes.js";
@@ -74,7 +74,7 @@ async function loadList({ more = false } = {}) {
 function tellFacts(proposals) {
   const waiting = proposals.filter(({ state }) => state === "ready").length;
   const working = proposals.filter(isOpen).length;
-  byId("page-facts").textContent = [working && `${working} being worked on`, waiting ? `${countText(waiting, "import")} to be decided` : t("Nothing to be decided")].filter(Boolean).join(" · ");
+  byId("page-facts").textContent = [working && t("{count} being worked on", { count: numberText(working) }), waiting ? tn(waiting, "{count} import to be decided", "{count} imports to be decided") : t("Nothing to be decided")].filter(Boolean).join(" · ");
 }
 
 const put = (proposal) => {
@@ -197,7 +197,7 @@ const acts = {
     await decide("discard", t("Not discarded."), () => post(`/imports/${current.id}/discard`, {}));
     if (store.state.current?.state !== "discarded") return;
     closeProposal();
-    toast(`“${titleOf(current)}” is discarded. Nothing of it counts.`);
+    toast(t("“{name}” is discarded. Nothing of it counts.", { name: titleOf(current) }));
   },
   async readAgain(parameters) {
     await decide("read", t("Not read again."), () => patch(`/imports/${store.state.current.id}`, { parameters }));

@@ -1,6 +1,8 @@
 /** "Take the visible area from Overpass": how large it is, how large it may be, and the button. */
 
 import { byId } from "../dom.js";
+import { t } from "../text.js";
+import { areaText } from "../units.js";
 
 const EARTH_RADIUS_KM = 6_371.0088; // IUGG mean radius
 
@@ -10,7 +12,7 @@ export function areaKm2([west, south, east, north]) {
   return EARTH_RADIUS_KM ** 2 * Math.abs(east - west) * radians * Math.abs(Math.sin(north * radians) - Math.sin(south * radians));
 }
 
-const text = (area_km2) => `${area_km2.toLocaleString("en-GB", { maximumFractionDigits: area_km2 < 10 ? 1 : 0 })}\u00a0km²`;
+const text = (area_km2) => areaText(area_km2 * 1e6);
 
 /** limit: { most_km2 }. take(box) asks for it. */
 export function mountOverpassBox(map, limit, take) {
@@ -25,7 +27,7 @@ export function mountOverpassBox(map, limit, take) {
     const area_km2 = areaKm2([west, south, east, north]);
     isTooLarge = area_km2 > limit.most_km2 || west < -180 || east > 180;
     button.setAttribute("aria-disabled", String(isTooLarge));
-    words.textContent = isTooLarge ? `The map shows ${text(area_km2)}; at most ${text(limit.most_km2)} are taken at once. Zoom in.` : `The map shows ${text(area_km2)}, of at most ${text(limit.most_km2)}.`;
+    words.textContent = isTooLarge ? t("The map shows {area}; at most {most} are taken at once. Zoom in.", { area: text(area_km2), most: text(limit.most_km2) }) : t("The map shows {area}, of at most {most}.", { area: text(area_km2), most: text(limit.most_km2) });
   }
   map.map.on("moveend", measure);
   measure();

@@ -2,8 +2,8 @@
 
 import { byId, h, icon } from "../dom.js";
 import { open as openDialog } from "../page/keyboard.js";
-import { t } from "../text.js";
-import { coordinateText, whenText } from "../units.js";
+import { t, tn } from "../text.js";
+import { coordinateText, countText, numberText, whenText } from "../units.js";
 import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
@@ -22,7 +22,7 @@ export function mountProposal(store, acts) {
 
   store.listen(["current", "busy"], ({ current, busy }) => {
     byId("imports-home").hidden = current !== null;
-    document.title = `${current ? `${titleOf(current)} · ` : ""}Imports · Spanwise`;
+    document.title = `${current ? `${titleOf(current)} · ` : ""}${t("Imports")} · Spanwise`;
     panel.hidden = foot.hidden = byId("changes-panel").hidden = current === null;
     if (!current) {
       drawn = "";
@@ -57,14 +57,14 @@ export function mountProposal(store, acts) {
       line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
       state === "ready" || state === "applied" || state === "applying" ? h("p", { class: "import-sentence", id: "import-sentence", role: "status" }, sentenceOf(proposal)) : null,
-      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, difference.unchanged === 1 ? t("1 is as it was.") : `${difference.unchanged.toLocaleString("en-GB")} are as they were.`),
+      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
       ...notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       mapping(proposal),
       regionChoice(proposal),
       overwriteChoice(proposal),
       facts(proposal),
       proposal.kind === "zones" && state === "applied" && typeof summary.set === "string" ? versions(summary.set, acts) : null,
-      Object.values(difference).some((count) => count > MOST_LISTED) && h("p", { class: "caption" }, `Below are the first ${MOST_LISTED.toLocaleString("en-GB")} of each.`),
+      Object.values(difference).some((count) => count > MOST_LISTED) && h("p", { class: "caption" }, t("Below are the first {count} of each.", { count: numberText(MOST_LISTED) })),
     ];
   }
 
@@ -95,7 +95,7 @@ export function mountProposal(store, acts) {
       overwrites = box.checked;
       foot.replaceChildren(...decision(proposal, null));
     });
-    return h("label", { class: "overwrite" }, box, h("span", {}, `Overwrite what was edited by hand (${kept.toLocaleString("en-GB")})`));
+    return h("label", { class: "overwrite" }, box, h("span", {}, t("Overwrite what was edited by hand ({count})", { count: numberText(kept) })));
   }
 
   function decision(proposal, busy) {
@@ -104,7 +104,7 @@ export function mountProposal(store, acts) {
     const count = touched(proposal.difference, { overwrites });
     const needsMapping = Boolean(proposal.summary.needs_mapping);
     const isIdle = needsMapping || (count === 0 && Object.keys(proposal.difference).length > 0);
-    const words = busy === "apply" ? t("Applying") : count && proposal.kind !== "terrain" ? `Apply ${count.toLocaleString("en-GB")} ${count === 1 ? "change" : "changes"}` : t("Apply");
+    const words = busy === "apply" ? t("Applying") : count && proposal.kind !== "terrain" ? tn(count, "Apply {count} change", "Apply {count} changes") : t("Apply");
     const apply = h("button", { type: "button", class: needsMapping ? "button" : "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null }, words);
     apply.addEventListener("click", () => (overwrites ? askFirst(proposal) : acts.apply(false)));
     return [h("div", { class: "foot-buttons" }, discard(busy), apply)];
@@ -116,12 +116,11 @@ export function mountProposal(store, acts) {
 
   function askFirst(proposal) {
     const kept = proposal.difference.kept;
-    const what = kept === 1 ? t("1 row that was edited by hand is") : `${kept.toLocaleString("en-GB")} rows that were edited by hand are`;
     const dialog = h(
       "dialog",
       { "aria-labelledby": "overwrite-title" },
-      h("h2", { id: "overwrite-title" }, `Overwrite ${kept === 1 ? "1 edit" : `${kept.toLocaleString("en-GB")} edits`} by hand?`),
-      h("p", {}, `${what} set to what the file says. The edits stay in the history, and can be brought back one by one.`),
+      h("h2", { id: "overwrite-title" }, tn(kept, "Overwrite {count} edit by hand?", "Overwrite {count} edits by hand?")),
+      h("p", {}, `${tn(kept, "{count} row that was edited by hand is set to what the file says.", "{count} rows that were edited by hand are set to what the file says.")} ${t("The edits stay in the history, and can be brought back one by one.")}`),
       h(
         "form",
         { method: "dialog", class: "acts" },
@@ -145,7 +144,8 @@ function sentenceOf({ kind, state, difference, summary }) {
 function head(proposal, acts) {
   const parts = [KINDS[proposal.kind].words, ORIGINS[proposal.origin], sizeText(proposal.size_bytes)].filter(Boolean);
   const who = [proposal.created_by, whenText(proposal.created_at)].filter(Boolean).join(", ");
-  const decided = proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state) ? `${proposal.state === "discarded" ? t("Discarded") : t("Applied")} by ${proposal.decided_by}, ${whenText(proposal.decided_at)}` : "";
+  const decision = { name: proposal.decided_by, when: proposal.decided_at && whenText(proposal.decided_at) };
+  const decided = proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state) ? (proposal.state === "discarded" ? t("Discarded by {name}, {when}", decision) : t("Applied by {name}, {when}", decision)) : "";
   return [
     h("a", { class: "back", id: "back-to-imports", href: "/imports", onclick: (event) => (event.preventDefault(), acts.back()) }, icon("arrow-left", "small"), t("All imports")),
     h("div", { class: "proposal-head" }, h("h2", { id: "proposal-title", tabindex: "-1" }, titleOf(proposal)), stateChip(proposal)),
@@ -173,7 +173,7 @@ function facts({ summary, provenance, state }) {
   if (state === "reading") return null;
   const lines = [
     ...summaryLines(summary),
-    ...[["licence", "licence"], ["attribution", "attribution"], ["source_address", "address"]].filter(([name]) => provenance[name]).map(([name, words]) => ({ words, value: provenance[name] })),
+    ...[["licence", t("licence")], ["attribution", t("attribution")], ["source_address", t("address")]].filter(([name]) => provenance[name]).map(([name, words]) => ({ words, value: provenance[name] })),
     ...(provenance.fetched_at ? [{ words: t("fetched"), value: whenText(provenance.fetched_at) }] : []),
   ];
   if (!lines.length) return null;
@@ -193,8 +193,8 @@ function versions(setName, acts) {
         h(
           "li",
           {},
-          h("span", {}, `Version ${row.version}: ${row.zone_count.toLocaleString("en-GB")} zones`, h("span", { class: "caption" }, [row.created_by, whenText(row.created_at)].filter(Boolean).join(", "))),
-          place === 0 ? h("span", { class: "caption" }, "now") : h("button", { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) }, icon("rotate-ccw", "small"), t("Roll back")),
+          h("span", {}, `${t("Version {number}", { number: row.version })}: ${countText(row.zone_count, "zone")}`, h("span", { class: "caption" }, [row.created_by, whenText(row.created_at)].filter(Boolean).join(", "))),
+          place === 0 ? h("span", { class: "caption" }, t("now")) : h("button", { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) }, icon("rotate-ccw", "small"), t("Roll back")),
         ),
       ),
     );

@@ -1,7 +1,7 @@
 /** What the page "Imports" says: kinds, states, differences and facts as words. */
 
-import { t } from "../text.js";
-import { countText } from "../units.js";
+import { language, localeOf, t } from "../text.js";
+import { countText, heightText } from "../units.js";
 
 const SPACE = "\u00a0";
 
@@ -29,14 +29,14 @@ export const ACTIONS = {
   kept: { words: t("kept as edited by hand"), short: t("Kept"), sign: "=" },
 };
 
-export const ORIGINS = { upload: "", overpass: t("from Overpass"), subscription: t("from a subscription"), roll_back: "roll-back" };
+export const ORIGINS = { upload: "", overpass: t("from Overpass"), subscription: t("from a subscription"), roll_back: t("roll-back") };
 
 /** Where heights count from, for files that do not say it. */
 export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN2016", "NAVD88"];
 
 export const isOpen = (proposal) => proposal.state === "reading" || proposal.state === "applying";
 
-const number = (value) => value.toLocaleString("en-GB");
+const number = (value) => value.toLocaleString(localeOf(language));
 
 /** "412 new, 3 changed, 1 vanished, 2 kept as edited by hand." */
 export function differenceSentence(difference) {
@@ -48,9 +48,9 @@ export function differenceSentence(difference) {
 
 /** "Heights from 431 m to 2,599 m above EGM96, in place of the earlier model of this name." */
 export function terrainSentence({ lowest_m, highest_m, vertical_datum }, difference) {
-  const metres = (value) => `${number(Math.round(value)).replace("-", "−")}${SPACE}m`;
-  const again = difference.changed > 0 ? t(", in place of the earlier model of this name") : "";
-  return `Heights from ${metres(lowest_m)} to ${metres(highest_m)} above ${vertical_datum}${again}.`;
+  const values = { low: heightText(lowest_m), high: heightText(highest_m), datum: vertical_datum };
+  if (difference.changed > 0) return t("Heights from {low} to {high} above {datum}, in place of the earlier model of this name.", values);
+  return t("Heights from {low} to {high} above {datum}.", values);
 }
 
 /** How many rows of the ground an application touches. */
@@ -62,10 +62,10 @@ export function touched(difference, { overwrites = false } = {}) {
 export function sizeText(bytes) {
   if (bytes === null || bytes === undefined) return "";
   if (bytes < 1024 * 1024) return `${number(Math.max(1, Math.round(bytes / 1024)))}${SPACE}kB`;
-  return `${(bytes / 1024 / 1024).toLocaleString("en-GB", { maximumFractionDigits: 1 })}${SPACE}MiB`;
+  return `${(bytes / 1024 / 1024).toLocaleString(localeOf(language), { maximumFractionDigits: 1 })}${SPACE}MiB`;
 }
 
-const UNITS = { m: "m", km: "km", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: "m²", bytes: "bytes", s: "s" };
+const UNITS = { m: "m", km: "km", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: "m²", bytes: t("bytes"), s: "s" };
 
 /** "height_m" → { words: "height", unit: "m" } */
 export function factName(name) {
@@ -79,16 +79,16 @@ export function factName(name) {
 
 /** A value as text; what has a shape is on the map. */
 export function factText(name, value) {
-  if (value === null || value === undefined || value === "") return "nothing";
-  if (value === true) return "yes";
-  if (value === false) return "no";
+  if (value === null || value === undefined || value === "") return t("nothing");
+  if (value === true) return t("yes");
+  if (value === false) return t("no");
   if (typeof value === "number") return number(value).replace("-", "−");
   if (typeof value === "string") return value.length > 120 ? `${value.slice(0, 119)}…` : value;
   if (isGeometry(value)) return t("on the map");
   if (Array.isArray(value)) return value.length && value.every((entry) => typeof entry !== "object") ? value.join(", ") : countText(value.length, "entry", "entries");
   if ("value_m" in value) return `${number(value.value_m)}${SPACE}m ${value.reference ?? ""}`.trim();
   const entries = Object.entries(value);
-  return entries.length ? factText(name, entries.map(([key, inner]) => `${key}: ${factText(key, inner)}`).join(", ")) : "nothing";
+  return entries.length ? factText(name, entries.map(([key, inner]) => `${key}: ${factText(key, inner)}`).join(", ")) : t("nothing");
 }
 
 export const isGeometry = (value) => Boolean(value) && typeof value === "object" && typeof value.type === "string" && ("coordinates" in value || "geometries" in value);

@@ -5,6 +5,8 @@ import { t } from "../text.js";
 import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
 
+const THEME_WORDS = { system: t("as the system"), light: t("light"), dark: t("dark") };
+
 export function readPage() {
   return JSON.parse(byId("page").textContent);
 }
@@ -28,9 +30,9 @@ export function startChrome({ bindings = [] } = {}) {
   const label = () => {
     const theme = chosenTheme();
     themeButton.replaceChildren(icon(THEME_ICONS[theme]));
-    themeButton.setAttribute("aria-label", `Theme: ${theme}`);
-    themeButton.title = `Theme: ${theme}`;
-    document.querySelectorAll("[data-theme-name]").forEach((place) => (place.textContent = theme));
+    themeButton.setAttribute("aria-label", t("Theme: {theme}", { theme: THEME_WORDS[theme] }));
+    themeButton.title = t("Theme: {theme}", { theme: THEME_WORDS[theme] });
+    document.querySelectorAll("[data-theme-name]").forEach((place) => (place.textContent = THEME_WORDS[theme]));
   };
   themeButton.addEventListener("click", nextTheme);
   onTheme(label);
@@ -43,7 +45,7 @@ export function startChrome({ bindings = [] } = {}) {
 
 function accountMenu(bindings) {
   const menu = byId("account-menu").content.cloneNode(true).firstElementChild;
-  menu.querySelector("[data-theme-name]").textContent = chosenTheme();
+  menu.querySelector("[data-theme-name]").textContent = THEME_WORDS[chosenTheme()];
   menu.querySelector("[data-act=theme]").addEventListener("click", nextTheme);
   menu.querySelector("[data-act=keys]").addEventListener("click", () => (closeMenu(), showKeys(bindings)));
   return menu;

@@ -1,8 +1,10 @@
 /** Folding the side and the dock, and on a phone the sheet with its three heights. */
 
 import { byId } from "../dom.js";
+import { t } from "../text.js";
 
 const HEIGHTS = ["low", "half", "full"];
+const HEIGHT_WORDS = { low: t("Panel height: low"), half: t("Panel height: half"), full: t("Panel height: full") };
 const phone = matchMedia("(max-width: 720px)");
 
 /** dockOnPhone: the element that takes the dock on a phone, first in the sheet. */
@@ -41,7 +43,7 @@ function dragSheet(workbench, handle) {
   const setHeight = (name) => {
     workbench.style.removeProperty("--sheet");
     workbench.dataset.sheet = name;
-    handle.setAttribute("aria-label", `Panel height: ${name}`);
+    handle.setAttribute("aria-label", HEIGHT_WORDS[name]);
   };
   setHeight("half");
 

@@ -47,7 +47,7 @@ export function mountGroundPanel(on) {
     height(position, { ground_amsl_m, vertical_datum, source }) {
       const isKnown = ground_amsl_m !== null;
       put(
-        h("h2", { class: "terrain-sentence" }, isKnown ? `${heightText(ground_amsl_m)} above sea level` : t("No terrain model knows the ground here.")),
+        h("h2", { class: "terrain-sentence" }, isKnown ? t("{height} above sea level", { height: heightText(ground_amsl_m) }) : t("No terrain model knows the ground here.")),
         h("p", { class: "caption" }, [coordinateText(position), isKnown && vertical_datum, isKnown && source].filter(Boolean).join(" · ")),
       );
     },

@@ -6,7 +6,7 @@ import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { distance_m } from "../mission/span_strip.js";
 import { say, toast } from "../page/toast.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { countText } from "../units.js";
 import { mountGroundPanel } from "./ground_panel.js";
 import { askToRemove, mountModelList } from "./model_list.js";
@@ -46,7 +46,7 @@ async function load() {
     models = (await get("/terrain")).data.features;
     showList(models);
     layer.showModels(map.map, models);
-    byId("page-facts").textContent = models.length ? `${countText(models.length, "model")}, newest on top` : t("No models");
+    byId("page-facts").textContent = models.length ? tn(models.length, "{count} model, newest on top", "{count} models, newest on top") : t("No models");
   } catch (error) {
     toast(error.message, { label: t("Try again"), act: load });
   }
@@ -188,7 +188,7 @@ async function takeAway(model) {
   if (!(await askToRemove(model.properties))) return;
   try {
     await remove(`/terrain/${model.id}`);
-    toast(`${model.properties.file_name} removed.`);
+    toast(t("{name} removed.", { name: model.properties.file_name }));
   } catch (error) {
     toast(error.status === 404 ? t("It has been removed already.") : error.message);
   }

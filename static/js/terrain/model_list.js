@@ -1,15 +1,15 @@
 /** The terrain models in the side: what counts on top first, where each is from, and how whole it is. */
 
 import { byId, h, icon } from "../dom.js";
-import { t } from "../text.js";
-import { countText, heightText, lengthText, whenText } from "../units.js";
+import { language, localeOf, t } from "../text.js";
+import { countText, heightText, lengthText, numberText, whenText } from "../units.js";
 
 /** Shares below what shows in one digit are not rounded to none. */
 export function voidsText({ posts, voids }) {
   if (posts === null || voids === null || !posts) return t("not counted");
-  if (!voids) return "none";
+  if (!voids) return t("none");
   const percent = (100 * voids) / posts;
-  const share = percent < 0.1 ? "under 0.1" : percent.toLocaleString("en-GB", { maximumFractionDigits: 1 });
+  const share = percent < 0.1 ? t("under {share}", { share: numberText(0.1, 1) }) : percent.toLocaleString(localeOf(language), { maximumFractionDigits: 1 });
   return `${countText(voids, "post")}, ${share}\u00a0%`;
 }
 
@@ -17,7 +17,7 @@ export function voidsText({ posts, voids }) {
 export function factsOf(properties) {
   const { lowest_m, highest_m, vertical_datum, resolution_m, attribution, licence, is_synthetic, imported_at } = properties;
   const facts = [
-    [t("Heights"), lowest_m === null || highest_m === null ? t("not counted") : `${heightText(lowest_m)} to ${heightText(highest_m)}`],
+    [t("Heights"), lowest_m === null || highest_m === null ? t("not counted") : t("{low} to {high}", { low: heightText(lowest_m), high: heightText(highest_m) })],
     [t("Vertical datum"), vertical_datum],
     [t("Posts every"), lengthText(resolution_m)],
     [t("Voids"), voidsText(properties)],
@@ -46,7 +46,7 @@ export function mountModelList(canCurate, on) {
         "div",
         { class: "terrain-head" },
         opener,
-        canCurate && h("button", { class: "icon-button tight", type: "button", "aria-label": `Remove ${file_name}`, title: t("Remove"), onclick: () => on.remove(model) }, icon("trash-2")),
+        canCurate && h("button", { class: "icon-button tight", type: "button", "aria-label": t("Remove {name}", { name: file_name }), title: t("Remove"), onclick: () => on.remove(model) }, icon("trash-2")),
       ),
       words && h("p", { class: "caption" }, words),
       h("dl", { class: "terrain-facts" }, factsOf(model.properties).map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
@@ -76,7 +76,7 @@ export function askToRemove({ file_name }) {
     const dialog = h(
       "dialog",
       { "aria-labelledby": "remove-title" },
-      h("h2", { id: "remove-title" }, `Remove ${file_name}?`),
+      h("h2", { id: "remove-title" }, t("Remove {name}?", { name: file_name })),
       h("p", {}, t("Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again.")),
       h(
         "form",

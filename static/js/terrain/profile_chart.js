@@ -1,8 +1,8 @@
 /** The profile as a drawing: the ground from the side, towers that stand on it, and one cursor. */
 
 import { svg } from "../dom.js";
-import { t } from "../text.js";
-import { countText, heightText, lengthText } from "../units.js";
+import { t, tn } from "../text.js";
+import { countText, heightText, lengthText, numberText } from "../units.js";
 
 export const EDGES = { left: 52, right: 14, top: 14, bottom: 20 };
 const LEAST_SPAN_M = 20; // a plain must not look like mountains
@@ -79,11 +79,11 @@ export function towersAlong(profile, features) {
 export function profileSentence(profile, towers = []) {
   const known = profile.ground_amsl_m.filter((ground) => ground !== null).length;
   const long = lengthText(profile.length_m);
-  if (!known) return `${long}; no terrain model knows the ground here.`;
+  if (!known) return t("{length}; no terrain model knows the ground here.", { length: long });
   const unknown = profile.ground_amsl_m.length - known;
-  const parts = [`${long}, ground from ${heightText(profile.lowest_m)} to ${heightText(profile.highest_m)} above sea level`];
+  const parts = [t("{length}, ground from {low} to {high} above sea level", { length: long, low: heightText(profile.lowest_m), high: heightText(profile.highest_m) })];
   if (towers.length) parts.push(countText(towers.length, "tower"));
-  if (unknown) parts.push(`unknown at ${countText(unknown, "place")} of ${profile.ground_amsl_m.length}`);
+  if (unknown) parts.push(tn(unknown, "unknown at {count} place of {all}", "unknown at {count} places of {all}", { all: numberText(profile.ground_amsl_m.length) }));
   return `${parts.join(", ")}.`;
 }
 
@@ -118,7 +118,7 @@ export function drawProfile(profile, towers, width, height) {
     element.append(svg("line", { class: tower.top_amsl_m === null ? "tower untold" : "tower", x1: x(tower.distance_m), x2: x(tower.distance_m), y1: foot, y2: top }));
   }
   element.append(
-    svg("text", { class: "tick", x: EDGES.left, y: height - 5 }, `0${"\u00a0"}m`),
+    svg("text", { class: "tick", x: EDGES.left, y: height - 5 }, heightText(0)),
     svg("text", { class: "tick", x: width - EDGES.right, y: height - 5, "text-anchor": "end" }, lengthText(profile.length_m)),
   );
   const line = svg("line", { class: "cursor", y1: EDGES.top, y2: floor });

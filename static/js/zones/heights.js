@@ -12,15 +12,15 @@ const FLIGHT_LEVEL_M = 100 * FOOT_M;
 export function limitText(limit, side) {
   if (!limit) return side === "lower" ? t("lower limit not stated") : t("upper limit not stated");
   if (limit.reference === "STD") return `FL\u00a0${Math.round(limit.value_m / FLIGHT_LEVEL_M)}`;
-  if (limit.value_m === 0 && limit.reference === "AGL") return "ground";
-  return `${Math.round(limit.value_m).toLocaleString("en-GB")}\u00a0m ${WORDS[limit.reference] ?? ""}`.trim();
+  if (limit.value_m === 0 && limit.reference === "AGL") return t("ground");
+  return `${heightText(limit.value_m)} ${WORDS[limit.reference] ?? ""}`.trim();
 }
 
 /** What is known of both limits, in one sentence. */
 export function heightsText({ lower_limit: lower, upper_limit: upper }) {
-  if (lower && upper) return `From ${limitText(lower, "lower")} to ${limitText(upper, "upper")}`;
-  if (upper) return `Up to ${limitText(upper, "upper")}, lower limit not stated`;
-  return lower ? `From ${limitText(lower, "lower")}, upper limit not stated` : t("Heights not stated");
+  if (lower && upper) return t("From {low} to {high}", { low: limitText(lower, "lower"), high: limitText(upper, "upper") });
+  if (upper) return t("Up to {high}, lower limit not stated", { high: limitText(upper, "upper") });
+  return lower ? t("From {low}, upper limit not stated", { low: limitText(lower, "lower") }) : t("Heights not stated");
 }
 
 /** A column of air with the band in it; what is not stated is open, drawn as a dashed end. */
@@ -42,11 +42,11 @@ export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
 /** { element, read() } for one limit; read gives { value_m, reference } or null for "not stated". */
 export function limitField(side, words, limit) {
   const isLevel = limit?.reference === "STD";
-  const value = h("input", { class: "input", id: `${side}-value`, type: "number", step: "any", min: -1000, max: 100_000, value: limit ? String(Math.round((isLevel ? limit.value_m / FLIGHT_LEVEL_M : limit.value_m) * 10) / 10) : "", "aria-label": `${words}, value` });
-  const unit = h("select", { class: "input", "aria-label": `${words}, unit` }, [["m", "m"], ["ft", "ft"]].map(([key, text]) => h("option", { value: key }, text)));
+  const value = h("input", { class: "input", id: `${side}-value`, type: "number", step: "any", min: -1000, max: 100_000, value: limit ? String(Math.round((isLevel ? limit.value_m / FLIGHT_LEVEL_M : limit.value_m) * 10) / 10) : "", "aria-label": t("{limit}, value", { limit: words }) });
+  const unit = h("select", { class: "input", "aria-label": t("{limit}, unit", { limit: words }) }, [["m", "m"], ["ft", "ft"]].map(([key, text]) => h("option", { value: key }, text)));
   const reference = h(
     "select",
-    { class: "input", "aria-label": `${words}, counted from` },
+    { class: "input", "aria-label": t("{limit}, counted from", { limit: words }) },
     [["", t("not stated")], ...REFERENCES].map(([key, text]) => h("option", { value: key, selected: key === (limit?.reference ?? "") }, text)),
   );
   const metres = h("p", { class: "caption", hidden: true });

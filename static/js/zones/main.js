@@ -37,7 +37,7 @@ function details({ properties }) {
     h(
       "dl",
       { class: "facts" },
-      term(t("Circle"), properties.circle && `${lengthText(properties.circle.radius_m)} round ${coordinateText(properties.circle.centre)}`), term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
+      term(t("Circle"), properties.circle && t("{radius} round {place}", { radius: lengthText(properties.circle.radius_m), place: coordinateText(properties.circle.centre) })), term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
       term(t("Set"), properties.zone_set ?? t("Drawn here")), term(t("File"), source?.file_name), term(t("Licence"), source ? source.licence || t("not stated") : ""), term(t("Attribution"), source?.attribution),
       term(t("Valid"), source ? validityText(source) || t("not stated") : ""), term(t("Address"), source?.source_address), term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)), term(t("Imported"), source?.imported_at && whenText(source.imported_at)), term(t("Changed"), whenText(properties.updated_at)),
     ),
@@ -90,7 +90,7 @@ byId("record-in-view").addEventListener("change", (event) => {
 
 function showSet() {
   byId("zone-set-filter").replaceChildren(
-    ...(filter.set ? [h("span", { class: "chip" }, filter.set.name, h("button", { type: "button", class: "icon-button tight", "aria-label": `No longer only ${filter.set.name}`, onclick: () => ((filter.set = null), showSet(), records.load()) }, icon("x", "small")))] : []),
+    ...(filter.set ? [h("span", { class: "chip" }, filter.set.name, h("button", { type: "button", class: "icon-button tight", "aria-label": t("No longer only {name}", { name: filter.set.name }), onclick: () => ((filter.set = null), showSet(), records.load()) }, icon("x", "small")))] : []),
   );
 }
 

@@ -3,7 +3,7 @@
 import { t } from "../text.js";
 
 export const DAYS = [["MON", t("Mon")], ["TUE", t("Tue")], ["WED", t("Wed")], ["THU", t("Thu")], ["FRI", t("Fri")], ["SAT", t("Sat")], ["SUN", t("Sun")]];
-export const EVENTS = [["BMCT", t("morning twilight")], ["SR", "sunrise"], ["SS", "sunset"], ["EECT", t("end of evening twilight")]];
+export const EVENTS = [["BMCT", t("morning twilight")], ["SR", t("sunrise")], ["SS", t("sunset")], ["EECT", t("end of evening twilight")]];
 // Where an event is drawn on the week bar: it moves with place and season, so its edge is drawn soft.
 const USUAL_H = { BMCT: 5.5, SR: 6, SS: 18, EECT: 18.5 };
 

@@ -8,7 +8,10 @@ const offsetWords = () => {
   const minutes = -new Date().getTimezoneOffset();
   if (!minutes) return t("Your clock shows UTC now.");
   const hours = Math.floor(Math.abs(minutes) / 60);
-  return `08:00 UTC is ${String((8 + Math.trunc(minutes / 60) + 24) % 24).padStart(2, "0")}:${String(Math.abs(minutes) % 60).padStart(2, "0")} on your clock now (UTC${minutes > 0 ? "+" : "−"}${hours}).`;
+  return t("08:00 UTC is {time} on your clock now (UTC{offset}).", {
+    time: `${String((8 + Math.trunc(minutes / 60) + 24) % 24).padStart(2, "0")}:${String(Math.abs(minutes) % 60).padStart(2, "0")}`,
+    offset: `${minutes > 0 ? "+" : "−"}${hours}`,
+  });
 };
 
 /** The week as seven rows of 24 hours. */
@@ -52,7 +55,7 @@ export function scheduleEditor(schedule) {
 
   function side(entry, which, words) {
     const event = h("select", { class: "input", "aria-label": words }, [["", t("at a time")], ...EVENTS].map(([key, text]) => h("option", { value: key, selected: key === (entry[`${which}Event`] ?? "") }, text)));
-    const time = h("input", { class: "input", type: "time", "aria-label": `${words}, UTC`, value: timeToField(entry[`${which}Time`]), disabled: Boolean(entry[`${which}Event`]) });
+    const time = h("input", { class: "input", type: "time", "aria-label": t("{side}, UTC", { side: words }), value: timeToField(entry[`${which}Time`]), disabled: Boolean(entry[`${which}Event`]) });
     event.addEventListener("change", change(() => {
       entry[`${which}Event`] = event.value || null;
       entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
@@ -86,7 +89,7 @@ export function scheduleEditor(schedule) {
         h(
           "div",
           { class: "period" },
-          h("div", { class: "period-head" }, h("strong", {}, periods.length > 1 ? `Period ${number + 1}` : t("Period")), h("button", { type: "button", class: "icon-button tight", "aria-label": t("Remove the period"), onclick: change(() => periods.splice(number, 1)) }, icon("x", "small"))),
+          h("div", { class: "period-head" }, h("strong", {}, periods.length > 1 ? t("Period {number}", { number: number + 1 }) : t("Period")), h("button", { type: "button", class: "icon-button tight", "aria-label": t("Remove the period"), onclick: change(() => periods.splice(number, 1)) }, icon("x", "small"))),
           h("div", { class: "time-row" }, moment(period, "startDateTime", t("From, UTC"), number), moment(period, "endDateTime", t("Until, UTC"), number)),
           weekDrawing(period),
           ...period.schedule.map((entry, index) =>
@@ -102,7 +105,7 @@ export function scheduleEditor(schedule) {
           h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.push(newEntry())) }, period.schedule.length ? t("Add hours") : t("Only at certain hours")),
         ),
       ),
-      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, t("Add a period")), h("p", { class: "caption" }, `Days and hours are UTC. ${offsetWords()}`)] : []),
+      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, t("Add a period")), h("p", { class: "caption" }, `${t("Days and hours are UTC.")} ${offsetWords()}`)] : []),
     );
   }
   draw();

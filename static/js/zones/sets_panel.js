@@ -3,13 +3,13 @@
 import { ApiError, follow, get, patch, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { toast } from "../page/toast.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { countText, whenText } from "../units.js";
 
 const FORMATS = [["", t("found out from the file")], ["ed269", "ED-269"], ["ed318", "ED-318"], ["openair", "OpenAir"], ["geojson", "GeoJSON"]];
 const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
 /** "from 1 Jan until 31 Dec": what a file states of itself. */
-export const validityText = ({ valid_from: from, valid_until: until }) => [from && `from ${whenText(from)}`, until && `until ${whenText(until)}`].filter(Boolean).join(" ");
+export const validityText = ({ valid_from: from, valid_until: until }) => [from && t("from {when}", { when: whenText(from) }), until && t("until {when}", { when: whenText(until) })].filter(Boolean).join(" ");
 
 export function mountSetsPanel({ canCurate, showZones }) {
   const place = byId("zone-sets");
@@ -60,7 +60,7 @@ export function mountSetsPanel({ canCurate, showZones }) {
         { class: "facts" },
         term(t("File"), source?.file_name), term(t("Format"), set.source_format), term(t("Licence"), source?.licence || (source ? t("not stated") : "")), term(t("Attribution"), source?.attribution),
         term(t("Address"), source?.source_address), term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)), term(t("Imported"), source?.imported_at && whenText(source.imported_at)),
-        term(t("Valid"), source ? validityText(source) || t("not stated") : ""), term(t("Edited"), set.edited_count ? `${countText(set.edited_count, "zone")} by hand` : ""),
+        term(t("Valid"), source ? validityText(source) || t("not stated") : ""), term(t("Edited"), set.edited_count ? tn(set.edited_count, "{count} zone by hand", "{count} zones by hand") : ""),
         subscription && term(t("Subscription"), subscriptionWords(subscription)),
       ),
       subscription?.problem && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, h("strong", {}, `${t("Not fetched.")} `), subscription.problem)),
@@ -76,11 +76,11 @@ export function mountSetsPanel({ canCurate, showZones }) {
     );
   }
 
-  const subscriptionWords = ({ is_active, interval_h, fetched_at }) => (is_active ? `every ${interval_h}\u00a0h${fetched_at ? `, source last answered ${whenText(fetched_at)}` : t(", not fetched yet")}` : "paused");
+  const subscriptionWords = ({ is_active, interval_h, fetched_at }) => (is_active ? `${t("every {hours}\u00a0h", { hours: interval_h })}, ${fetched_at ? t("source last answered {when}", { when: whenText(fetched_at) }) : t("not fetched yet")}` : t("paused"));
 
   async function fetchNow(subscription) {
     await attempt(async () => {
-      toast("Fetching…");
+      toast(t("Fetching…"));
       const { data } = await post(`/zone-subscriptions/${subscription.id}/fetch`);
       const job = await follow(data.job.id ?? data.job);
       toast(job.result?.proposal && job.result.is_new ? t("Something new: look at the difference.") : t("Nothing new."), job.result?.proposal && job.result.is_new ? { label: t("See it"), act: () => (location.href = `/imports/${job.result.proposal}`) } : null);
@@ -98,10 +98,10 @@ export function mountSetsPanel({ canCurate, showZones }) {
   async function askVersion(set) {
     const { data } = await get(`/zone-sets/${set.id}/versions`);
     const dialog = openDialog(
-      `Versions of ${set.name}`,
+      t("Versions of {name}", { name: set.name }),
       h("p", { class: "caption" }, t("Going back is shown as a difference first.")),
       h("ol", { class: "history-list" }, data.results.map((version, index) =>
-        h("li", {}, h("div", { class: "history-head" }, h("strong", {}, `Version ${version.version}${index === 0 ? t(", the newest") : ""}`), h("span", { class: "caption" }, [countText(version.zone_count, "zone"), whenText(version.created_at), version.created_by, version.source?.file_name].filter(Boolean).join(" · "))),
+        h("li", {}, h("div", { class: "history-head" }, h("strong", {}, index === 0 ? t("Version {number}, the newest", { number: version.version }) : t("Version {number}", { number: version.version })), h("span", { class: "caption" }, [countText(version.zone_count, "zone"), whenText(version.created_at), version.created_by, version.source?.file_name].filter(Boolean).join(" · "))),
           h("button", { type: "button", class: "text-button", onclick: () => rollBack(set, version, dialog) }, icon("undo-2", "small"), t("Go back to this")))),
       ),
       h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Close"))),
@@ -136,7 +136,7 @@ export function mountSetsPanel({ canCurate, showZones }) {
         h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
         h("button", { type: "submit", class: "button primary" }, old ? t("Save") : t("Subscribe"))),
     );
-    const dialog = openDialog(old ? `Source of ${set.name}` : t("Fetch a source by itself"), form);
+    const dialog = openDialog(old ? t("Source of {name}", { name: set.name }) : t("Fetch a source by itself"), form);
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
       const value = (id) => byId(id).value.trim();
