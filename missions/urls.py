@@ -3,13 +3,19 @@
 from django.urls import path
 
 from missions import views
+from missions.views.selections import SelectionDetail, SelectionList
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
     path("missions", views.MissionList.as_view(), name="api-missions"),
+    path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
+    path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),
+    path("missions/restore", views.MissionsRestore.as_view(), name="api-missions-restore"),
     path("missions/<uuid:mission_id>", views.MissionDetail.as_view(), name="api-mission"),
     path("missions/<uuid:mission_id>/plan", views.MissionPlan.as_view(), name="api-mission-plan"),
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),
+    path("missions/<uuid:mission_id>/duplicate", views.MissionDuplicate.as_view(), name="api-mission-duplicate"),
+    path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),
     path("uavs", views.UavList.as_view(), name="api-uavs"),
     path("uavs/<int:uav_id>", views.UavDetail.as_view(), name="api-uav"),
@@ -23,4 +29,6 @@ urlpatterns = [
     path("bases", views.BaseList.as_view(), name="api-bases"),
     path("bases/<int:base_id>", views.BaseDetail.as_view(), name="api-base"),
     path("bases/<int:base_id>/restore", views.BaseRestore.as_view(), name="api-base-restore"),
+    path("selections", SelectionList.as_view(), name="api-selections"),
+    path("selections/<int:selection_id>", SelectionDetail.as_view(), name="api-selection"),
 ]

@@ -160,11 +160,21 @@ class PlanInputSerializer(OptionsSerializer):
 class MissionInputSerializer(OptionsSerializer):
     name = serializers.CharField(max_length=200)
     plan = serializers.BooleanField(required=False, default=False, help_text="plan it in the same request")
+    plan_of = serializers.UUIDField(
+        required=False,
+        allow_null=True,
+        help_text="with `plan`: a done job of POST /plans; its plan is taken if it was asked for just this",
+    )
 
 
 class MissionPatchSerializer(OptionsSerializer):
     name = serializers.CharField(max_length=200, required=False)
     plan = serializers.BooleanField(required=False, default=False, help_text="plan it in the same request")
+    plan_of = serializers.UUIDField(
+        required=False,
+        allow_null=True,
+        help_text="with `plan`: a done job of POST /plans; its plan is taken if it was asked for just this",
+    )
 
 
 def plan_request(values: dict[str, Any]) -> PlanRequest:
@@ -174,3 +184,16 @@ def plan_request(values: dict[str, Any]) -> PlanRequest:
         objective=values.get("objective", RoutingObjective.TOTAL),
         return_to_start=values.get("return_to_start", False),
     )
+
+
+class MissionCopySerializer(serializers.Serializer):
+    name = serializers.CharField(max_length=200, required=False, allow_blank=True, help_text="without one: the name with (copy)")
+
+
+class MissionsInputSerializer(serializers.Serializer):
+    missions = serializers.ListField(child=serializers.UUIDField(), allow_empty=False, max_length=200)
+
+
+class PresenceInputSerializer(serializers.Serializer):
+    editor = serializers.RegexField(r"^[A-Za-z0-9.-]{1,64}$", help_text="a name that the page made up for itself")
+    here = serializers.BooleanField(required=False, default=True, help_text="false: the page is being left")

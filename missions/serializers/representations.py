@@ -3,14 +3,15 @@
 from typing import Any
 
 from inspection.selectors import asset_detail, asset_label
+from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
-from missions.selectors import is_stale, sketch, stale_reason
 from missions.services import FLAT_GROUND, TERRAIN_MODEL
+from missions.stale_selectors import cause_json, is_stale, stale_causes, stale_reason
 
 
 def mission_json(mission: Mission) -> dict[str, Any]:
     """A mission with all that belongs to it, as loaded by selectors.mission_of_organisation."""
-    reason = stale_reason(mission)
+    causes = stale_causes(mission)
     return {
         "id": str(mission.pk),
         "name": mission.name,
@@ -23,8 +24,9 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "updated_at": mission.updated_at,
         "planned_at": mission.planned_at,
         "graph_version": mission.graph_version,
-        "is_stale": bool(reason),
-        "stale_reason": reason,
+        "is_stale": bool(causes),
+        "stale_reason": stale_reason(causes),
+        "stale_causes": [cause_json(cause) for cause in causes],
         "flat_ground_assumed": mission.flat_ground_assumed,
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
         "targets": [_target(row) for row in mission.targets.all()],
@@ -33,15 +35,17 @@ def mission_json(mission: Mission) -> dict[str, Any]:
     }
 
 
-def mission_summary(mission: Mission, revision: int) -> dict[str, Any]:
-    """A line of the list, as loaded by selectors.missions_of_organisation; `revision` is the ground's now."""
+def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any]) -> dict[str, Any]:
+    """A line of the list, as loaded by list_selectors.mission_rows; `revision` is the ground's now, `drawing` what stands round it."""
     return {
         "id": str(mission.pk),
         "name": mission.name,
         "state": mission.state,
         "author": mission.author.username if mission.author else None,
+        "revision": mission.revision,
         "updated_at": mission.updated_at,
         "planned_at": mission.planned_at,
+        "deleted_at": mission.deleted_at,
         "target_count": mission.target_count,
         "unassigned_count": mission.unassigned_count,
         "uav_count": mission.uav_count,
@@ -50,6 +54,8 @@ def mission_summary(mission: Mission, revision: int) -> dict[str, Any]:
         "duration_s": mission.duration_s,
         "is_stale": is_stale(mission, revision),
         "sketch": sketch(mission),
+        "places": drawing["places"],
+        "lines": drawing["lines"],
     }
 
 

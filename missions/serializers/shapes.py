@@ -135,6 +135,19 @@ class MissionTargetSerializer(serializers.Serializer):
     unassigned_message = serializers.CharField()
 
 
+class StaleCauseSerializer(serializers.Serializer):
+    """One thing that changed since the mission was planned, and what of the mission it touches."""
+
+    what = serializers.ChoiceField(choices=["zone", "asset", "terrain", "elsewhere"])
+    message = serializers.CharField()
+    uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV")
+    target = serializers.IntegerField(allow_null=True, help_text="index of the target")
+    leg = serializers.ListField(
+        child=serializers.CharField(allow_blank=True), allow_null=True, help_text="between which targets; empty for a flight's start or end"
+    )
+    position = PositionField(allow_null=True)
+
+
 class MissionSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     name = serializers.CharField()
@@ -148,7 +161,8 @@ class MissionSerializer(serializers.Serializer):
     planned_at = serializers.DateTimeField(allow_null=True)
     graph_version = serializers.IntegerField(allow_null=True)
     is_stale = serializers.BooleanField(help_text="the ground has changed since the mission was planned")
-    stale_reason = serializers.CharField()
+    stale_reason = serializers.CharField(help_text="the headline and the worst cause; empty where the ground is as it was")
+    stale_causes = StaleCauseSerializer(many=True)
     flat_ground_assumed = serializers.BooleanField(allow_null=True)
     uavs = MissionUavSerializer(many=True)
     targets = MissionTargetSerializer(many=True)
@@ -161,8 +175,10 @@ class MissionSummarySerializer(serializers.Serializer):
     name = serializers.CharField()
     state = serializers.ChoiceField(choices=MissionState.choices)
     author = serializers.CharField(allow_null=True)
+    revision = serializers.IntegerField(help_text="the ETag")
     updated_at = serializers.DateTimeField()
     planned_at = serializers.DateTimeField(allow_null=True)
+    deleted_at = serializers.DateTimeField(allow_null=True)
     target_count = serializers.IntegerField()
     unassigned_count = serializers.IntegerField(help_text="of these, how many the plan does not reach")
     uav_count = serializers.IntegerField()
@@ -171,11 +187,54 @@ class MissionSummarySerializer(serializers.Serializer):
     duration_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time")
     is_stale = serializers.BooleanField()
     sketch = serializers.ListField(child=serializers.ListField(child=PositionField()), help_text="the routes, simplified")
+    places = serializers.ListField(child=PositionField(), help_text="of the targets, the first 60")
+    lines = serializers.ListField(
+        child=serializers.ListField(child=PositionField()), help_text="power lines and railways round them, simplified"
+    )
 
 
 class MissionPageSerializer(serializers.Serializer):
     results = MissionSummarySerializer(many=True)
     next = serializers.CharField(allow_null=True)
+    total = serializers.IntegerField(help_text="how many missions the filters leave")
+    by_state = serializers.DictField(child=serializers.IntegerField(), help_text="how many in each state, whatever state was asked for")
+
+
+class MissionAuthorSerializer(serializers.Serializer):
+    name = serializers.CharField()
+    missions = serializers.IntegerField()
+
+
+class MissionFleetSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+    missions = serializers.IntegerField()
+
+
+class MissionFiltersSerializer(serializers.Serializer):
+    authors = MissionAuthorSerializer(many=True)
+    uavs = MissionFleetSerializer(many=True)
+
+
+class RefusedMissionSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    code = serializers.CharField()
+    message = serializers.CharField()
+
+
+class MissionsDoneSerializer(serializers.Serializer):
+    done = serializers.ListField(child=serializers.UUIDField())
+    refused = RefusedMissionSerializer(many=True)
+
+
+class PresentSerializer(serializers.Serializer):
+    name = serializers.CharField()
+    is_me = serializers.BooleanField(help_text="oneself, in another window")
+
+
+class PresenceSerializer(serializers.Serializer):
+    others = PresentSerializer(many=True)
+    ground_revision = serializers.IntegerField(help_text="of assets, zones and terrain: a plan of an older one is stale")
 
 
 class HistoryEntrySerializer(serializers.Serializer):

@@ -12,7 +12,8 @@ from missions.services.fleet import (
     restore_uav_type,
 )
 from missions.services.fleet_rows import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdTaken
-from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan
+from missions.services.mission_copies import duplicate_mission
+from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan, take_plan
 from missions.services.missions import (
     MissionChange,
     MissionChanged,
@@ -58,6 +59,7 @@ __all__ = [
     "delete_mission",
     "delete_uav",
     "delete_uav_type",
+    "duplicate_mission",
     "make_credential",
     "make_plan",
     "mavlink_signing_key",
@@ -74,4 +76,5 @@ __all__ = [
     "restore_uav_type",
     "revoke_credential",
     "store_plan",
+    "take_plan",
 ]

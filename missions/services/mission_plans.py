@@ -1,6 +1,7 @@
 """Storing a plan on its mission: all of it or nothing, and only on the mission that it was made for."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from django.contrib.gis.geos import LineString, Point
@@ -12,9 +13,11 @@ from missions.models import Mission, MissionState, Route, Waypoint
 from missions.routing.solver import OnProgress, Stop
 from missions.services.missions import drop_plan, lock_mission, request_of_mission
 from missions.services.planning import make_plan
-from missions.services.requests import PlanRequest
+from missions.services.requests import PlanRequest, request_from_json
 from workspace.models import Job, User
 from workspace.services import JobCancelled, finish_job, record_change
+
+PLANNING_TASK = "missions.tasks.solve_plan"
 
 
 class NothingToPlan(Exception):
@@ -31,6 +34,23 @@ def plan_mission(*, mission: Mission, actor: User | None, expected_revision: int
     return store_plan(
         mission=mission, actor=actor, revision=mission.revision if expected_revision is None else expected_revision, plan=plan
     )
+
+
+def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) -> bool:
+    """Store the plan that a job has made already, if it was asked for just what the mission holds; False where it was not."""
+    if job.task != PLANNING_TASK or not job.result or "request" not in job.parameters:
+        return False
+    wanted, asked = request_of_mission(mission=mission), request_from_json(job.parameters["request"])
+    if len(asked.targets) != len(wanted.targets):
+        return False
+    targets = tuple(
+        replace(target, task=stored.task) if target.task is None else target  # the mission holds what the planner took for none
+        for target, stored in zip(asked.targets, wanted.targets, strict=True)
+    )
+    if replace(asked, targets=targets) != wanted:
+        return False
+    store_plan(mission=mission, actor=actor, revision=revision, plan=job.result)
+    return True
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:

@@ -1,5 +1,6 @@
 """Missions from creation to deletion. Every write locks the mission's row, counts its revision and leaves an entry in its history."""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
@@ -17,6 +18,7 @@ from missions.services.requests import PlanRequest, TargetRequest, UavRequest, t
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
+MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
 
@@ -56,7 +58,7 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
         )
         _store_uavs(mission, request.uavs)
         _store_targets(mission, targets)
-        _note(mission, author, "create", before=None, after=_summary(mission) | {"uavs": len(request.uavs), "targets": len(targets)})
+        note(mission, author, "create", before=None, after=_summary(mission) | {"uavs": len(request.uavs), "targets": len(targets)})
     return mission
 
 
@@ -66,6 +68,7 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
     with transaction.atomic():
         locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
         before = _summary(locked)
+        picked = _what_is_picked(locked)
         if change.name is not None:
             locked.name = change.name
         if change.objective is not None:
@@ -81,8 +84,26 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             locked.targets.all().delete()
             _store_targets(locked, targets)
         _save(locked)
-        _note(locked, actor, "change" if change.drops_plan else "rename", before=before, after=_summary(locked))
+        action = "change" if change.drops_plan else "rename"
+        note(locked, actor, action, before=before, after=_summary(locked) | _differences(picked, _what_is_picked(locked)))
     return locked
+
+
+def _what_is_picked(mission: Mission) -> dict[str, list[str]]:
+    return {
+        "targets": list(mission.targets.order_by("sequence").values_list("label", flat=True)),
+        "uavs": list(mission.mission_uavs.order_by("sequence").values_list("name", flat=True)),
+    }
+
+
+def _differences(before: dict[str, list[str]], after: dict[str, list[str]]) -> dict[str, Any]:
+    """For the history: how many there are now, and the names of the first that came and went."""
+    found: dict[str, Any] = {}
+    for what, now in after.items():
+        came, went = Counter(now) - Counter(before[what]), Counter(before[what]) - Counter(now)
+        found |= {what: len(now), f"{what}_added": came.total(), f"{what}_removed": went.total()}
+        found[f"{what}_names"] = {"added": list(came)[:MOST_NAMES], "removed": list(went)[:MOST_NAMES]}
+    return found
 
 
 def delete_mission(*, mission: Mission, actor: User, expected_revision: int | None = None) -> Mission:
@@ -92,7 +113,7 @@ def delete_mission(*, mission: Mission, actor: User, expected_revision: int | No
         before = _summary(locked)
         locked.deleted_at = timezone.now()
         _save(locked)
-        _note(locked, actor, "delete", before=before, after=None)
+        note(locked, actor, "delete", before=before, after=None)
     return locked
 
 
@@ -102,7 +123,7 @@ def restore_mission(*, mission: Mission, actor: User) -> Mission:
         if locked.deleted_at is not None:
             locked.deleted_at = None
             _save(locked)
-            _note(locked, actor, "restore", before=None, after=_summary(locked))
+            note(locked, actor, "restore", before=None, after=_summary(locked))
     return locked
 
 
@@ -213,7 +234,7 @@ def _summary(mission: Mission) -> dict[str, Any]:
     }
 
 
-def _note(mission: Mission, actor: User | None, action: str, *, before: Any, after: Any) -> None:
+def note(mission: Mission, actor: User | None, action: str, *, before: Any, after: Any) -> None:
     record_change(
         organisation=mission.organisation,
         actor=actor,

@@ -2,6 +2,7 @@
 
 from missions.views.credentials import UavCredentialDetail, UavCredentials
 from missions.views.fleet import BaseDetail, BaseList, BaseRestore, UavTypeDetail, UavTypeList, UavTypeRestore
+from missions.views.mission_sets import MissionDuplicate, MissionFilterChoices, MissionPresence, MissionsDelete, MissionsRestore
 from missions.views.missions import MissionDetail, MissionHistory, MissionList, MissionPlan, MissionRestore
 from missions.views.plans import PlanList
 from missions.views.uavs import UavDetail, UavList, UavMissions, UavRestore
@@ -11,10 +12,15 @@ __all__ = [
     "BaseList",
     "BaseRestore",
     "MissionDetail",
+    "MissionDuplicate",
+    "MissionFilterChoices",
     "MissionHistory",
     "MissionList",
     "MissionPlan",
+    "MissionPresence",
     "MissionRestore",
+    "MissionsDelete",
+    "MissionsRestore",
     "PlanList",
     "UavCredentialDetail",
     "UavCredentials",

@@ -1,5 +1,6 @@
 """Missions: create, list, open, change, plan, delete, bring back."""
 
+from dataclasses import replace
 from typing import Any
 from uuid import UUID
 
@@ -13,15 +14,17 @@ from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
 from missions import selectors, services
-from missions.models import Mission, MissionState
+from missions.list_selectors import counts_by_state, mission_rows, missions_found, surroundings
+from missions.models import Mission
 from missions.serializers import inputs, shapes
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import MissionChange
+from missions.views.mission_filters import FILTER_PARAMETERS, asked_filter, asked_order
 from missions.views.plans import is_small, job_answer, planning_message
 from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
-from workspace.models import User
+from workspace.models import Job, User
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import create_job
@@ -31,6 +34,9 @@ from workspace.throttling import ScopedRate
 IF_MATCH = OpenApiParameter(
     "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 412 if it has changed"
 )
+IF_NONE_MATCH = OpenApiParameter(
+    "If-None-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 304 while it is the same"
+)
 CHANGED = {
     409: OpenApiResponse(description="The mission cannot be changed, or somebody else was faster."),
     412: OpenApiResponse(description="The mission has changed since."),
@@ -38,15 +44,15 @@ CHANGED = {
 PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Stored; a job plans it, see Location.")}
 
 
-def _mission(user: User, mission_id: UUID, *, deleted: bool = False) -> Mission:
+def mission_or_404(user: User, mission_id: UUID, *, deleted: bool = False) -> Mission:
     try:
         return selectors.mission_of_organisation(user.organisation, mission_id, deleted=deleted)
     except Mission.DoesNotExist as error:
         raise Http404 from error
 
 
-def _answer(user: User, mission_id: UUID, *, status: int = 200) -> Response:
-    mission = _mission(user, mission_id)
+def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Response:
+    mission = mission_or_404(user, mission_id)
     headers = {"ETag": f'"{mission.revision}"'}
     if status == 201:
         headers["Location"] = reverse("api-mission", args=[mission.pk])
@@ -63,12 +69,15 @@ def _expected_revision(request: Request) -> int | None:
     return int(text)
 
 
-def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int = 200) -> Response:
-    """Plan the stored mission now, or by a job if it is large."""
+def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int = 200, plan_of: UUID | None = None) -> Response:
+    """Plan the stored mission: by the plan of a job that was asked for the same, else now, or by a job if it is large."""
+    made = Job.objects.filter(organisation=user.organisation, pk=plan_of).first() if plan_of else None
+    if made and services.take_plan(mission=mission, actor=user, revision=revision, job=made):
+        return answer_mission(user, mission.pk, status=status)
     targets = mission.targets.count()
     if is_small(targets):
         services.plan_mission(mission=mission, actor=user, expected_revision=revision)
-        return _answer(user, mission.pk, status=status)
+        return answer_mission(user, mission.pk, status=status)
     services.plannable_request(mission=mission)
     job = create_job(
         organisation=user.organisation,
@@ -94,24 +103,21 @@ class MissionList(_PlansWhenAsked):
     @extend_schema(
         operation_id="list_missions",
         summary="Missions, the last changed first",
-        parameters=[
-            OpenApiParameter("text", str, description="part of the name or of the author's name"),
-            OpenApiParameter("state", str, enum=MissionState.values),
-            OpenApiParameter("deleted", bool, description="true: the deleted ones"),
-            *PAGE_PARAMETERS,
-        ],
+        parameters=[*FILTER_PARAMETERS, *PAGE_PARAMETERS],
         responses=shapes.MissionPageSerializer,
     )
     def get(self, request: Request) -> Response:
-        missions = selectors.missions_of_organisation(
-            request.user.organisation,
-            text=request.query_params.get("text", "").strip()[:100].replace("\0", ""),
-            state=request.query_params.get("state", ""),
-            deleted=request.query_params.get("deleted") == "true",
-        )
-        page = page_of(request, missions, order=("-updated_at", "-pk"), default_limit=50, max_limit=200)
-        revision = ground_revision()
-        return Response({"results": [mission_summary(mission, revision) for mission in page.rows], "next": page.next})
+        organisation, asked = request.user.organisation, asked_filter(request)
+        rows = mission_rows(missions_found(organisation, asked))
+        page = page_of(request, rows, order=asked_order(request), default_limit=50, max_limit=200)
+        by_state = counts_by_state(missions_found(organisation, replace(asked, states=())))
+        drawings, ground = surroundings(page.rows), ground_revision()
+        return Response({
+            "results": [mission_summary(mission, ground, drawings[mission.pk]) for mission in page.rows],
+            "next": page.next,
+            "total": sum(number for state, number in by_state.items() if not asked.states or state in asked.states),
+            "by_state": by_state,
+        })  # fmt: skip
 
     @extend_schema(
         operation_id="create_mission",
@@ -130,14 +136,24 @@ class MissionList(_PlansWhenAsked):
                 organisation=user.organisation, author=user, name=values["name"], request=inputs.plan_request(values)
             )
             if values["plan"]:
-                return _plan_and_answer(user, mission, revision=mission.revision, status=201)
-        return _answer(user, mission.pk, status=201)
+                return _plan_and_answer(user, mission, revision=mission.revision, status=201, plan_of=values.get("plan_of"))
+        return answer_mission(user, mission.pk, status=201)
 
 
 class MissionDetail(_PlansWhenAsked):
-    @extend_schema(operation_id="get_mission", summary="A mission with its plan", responses=shapes.MissionSerializer)
+    @extend_schema(
+        operation_id="get_mission",
+        summary="A mission with its plan",
+        parameters=[IF_NONE_MATCH],
+        responses={200: shapes.MissionSerializer, 304: OpenApiResponse(description="It is as it was.")},
+    )
     def get(self, request: Request, mission_id: UUID) -> Response:
-        return _answer(request.user, mission_id)
+        known = request.headers.get("If-None-Match")
+        if known is not None:
+            revision = selectors.revision_of_mission(request.user.organisation, mission_id)
+            if revision is not None and f'"{revision}"' in [tag.strip().removeprefix("W/") for tag in known.split(",")]:
+                return Response(status=304, headers={"ETag": f'"{revision}"'})
+        return answer_mission(request.user, mission_id)
 
     @extend_schema(
         operation_id="change_mission",
@@ -150,18 +166,19 @@ class MissionDetail(_PlansWhenAsked):
     def patch(self, request: Request, mission_id: UUID) -> Response:
         user = request.user
         expected = _expected_revision(request)
-        mission = _mission(user, mission_id)
+        mission = mission_or_404(user, mission_id)
         serializer = inputs.MissionPatchSerializer(data=request.data, context={"organisation": user.organisation})
         serializer.is_valid(raise_exception=True)
         values = dict(serializer.validated_data)
-        wants_plan = values.pop("plan")
+        wants_plan, plan_of = values.pop("plan"), values.pop("plan_of", None)
         with api_problems(has_precondition=expected is not None), transaction.atomic():
             if values:
                 mission = services.change_mission(mission=mission, actor=user, change=MissionChange(**values), expected_revision=expected)
                 expected = mission.revision
             if wants_plan:
-                return _plan_and_answer(user, mission, revision=mission.revision if expected is None else expected)
-        return _answer(user, mission_id)
+                revision = mission.revision if expected is None else expected
+                return _plan_and_answer(user, mission, revision=revision, plan_of=plan_of)
+        return answer_mission(user, mission_id)
 
     @extend_schema(
         operation_id="delete_mission",
@@ -171,7 +188,7 @@ class MissionDetail(_PlansWhenAsked):
     )
     def delete(self, request: Request, mission_id: UUID) -> Response:
         expected = _expected_revision(request)
-        mission = _mission(request.user, mission_id)
+        mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
             services.delete_mission(mission=mission, actor=request.user, expected_revision=expected)
         return Response(status=204)
@@ -188,7 +205,7 @@ class MissionPlan(_PlansWhenAsked):
     @idempotent
     def post(self, request: Request, mission_id: UUID) -> Response:
         expected = _expected_revision(request)
-        mission = _mission(request.user, mission_id)
+        mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
             return _plan_and_answer(request.user, mission, revision=mission.revision if expected is None else expected)
 
@@ -198,9 +215,9 @@ class MissionRestore(APIView):
         operation_id="restore_mission", summary="Bring a deleted mission back", request=None, responses={200: shapes.MissionSerializer}
     )
     def post(self, request: Request, mission_id: UUID) -> Response:
-        mission = _mission(request.user, mission_id, deleted=True)
+        mission = mission_or_404(request.user, mission_id, deleted=True)
         services.restore_mission(mission=mission, actor=request.user)
-        return _answer(request.user, mission_id)
+        return answer_mission(request.user, mission_id)
 
 
 class MissionHistory(APIView):
@@ -211,5 +228,5 @@ class MissionHistory(APIView):
         responses=shapes.HistoryPageSerializer,
     )
     def get(self, request: Request, mission_id: UUID) -> Response:
-        page = page_of(request, selectors.history_of_mission(_mission(request.user, mission_id)), order=("-recorded_at", "-pk"))
+        page = page_of(request, selectors.history_of_mission(mission_or_404(request.user, mission_id)), order=("-recorded_at", "-pk"))
         return Response({"results": shapes.HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})

@@ -74,7 +74,7 @@ def test_terrain_that_was_taken_away_leaves_a_route_over_unknown_ground(here: Wo
 def test_terrain_that_came_in_is_said_where_flat_ground_was_assumed(here: World, client: Client, tmp_path: Path) -> None:
     mission = created(client, here)
     ground(tmp_path / "hills.tif", 100)
-    assert reason(client, mission) == "Terrain came in since this was planned: Tern flies as over flat ground."
+    assert reason(client, mission) == "The terrain changed since this was planned. Terrain has come in: Tern flies as over flat ground."
 
 
 def test_heights_are_worked_out_again_where_the_terrain_changes_meanwhile(here: World, tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ ALSO_CURATORS = {"cancel_job"}
 CURATED = re.compile(
     r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|gaps|geometry-checks|uploads|imports|terrain|regions)(/|$)"
 )
-ASKED_BY_ALL = {"terrain_profile", "convert_heights"}  # a POST because the question is long; nothing is stored
+# a POST because the question is long; nothing is stored
+ASKED_BY_ALL = {"terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "report_presence"}
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 
 

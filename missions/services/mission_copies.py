@@ -1,0 +1,65 @@
+"""A second mission like the first, its plan included."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from django.db import transaction
+from django.db.models import Model
+
+from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
+from missions.services.missions import note
+from workspace.models import User
+
+LONGEST_NAME = Mission._meta.get_field("name").max_length
+COPIED = (
+    "organisation_id", "state", "objective", "return_to_start", "planned_at", "graph_version", "ground_revision", "flat_ground_assumed",
+    "total_length_m", "longest_route_m", "plan_warnings", "last_plan",
+)  # fmt: skip
+
+
+def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Mission:
+    """A copy of its own: targets are pending again, and a mission that was on its way is merely planned."""
+    values = {field: getattr(mission, field) for field in COPIED}
+    if values["state"] != MissionState.DRAFT:
+        values["state"] = MissionState.PLANNED
+    with transaction.atomic():
+        copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:LONGEST_NAME], **values)
+        uavs = _copied(MissionUav, mission.mission_uavs.all(), mission=copy)
+        targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, state=TargetState.PENDING)
+        rows = list(mission.routes.prefetch_related("waypoints"))
+        routes = [_copy_of(route, mission=copy, mission_uav=uavs[route.mission_uav_id]) for route in rows]
+        Route.objects.bulk_create(routes)
+        waypoints = [
+            _copy_of(waypoint, route=route, target=targets.get(waypoint.target_id))
+            for old, route in zip(rows, routes, strict=True)
+            for waypoint in old.waypoints.all()
+        ]
+        Waypoint.objects.bulk_create(waypoints, batch_size=1_000)
+        note(copy, author, "duplicate", before=None, after={"name": copy.name, "of": mission.name, "of_id": str(mission.pk)})
+    return copy
+
+
+def _copied(model: type[Model], rows: Iterable[Any], **values: Any) -> dict[int, Any]:
+    """The rows under the new mission, by the primary keys of the old ones."""
+    old = list(rows)
+    new = model.objects.bulk_create([_copy_of(row, **values) for row in old])
+    return {before.pk: after for before, after in zip(old, new, strict=True)}
+
+
+def _copy_of(row: Any, **values: Any) -> Any:
+    fields = {field.attname: getattr(row, field.attname) for field in row._meta.concrete_fields if not field.primary_key}
+    for name in values:
+        fields.pop(row._meta.get_field(name).attname, None)
+    return type(row)(**fields, **values)
+
+
+def _free_name(mission: Mission) -> str:
+    """ "North (copy)", then "North (copy 2)"."""
+    stem = mission.name[: LONGEST_NAME - 12]
+    taken = set(
+        Mission.objects.filter(organisation=mission.organisation, deleted_at=None, name__startswith=stem).values_list("name", flat=True)
+    )
+    name, number = f"{stem} (copy)", 2
+    while name in taken:
+        name, number = f"{stem} (copy {number})", number + 1
+    return name

@@ -1,0 +1,161 @@
+"""What a change of the ground means for a mission that was planned before it: which zone, which leg, which target."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from django.utils.translation import gettext as _
+
+from inspection.models import Asset
+from inspection.selectors import ground_heights_m, ground_revision, zones_in_force
+from missions.flight_plan.clearance import legs_that_meet
+from missions.models import Mission, MissionState, Route, WaypointKind
+
+TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
+MOST_CAUSES = 20
+
+
+@dataclass(frozen=True)
+class StaleCause:
+    """One thing that changed and what of the mission it touches. `uav` and `target` are places in the mission."""
+
+    what: str  # zone, asset, terrain or elsewhere
+    message: str
+    uav: int | None = None
+    target: int | None = None
+    leg: tuple[str, str] | None = None  # "A1", "A2"; a flight's start and end are empty
+    position: tuple[float, float] | None = None
+
+
+def is_stale(mission: Mission, revision: int) -> bool:
+    """Whether assets, zones or terrain have changed since the mission was planned; `revision` is the ground's now."""
+    return mission.state != MissionState.DRAFT and mission.ground_revision != revision
+
+
+def stale_causes(mission: Mission) -> list[StaleCause]:
+    """What the change of the ground means for the mission, the worst first; empty if the ground is as it was."""
+    if not is_stale(mission, ground_revision()):
+        return []
+    causes = [*_zones(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
+    if not causes:
+        causes = _terrain(mission)
+    return causes[:MOST_CAUSES] or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
+
+
+def stale_reason(causes: list[StaleCause]) -> str:
+    """The headline with the worst cause; empty where there is none."""
+    if not causes:
+        return ""
+    headline = {
+        "zone": _("A zone changed since this was planned."),
+        "asset": _("An asset changed since this was planned."),
+        "terrain": _("The terrain changed since this was planned."),
+        "elsewhere": _("The ground has changed since this was planned."),
+    }[causes[0].what]
+    return f"{headline} {causes[0].message}"
+
+
+def cause_json(cause: StaleCause) -> dict[str, Any]:
+    return {
+        "what": cause.what,
+        "message": cause.message,
+        "uav": cause.uav,
+        "target": cause.target,
+        "leg": list(cause.leg) if cause.leg else None,
+        "position": list(cause.position) if cause.position else None,
+    }
+
+
+def _zones(mission: Mission) -> list[StaleCause]:
+    zones = zones_in_force()
+    causes = {}
+    for route in mission.routes.all():
+        if route.geometry is None:
+            continue
+        line = np.array(route.geometry.coords)
+        for leg, zone in sorted(legs_that_meet(line, list(zones.polygons))):
+            ends = _leg_names(route, leg)
+            where = (float(line[leg : leg + 2, 0].mean()), float(line[leg : leg + 2, 1].mean()))
+            name, uav = zones.names[zone], route.mission_uav
+            causes.setdefault(
+                (uav.sequence, zone, ends), StaleCause("zone", _leg_words(name, ends, uav.name), uav.sequence, leg=ends, position=where)
+            )
+    return list(causes.values())
+
+
+def _leg_names(route: Route, leg: int) -> tuple[str, str]:
+    """The targets before and after a leg, as the map numbers them."""
+    letter = route_letter(route.mission_uav.sequence)
+    visits = [place for place, waypoint in enumerate(route.waypoints.all()) if waypoint.kind == WaypointKind.TARGET]
+    before = sum(place <= leg for place in visits)
+    return f"{letter}{before}" if before else "", f"{letter}{before + 1}" if before < len(visits) else ""
+
+
+def _leg_words(zone: str, ends: tuple[str, str], uav: str) -> str:
+    values = {"zone": zone, "start": ends[0], "end": ends[1], "uav": uav}
+    if all(ends):
+        return _("%(zone)s touches the leg from %(start)s to %(end)s of %(uav)s.") % values
+    if ends[1]:
+        return _("%(zone)s touches the leg from the start to %(end)s of %(uav)s.") % values
+    if ends[0]:
+        return _("%(zone)s touches the leg after %(start)s of %(uav)s.") % values
+    return _("%(zone)s touches the route of %(uav)s.") % values
+
+
+def route_letter(sequence: int) -> str:
+    """A to Z, then AA: as on the map."""
+    return chr(65 + sequence) if sequence < 26 else f"{chr(64 + sequence // 26)}{chr(65 + sequence % 26)}"
+
+
+def _vanished_targets(mission: Mission) -> list[StaleCause]:
+    return [
+        StaleCause(
+            "asset",
+            _("%(asset)s is no longer in the data.") % {"asset": target.label},
+            target=target.sequence,
+            position=(target.asset.centre.x, target.asset.centre.y),
+        )
+        for target in mission.targets.all()
+        if target.asset is not None and target.asset.vanished_at is not None
+    ]
+
+
+def _passed_assets_gone(mission: Mission) -> list[StaleCause]:
+    passed = {waypoint.asset_id for route in mission.routes.all() for waypoint in route.waypoints.all()} - {None}
+    targets = {target.asset_id for target in mission.targets.all()}
+    gone = set(Asset.objects.filter(vanished_at__isnull=False, pk__in=passed - targets).values_list("pk", flat=True))
+    causes = {}
+    for route in mission.routes.all():
+        for waypoint in route.waypoints.all():
+            if waypoint.asset_id in gone:
+                words = _("The route of %(uav)s passes something that is no longer in the data.") % {"uav": route.mission_uav.name}
+                where = (waypoint.position.x, waypoint.position.y)
+                causes.setdefault(route.pk, StaleCause("asset", words, route.mission_uav.sequence, position=where))
+    return list(causes.values())
+
+
+def _terrain(mission: Mission) -> list[StaleCause]:
+    """Whether the ground under the waypoints is another one than the routes were planned over; its height then is AMSL less AGL."""
+    waypoints = [(route, waypoint) for route in mission.routes.all() for waypoint in route.waypoints.all()]
+    if not waypoints:
+        return []
+    now_m = ground_heights_m(np.array([waypoint.position.coords for _route, waypoint in waypoints]))
+    then_m = np.array([
+        np.nan if waypoint.altitude_amsl_m is None else waypoint.altitude_amsl_m - waypoint.altitude_agl_m
+        for _route, waypoint in waypoints
+    ])  # fmt: skip
+    off_m = np.abs(now_m - then_m)
+    if (off_m > TERRAIN_CHANGED_M).any():
+        worst = int(np.nanargmax(off_m))
+        route, waypoint = waypoints[worst]
+        values = {"uav": route.mission_uav.name, "height": f"{off_m[worst]:.0f}"}
+        words = _("Under the route of %(uav)s it differs by up to %(height)s m.") % values
+        return [StaleCause("terrain", words, route.mission_uav.sequence, position=(waypoint.position.x, waypoint.position.y))]
+    if (~np.isnan(then_m) & np.isnan(now_m)).any():
+        return [StaleCause("terrain", _("Under a route it is no longer known."))]
+    for route in mission.routes.all():
+        under = [height for (own, _waypoint), height in zip(waypoints, now_m.tolist(), strict=True) if own is route]
+        if under and not np.isnan(under).any() and route.waypoints.all()[0].altitude_amsl_m is None:
+            words = _("Terrain has come in: %(uav)s flies as over flat ground.") % {"uav": route.mission_uav.name}
+            return [StaleCause("terrain", words, route.mission_uav.sequence)]
+    return []

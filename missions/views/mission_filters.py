@@ -1,0 +1,71 @@
+"""What the list of missions may be asked for, from the address to a filter."""
+
+from datetime import UTC, datetime, time
+from typing import Any
+
+from django.utils.dateparse import parse_date, parse_datetime
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter
+from rest_framework.request import Request
+
+from missions.list_selectors import LAST_CHANGED_FIRST, ORDERS, MissionFilter, order_of
+from missions.models import MissionState
+from workspace.errors import ApiProblem
+
+ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]
+FILTER_PARAMETERS = [
+    OpenApiParameter("text", str, description="part of the name, of the author's name or of a target's name"),
+    OpenApiParameter("state", str, description=f"one or several with commas: {', '.join(MissionState.values)}"),
+    OpenApiParameter("author", str, description="user name"),
+    OpenApiParameter("uav", int, description="id of a UAV that the mission uses"),
+    OpenApiParameter("stale", bool, description="whether the ground has changed since the mission was planned"),
+    OpenApiParameter("changed_from", str, description="date or time with offset, ISO 8601"),
+    OpenApiParameter("changed_before", str, description="date or time with offset, ISO 8601"),
+    OpenApiParameter("deleted", bool, description="true: the deleted ones"),
+    OpenApiParameter("order", str, enum=ORDER_NAMES, description="the column to sort by, with - for descending; -changed without one"),
+]
+
+
+def asked_filter(request: Request) -> MissionFilter:
+    """Raises ApiProblem 400 for what no list can be asked for."""
+    ask = request.query_params
+    states = tuple(state for state in ask.get("state", "").split(",") if state)
+    if unknown := [state for state in states if state not in MissionState.values]:
+        raise _refusal("state", _("There is no state %(state)s.") % {"state": unknown[0][:20]})
+    uav = ask.get("uav", "")
+    if uav and not (uav.isascii() and uav.isdigit() and len(uav) < 19):
+        raise _refusal("uav", _("The number of a UAV is needed."))
+    return MissionFilter(
+        text=ask.get("text", "").strip()[:100].replace("\0", ""),
+        states=states,
+        author=ask.get("author", "").strip()[:150].replace("\0", ""),
+        uav=int(uav) if uav else None,
+        is_stale={"true": True, "false": False}.get(ask.get("stale", "")),
+        changed_from=_instant(ask.get("changed_from", ""), "changed_from"),
+        changed_before=_instant(ask.get("changed_before", ""), "changed_before"),
+        is_deleted=ask.get("deleted") == "true",
+    )
+
+
+def asked_order(request: Request) -> tuple[str, str]:
+    try:
+        return order_of(request.query_params.get("order") or LAST_CHANGED_FIRST)
+    except KeyError as error:
+        raise _refusal("order", _("Missions are sorted by %(names)s.") % {"names": ", ".join(ORDERS)}) from error
+
+
+def _instant(text: str, name: str) -> datetime | None:
+    if not text:
+        return None
+    try:
+        day = parse_date(text)
+        at = datetime.combine(day, time(), tzinfo=UTC) if day else parse_datetime(text)
+    except ValueError:
+        at = None
+    if at is None:
+        raise _refusal(name, _("A date or a time in ISO 8601 is needed."))
+    return at if at.tzinfo else at.replace(tzinfo=UTC)
+
+
+def _refusal(name: str, message: str) -> Any:
+    return ApiProblem(400, "invalid", f"{name}: {message}", details={name: [message]})

@@ -1,0 +1,110 @@
+"""Several missions at once, copies, and who else is there."""
+
+from collections.abc import Callable
+from uuid import UUID
+
+from django.http import Http404
+from drf_spectacular.utils import extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.selectors import ground_revision
+from missions import selectors, services
+from missions.list_selectors import choices_of_filters
+from missions.models import Mission
+from missions.presence import report_presence
+from missions.serializers import inputs, shapes
+from missions.views.missions import answer_mission, mission_or_404
+from missions.views.problems import api_problems
+from workspace.errors import ApiProblem
+from workspace.idempotency import idempotent
+from workspace.models import Role
+
+
+class MissionFilterChoices(APIView):
+    @extend_schema(
+        operation_id="list_mission_filters",
+        summary="Authors and UAVs that the list of missions can be filtered by",
+        responses=shapes.MissionFiltersSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        return Response(choices_of_filters(request.user.organisation))
+
+
+class MissionDuplicate(APIView):
+    @extend_schema(
+        operation_id="duplicate_mission",
+        summary="A copy of a mission, with its plan",
+        request=inputs.MissionCopySerializer,
+        responses={201: shapes.MissionSerializer},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        serializer = inputs.MissionCopySerializer(data=request.data)
+        serializer.is_valid(raise_exception=True)
+        copy = services.duplicate_mission(mission=mission, author=request.user, name=serializer.validated_data.get("name", ""))
+        return answer_mission(request.user, copy.pk, status=201)
+
+
+def _each(request: Request, do: Callable[[Mission], object], *, deleted: bool) -> Response:
+    """What can be done is done, each mission for itself; what cannot be says why."""
+    serializer = inputs.MissionsInputSerializer(data=request.data)
+    serializer.is_valid(raise_exception=True)
+    done, refused = [], []
+    for mission_id in dict.fromkeys(serializer.validated_data["missions"]):
+        try:
+            with api_problems():
+                do(mission_or_404(request.user, mission_id, deleted=deleted))
+            done.append(str(mission_id))
+        except ApiProblem as problem:
+            refused.append({"id": str(mission_id), "code": problem.code, "message": str(problem.message)})
+        except Http404:
+            refused.append({"id": str(mission_id), "code": "not_found", "message": "There is no such mission."})
+    return Response({"done": done, "refused": refused})
+
+
+class MissionsDelete(APIView):
+    @extend_schema(
+        operation_id="delete_missions",
+        summary="Delete several missions; they can be brought back",
+        request=inputs.MissionsInputSerializer,
+        responses=shapes.MissionsDoneSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        return _each(request, lambda mission: services.delete_mission(mission=mission, actor=request.user), deleted=False)
+
+
+class MissionsRestore(APIView):
+    @extend_schema(
+        operation_id="restore_missions",
+        summary="Bring several deleted missions back",
+        request=inputs.MissionsInputSerializer,
+        responses=shapes.MissionsDoneSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        return _each(request, lambda mission: services.restore_mission(mission=mission, actor=request.user), deleted=True)
+
+
+class MissionPresence(APIView):
+    """Whoever may see a mission may be seen at it."""
+
+    write_roles = frozenset(Role)
+
+    @extend_schema(
+        operation_id="report_presence",
+        summary="Say that a page has the mission open, and hear who else has",
+        request=inputs.PresenceInputSerializer,
+        responses=shapes.PresenceSerializer,
+    )
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        user = request.user
+        if selectors.revision_of_mission(user.organisation, mission_id) is None:
+            raise Http404
+        serializer = inputs.PresenceInputSerializer(data=request.data)
+        serializer.is_valid(raise_exception=True)
+        others = report_presence(
+            mission_id=mission_id, user=user, editor=serializer.validated_data["editor"], is_here=serializer.validated_data["here"]
+        )
+        return Response({"others": [{"name": name, "is_me": pk == user.pk} for pk, name in others], "ground_revision": ground_revision()})
