@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, gaps, geometry_checks, ground, history, imports, regions, terrain, uploads, zone_sets, zones
+from inspection.views import assets, gaps, geometry_checks, ground, history, imports, picking, regions, terrain, uploads, zone_sets, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -10,6 +10,11 @@ urlpatterns = [
     path("assets/<int:asset_id>/history", history.AssetHistory.as_view(), name="api-asset-history"),
     path("assets/<int:asset_id>/revert", history.AssetRevert.as_view(), name="api-asset-revert"),
     path("assets/<int:asset_id>/follow-source", history.AssetFollowSource.as_view(), name="api-asset-follow-source"),
+    path("assets/lookup", picking.AssetLookup.as_view(), name="api-asset-lookup"),
+    path("assets/within", picking.AssetsWithin.as_view(), name="api-assets-within"),
+    path("assets/stretch", picking.StretchAlongLines.as_view(), name="api-stretch"),
+    path("assets/<int:asset_id>/supports", picking.LineSupports.as_view(), name="api-line-supports"),
+    path("assets/<int:asset_id>/bridges", picking.RailwayBridges.as_view(), name="api-railway-bridges"),
     path("zones", zones.ZoneList.as_view(), name="api-zones"),
     path("zones/<int:zone_id>", zones.ZoneDetail.as_view(), name="api-zone"),
     path("zones/<int:zone_id>/history", history.ZoneHistory.as_view(), name="api-zone-history"),

@@ -124,6 +124,7 @@ class Asset(models.Model):
                 name="asset_lines_idx",
             ),
             models.Index(fields=["osm_type", "osm_id"], name="asset_osm_idx"),
+            GinIndex(fields=["voltages_v"], name="asset_voltages_idx"),
             GinIndex(
                 OpClass(Upper("name"), name="gin_trgm_ops"),
                 OpClass(Upper("ref"), name="gin_trgm_ops"),

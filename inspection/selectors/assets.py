@@ -12,6 +12,7 @@ COORDINATE_DIGITS = 7  # about a centimetre
 WORDS = {"line": "Line", "minor_line": "Line", "cable": "Cable", "pole": "Pole", "portal": "Portal", "tram": "Tramway", "subway": "Subway"}
 
 VOLTAGE = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s*kV\b", re.IGNORECASE)
+KILOVOLTS = re.compile(r"\d{1,4}(?:\.\d{1,3})?")  # said alone: a reference, or a voltage
 VOLTAGE_NOT_STATED = "voltage not stated"
 # Of the line that is read along with a support.
 UNREAD_OF_A_LINE = {f"line__{name}" for name in ("geometry", "centre", "node_osm_ids", "tags", "parts")}
@@ -72,7 +73,10 @@ def area_of(box: Box) -> Polygon | MultiPolygon:
 
 
 def _text_filter(text: str) -> Q:
-    """Every voltage in the text ("138 kV") must be among the asset's, every other word in its name, ref, operator or OSM id."""
+    """Every voltage in the text ("138 kV") must be among the asset's, every other word in its name, ref, operator or OSM id.
+
+    A number alone ("138") may be either.
+    """
     wanted = Q()
     for kilovolts in VOLTAGE.findall(text):
         wanted &= Q(voltages_v__contains=[round(float(kilovolts) * 1000)])
@@ -80,6 +84,8 @@ def _text_filter(text: str) -> Q:
         matches = Q(name__icontains=word) | Q(ref__icontains=word) | Q(operator__icontains=word)
         if key := OSM_KEY.fullmatch(word):
             matches |= Q(osm_type=key[1].lower(), osm_id=int(key[2]))
+        if KILOVOLTS.fullmatch(word):
+            matches |= Q(voltages_v__contains=[round(float(word) * 1000)])
         wanted &= matches
     return wanted
 

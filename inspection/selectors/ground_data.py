@@ -1,6 +1,7 @@
 """Reads assets and zones as the plain arrays that the graph is built from."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,17 @@ from inspection.models import AssetKind
 from inspection.selectors.ground import ground_revision
 
 READINGS = 3
+
+
+@dataclass(frozen=True)
+class _Area:
+    """A condition more, as SQL of this file, and its parameters."""
+
+    condition: str = ""
+    parameters: list[Any] = field(default_factory=list)
+
+
+EVERYWHERE = _Area()
 
 
 def has_flyable_assets() -> bool:
@@ -38,6 +50,13 @@ def ground_data() -> GroundData:
     return data
 
 
+def supports_and_lines(box: tuple[float, float, float, float], *, line: int | None = None) -> tuple[Places, Ways]:
+    """Flyable supports whose place and lines whose box meets west, south, east, north; of the lines only one, where it is named."""
+    in_box = _Area("AND geometry && ST_MakeEnvelope(%s, %s, %s, %s, 4326)", list(box))
+    lines = in_box if line is None else _Area("AND id = %s", [line])
+    return _places(AssetKind.TOWER, "geometry", in_box), _ways(AssetKind.LINE, lines)
+
+
 def zones_of_the_ground() -> Zones:
     rows = _rows("SELECT id, name, ST_AsBinary(geometry) FROM inspection_noflyzone ORDER BY id")
     return Zones(
@@ -51,13 +70,13 @@ def _rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...
         return cursor.fetchall()
 
 
-def _places(kind: AssetKind, column: str) -> Places:
+def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Places:
     rows = _rows(
         f"""
         SELECT id, CASE WHEN osm_type = 'n' AND NOT is_edited THEN osm_id END, ST_X({column}), ST_Y({column}), height_m
-        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
-        """,  # noqa: S608  # the column is one of two literals of this file
-        [kind],
+        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL {area.condition} ORDER BY id
+        """,  # noqa: S608  # column and condition are literals of this file
+        [kind, *area.parameters],
     )
     return Places(
         asset=np.array([row[0] for row in rows], dtype=np.int64),
@@ -67,14 +86,14 @@ def _places(kind: AssetKind, column: str) -> Places:
     )
 
 
-def _ways(kind: AssetKind) -> Ways:
+def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> Ways:
     """A way whose vertices do not match its list of OSM nodes, or that a curator edited, is joined by position alone."""
     rows = _rows(
-        """
+        f"""
         SELECT id, height_m, ST_AsBinary(geometry), CASE WHEN NOT is_edited THEN node_osm_ids END
-        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
-        """,
-        [kind],
+        FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL {area.condition} ORDER BY id
+        """,  # noqa: S608  # the condition is a literal of this file
+        [kind, *area.parameters],
     )
     geometries = shapely.from_wkb(np.array([bytes(row[2]) for row in rows], dtype=object))
     parts, owner = shapely.get_parts(geometries, return_index=True)

@@ -40,7 +40,11 @@ class AssetDetailPropertiesSerializer(AssetPropertiesSerializer):
 
 AssetFeatureSerializer = feature_serializer("AssetFeature", AssetPropertiesSerializer)
 AssetDetailFeatureSerializer = feature_serializer("AssetDetailFeature", AssetDetailPropertiesSerializer)
-AssetCollectionSerializer = collection_serializer("AssetCollection", AssetFeatureSerializer)
+
+
+class AssetCollectionSerializer(collection_serializer("AssetCollection", AssetFeatureSerializer)):  # type: ignore[misc]
+    total = serializers.IntegerField(required=False, help_text="on all pages; where it was asked for")
+
 
 FIELDS_OF_AN_ASSET = (
     "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m",

@@ -38,16 +38,21 @@ class AssetList(APIView):
             BOX,
             OpenApiParameter("kind", str, description=f"one or several of {', '.join(AssetKind.values)}, with commas"),
             OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
+            OpenApiParameter("flyable", bool, description="true: only what may be flown to"),
+            OpenApiParameter("total", bool, description="true: also how many there are, on all pages"),
             *PAGE_PARAMETERS,
         ],
         responses=AssetCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
         text = text_of(request)
-        assets = selectors.assets_on_the_ground(box=box_of(request), kinds=kinds_of(request), text=text).only(*FIELDS_OF_AN_ASSET)
+        flyable = True if request.query_params.get("flyable") == "true" else None
+        found = selectors.assets_on_the_ground(box=box_of(request), kinds=kinds_of(request), text=text, flyable=flyable)
+        assets = found.only(*FIELDS_OF_AN_ASSET)
         page = page_of(request, with_match_rank(assets, text=text), order=BEST_FIRST) if text else page_of(request, assets)
         features = [asset_feature(asset) for asset in page.rows]
-        return Response({"type": "FeatureCollection", "features": features, "next": page.next})
+        total = {"total": found.count()} if request.query_params.get("total") == "true" else {}
+        return Response({"type": "FeatureCollection", "features": features, "next": page.next} | total)
 
     @extend_schema(
         operation_id="create_asset", summary="Draw an asset", request=AssetInputSerializer, responses={201: AssetDetailFeatureSerializer}

@@ -1,0 +1,211 @@
+"""What an operator picks at once: what a list names, what stands in an area, the supports of a line, the bridges of a railway."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from django.contrib.gis.geos import GEOSGeometry
+from django.contrib.postgres.fields import ArrayField
+from django.db import connection
+from django.db.models import F, Func, Q, QuerySet, TextField, Value
+from django.db.models.functions import Upper
+
+from inspection.graph.stretch import Stretch, StretchPart, stretch_between, supports_in_order
+from inspection.models import Asset, AssetKind
+from inspection.selectors.ground_data import supports_and_lines
+
+Box = tuple[float, float, float, float]
+
+MOST_IN_AN_AREA = 2_000
+OSM_KEY = re.compile(r"(?:.*openstreetmap\.org/)?(N(?:ODE)?|W(?:AY)?|R(?:ELATION)?)[ /]?(\d{1,18})(?:[/?#].*)?", re.IGNORECASE)
+LIST_OF_REFS = r"\s*;\s*"  # OpenStreetMap writes several references of one thing as "12;13"
+# How far beyond two supports a way between them is looked for, in degrees: first near, then wide.
+REACHES_DEG = (0.05, 0.5)
+SECTION_GAP_DEG = 0.002  # some 200 m: sections of one railway may be cut by a bridge or a switch that has another name
+BESIDE_DEG = 1e-5  # about a metre: a bridge's outline may end where the section begins
+CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways say nothing of what it carries
+
+
+class NotOnTheLine(Exception):
+    """The support is none of the line's."""
+
+
+class NoWayAlongLines(Exception):
+    """No line leads from one support to the other."""
+
+
+def plain_ref(text: str) -> str:
+    """References that differ in case or spaces alone are the same."""
+    return " ".join(text.split()).upper()
+
+
+def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> dict[str, list[int]]:
+    """For each reference, as plain_ref writes it, the primary keys of the assets that it may mean.
+
+    An asset's own reference, key or OSM id comes before one of several references, and that before a name.
+    """
+    wanted = {plain_ref(ref) for ref in refs}
+    osm = {ref: (match[1][0].lower(), int(match[2])) for ref in wanted if (match := OSM_KEY.fullmatch(ref))}
+    parts = Func(Upper("ref"), Value(LIST_OF_REFS), function="regexp_split_to_array", output_field=ArrayField(TextField()))
+    assets = Asset.objects.filter(vanished_at=None, is_flyable=True)
+    if kinds:
+        assets = assets.filter(kind__in=kinds)
+    listed = sorted(wanted)
+    called = assets.annotate(own=_plain("ref"), called=_plain("name"), keyed=_plain("source_key"), ref_parts=parts).filter(
+        Q(own__in=listed) | Q(called__in=listed) | Q(keyed__in=listed) | Q(ref__contains=";", ref_parts__overlap=listed)
+    )
+    ranked: dict[str, dict[int, int]] = {ref: {} for ref in wanted}
+
+    def note(ref: str, pk: int, rank: int) -> None:
+        if ref in ranked:
+            ranked[ref][pk] = min(rank, ranked[ref].get(pk, rank))
+
+    for pk, own, name, key, several in called.order_by("pk").values_list("pk", "own", "called", "keyed", "ref_parts"):
+        note(own, pk, 0)
+        note(key, pk, 0)
+        for part in several:
+            note(plain_ref(part), pk, 1)
+        note(name, pk, 2)
+    if osm:
+        by_key: dict[tuple[str, int], list[int]] = {}
+        for pk, kind, osm_id in assets.filter(osm_id__in=[osm_id for _, osm_id in osm.values()]).values_list("pk", "osm_type", "osm_id"):
+            by_key.setdefault((kind, osm_id), []).append(pk)
+        for ref, key in osm.items():
+            for pk in by_key.get(key, []):
+                note(ref, pk, 0)
+    return {ref: [pk for pk, rank in found.items() if rank == min(found.values())] for ref, found in ranked.items()}
+
+
+def _plain(column: str) -> Upper:
+    squeezed = Func(F(column), Value(r"\s+"), Value(" "), Value("g"), function="regexp_replace", output_field=TextField())
+    return Upper(Func(squeezed, function="btrim", output_field=TextField()))
+
+
+def assets_in_area(area: GEOSGeometry, kinds: Sequence[AssetKind]) -> QuerySet[Asset]:
+    """What may be flown to and meets the area."""
+    return Asset.objects.filter(vanished_at=None, is_flyable=True, kind__in=kinds, geometry__intersects=area).order_by("pk")
+
+
+def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
+    """The area that a hand has drawn round, also where its line crosses itself; None where it encloses nothing.
+
+    Longitudes may pass 180 degrees: a map that has been panned round counts on.
+    """
+    drawn = shapely.make_valid(shapely.Polygon(ring))
+    world = shapely.box(-180.0, -90.0, 180.0, 90.0)
+    turns = [shapely.transform(drawn, lambda points, turn=turn: np.add(points, (turn, 0.0))) for turn in (-360.0, 0.0, 360.0)]
+    area = shapely.union_all([shapely.intersection(turn, world) for turn in turns])
+    parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
+    parts += [inner for part in shapely.get_parts(area) if part.geom_type == "MultiPolygon" for inner in part.geoms]
+    return GEOSGeometry(memoryview(shapely.to_wkb(shapely.MultiPolygon(parts))), srid=4326) if parts else None
+
+
+@dataclass(frozen=True)
+class RailwayBridges:
+    sections: list[int]
+    bridges: list[int]
+
+
+def supports_of_line(line: Asset) -> tuple[int, ...]:
+    """Primary keys of the line's supports in its direction."""
+    west, south, east, north = line.geometry.extent
+    near = (west - BESIDE_DEG, south - BESIDE_DEG, east + BESIDE_DEG, north + BESIDE_DEG)
+    supports, ways = supports_and_lines(near, line=line.pk)
+    return supports_in_order(supports, ways)
+
+
+def supports_between(line: Asset, start: int, end: int) -> tuple[int, ...]:
+    """Of the line's supports those from one to the other, in this direction. Raises NotOnTheLine."""
+    supports = supports_of_line(line)
+    for support in (start, end):
+        if support not in supports:
+            raise NotOnTheLine(support)
+    first, last = supports.index(start), supports.index(end)
+    return supports[first : last + 1] if first <= last else supports[last : first + 1][::-1]
+
+
+def stretch_along_lines(start: Asset, end: Asset) -> Stretch:
+    """The way from a support to another along lines, if it can on the circuit of both. Raises NoWayAlongLines."""
+    (a, b), (c, d) = start.centre.coords, end.centre.coords
+    west, south, east, north = min(a, c), min(b, d), max(a, c), max(b, d)
+    for reach in REACHES_DEG:
+        reach = max(reach, 0.25 * (east - west), 0.25 * (north - south))
+        box = (max(west - reach, -180.0), max(south - reach, -90.0), min(east + reach, 180.0), min(north + reach, 90.0))
+        supports, lines = supports_and_lines(box)
+        stretch = stretch_between(supports, lines, start.pk, end.pk, _circuit_of(start, end))
+        if stretch is not None:
+            return stretch
+    raise NoWayAlongLines
+
+
+def _circuit_of(start: Asset, end: Asset) -> set[int]:
+    """Lines of a voltage that both supports carry; all lines where they carry none in common."""
+    of_start, of_end = _voltages_at(start), _voltages_at(end)
+    common = of_start & of_end
+    lines = Asset.objects.filter(kind=AssetKind.LINE, vanished_at=None, is_flyable=True)
+    return set(lines.filter(max_voltage_v__in=common).values_list("pk", flat=True)) if common else set()
+
+
+def _voltages_at(support: Asset) -> set[int]:
+    lines = Asset.objects.filter(kind=AssetKind.LINE, vanished_at=None, is_flyable=True, geometry__dwithin=(support.centre, BESIDE_DEG))
+    return {voltage for voltage in lines.values_list("max_voltage_v", flat=True) if voltage}
+
+
+def sections_of_railway(railway: Asset) -> list[int]:
+    """The railway, and what is joined to it under the same reference or, without one, the same name."""
+    same = {"ref": railway.ref} if railway.ref else {"name": railway.name} if railway.name else {"pk": railway.pk}
+    sections = Asset.objects.filter(kind=AssetKind.RAILWAY, vanished_at=None, **same).values_list("pk", flat=True)
+    if len(sections) < 2:
+        return [railway.pk]
+    rows = _rows(
+        """
+        WITH clustered AS (
+            SELECT id, ST_ClusterDBSCAN(geometry, %s, 1) OVER () AS cluster FROM inspection_asset WHERE id = ANY(%s)
+        )
+        SELECT id FROM clustered WHERE cluster = (SELECT cluster FROM clustered WHERE id = %s) ORDER BY id
+        """,
+        [SECTION_GAP_DEG, list(sections), railway.pk],
+    )
+    return [pk for (pk,) in rows]
+
+
+def bridges_of_railway(railway: Asset, *, all_sections: bool, also_over: bool) -> RailwayBridges:
+    """Bridges that carry the section, or all sections of its railway; with `also_over` those that lead over it as well."""
+    sections = sections_of_railway(railway) if all_sections else [railway.pk]
+    rows = _rows(
+        """
+        SELECT DISTINCT b.id FROM inspection_asset r
+        JOIN inspection_asset b ON b.kind = 'bridge' AND b.vanished_at IS NULL AND b.is_flyable
+          AND ST_DWithin(b.geometry, r.geometry, %s)
+        WHERE r.id = ANY(%s) AND (%s OR b.carries = ANY(%s))
+        ORDER BY b.id
+        """,
+        [BESIDE_DEG, sections, also_over, list(CARRIES_TRACK)],
+    )
+    return RailwayBridges(sections, [pk for (pk,) in rows])
+
+
+def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
+    with connection.cursor() as cursor:
+        cursor.execute(statement, parameters)
+        return cursor.fetchall()
+
+
+__all__ = [
+    "MOST_IN_AN_AREA",
+    "NoWayAlongLines",
+    "NotOnTheLine",
+    "RailwayBridges",
+    "StretchPart",
+    "area_drawn",
+    "assets_called",
+    "assets_in_area",
+    "bridges_of_railway",
+    "plain_ref",
+    "stretch_along_lines",
+    "supports_between",
+    "supports_of_line",
+]

@@ -1,0 +1,108 @@
+"""Assets as short rows to pick from, and what is asked to get them."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.models import Asset, AssetKind
+from inspection.selectors import asset_detail, asset_label
+from inspection.serializers.assets import FIELDS_OF_AN_ASSET
+
+MOST_REFS = 2_000
+LONGEST_REF = 255
+MOST_CORNERS = 5_000
+
+
+class PickedAssetSerializer(serializers.Serializer):
+    """What a list of targets shows of an asset; its shape: GET /assets/{id}."""
+
+    id = serializers.IntegerField()
+    kind = serializers.ChoiceField(choices=AssetKind.choices)
+    label = serializers.CharField()
+    detail = serializers.CharField(help_text="the second fact; may be empty")
+    length_m = serializers.FloatField(allow_null=True)
+    centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
+
+
+class LookupInputSerializer(serializers.Serializer):
+    refs = serializers.ListField(
+        child=serializers.CharField(max_length=LONGEST_REF),
+        allow_empty=False,
+        max_length=MOST_REFS,
+        help_text="references, names, keys of a file, or OSM ids such as w123; case and spaces do not count",
+    )
+    kinds = serializers.ListField(child=serializers.ChoiceField(choices=AssetKind.choices), required=False, help_text="empty: all")
+
+
+class LookupResultSerializer(serializers.Serializer):
+    ref = serializers.CharField(help_text="as asked")
+    match = serializers.ChoiceField(choices=["found", "several", "none"])
+    count = serializers.IntegerField(help_text="how many assets it may mean")
+    assets = PickedAssetSerializer(many=True, help_text="at most 20 of them")
+
+
+class LookupOutputSerializer(serializers.Serializer):
+    results = LookupResultSerializer(many=True, help_text="in the order asked, each reference once")
+
+
+class DrawnAreaSerializer(serializers.Serializer):
+    type = serializers.ChoiceField(choices=["Polygon"])
+    coordinates = serializers.ListField(
+        child=serializers.ListField(
+            child=serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=3), min_length=3, max_length=MOST_CORNERS
+        ),
+        min_length=1,
+        max_length=1,
+    )
+
+
+class WithinInputSerializer(serializers.Serializer):
+    polygon = DrawnAreaSerializer(help_text="GeoJSON, one ring; it may cross itself and need not be closed")
+    kinds = serializers.ListField(
+        child=serializers.ChoiceField(choices=AssetKind.choices), required=False, help_text="default: towers and bridges"
+    )
+
+
+class WithinOutputSerializer(serializers.Serializer):
+    count = serializers.IntegerField(help_text="how many stand there")
+    assets = PickedAssetSerializer(many=True, help_text="the first 2,000 of them")
+
+
+class StretchPartSerializer(serializers.Serializer):
+    line = PickedAssetSerializer()
+    stretch = serializers.ListField(
+        child=serializers.ListField(child=serializers.FloatField()), min_length=2, max_length=2, help_text="where it begins and ends"
+    )
+    length_m = serializers.FloatField()
+
+
+class SupportsOutputSerializer(serializers.Serializer):
+    """The supports in order, and of which lines what is between them."""
+
+    supports = PickedAssetSerializer(many=True)
+    parts = StretchPartSerializer(many=True, help_text="empty where whole lines were asked for")
+    length_m = serializers.FloatField(allow_null=True)
+
+
+class BridgesOutputSerializer(serializers.Serializer):
+    sections = serializers.IntegerField(help_text="how many sections of the railway were looked at")
+    bridges = PickedAssetSerializer(many=True)
+
+
+def picked_assets(keys: Iterable[int]) -> list[dict[str, Any]]:
+    """The assets of these primary keys, in their order."""
+    listed = list(keys)
+    rows = Asset.objects.select_related("line").only(*FIELDS_OF_AN_ASSET).in_bulk(set(listed))
+    return [picked_asset(rows[key]) for key in listed if key in rows]
+
+
+def picked_asset(asset: Asset) -> dict[str, Any]:
+    return {
+        "id": asset.pk,
+        "kind": asset.kind,
+        "label": asset_label(asset),
+        "detail": asset_detail(asset),
+        "length_m": asset.length_m,
+        "centre": [asset.centre.x, asset.centre.y],
+    }

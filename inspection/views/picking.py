@@ -1,0 +1,171 @@
+"""Doors to many assets at once, for those who pick what is inspected. Nothing is stored."""
+
+from itertools import islice
+
+from django.http import Http404
+from django.utils.translation import gettext as _
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.models import Asset, AssetKind
+from inspection.selectors import picking
+from inspection.serializers.assets import FIELDS_OF_AN_ASSET
+from inspection.serializers.picking import (
+    BridgesOutputSerializer,
+    LookupInputSerializer,
+    LookupOutputSerializer,
+    SupportsOutputSerializer,
+    WithinInputSerializer,
+    WithinOutputSerializer,
+    picked_asset,
+    picked_assets,
+)
+from inspection.views.parameters import invalid
+from workspace.errors import ApiProblem
+from workspace.models import Role
+
+MOST_CHOICES = 20
+FROM = OpenApiParameter("from", int, description="id of the support where it begins")
+TO = OpenApiParameter("to", int, description="id of the support where it ends")
+
+
+def _asset(asset_id: int, kind: AssetKind) -> Asset:
+    asset = Asset.objects.filter(pk=asset_id, kind=kind, vanished_at=None).first()
+    if asset is None:
+        raise Http404
+    return asset
+
+
+def _support_of(request: Request, name: str) -> Asset | None:
+    text = request.query_params.get(name, "")
+    if not text:
+        return None
+    support = None
+    if text.isascii() and text.isdigit() and len(text) < 19:
+        support = Asset.objects.filter(pk=int(text), kind=AssetKind.TOWER, vanished_at=None).first()
+    if support is None:
+        raise invalid(name, _("There is no such tower or pole."))
+    return support
+
+
+class AssetLookup(APIView):
+    write_roles = frozenset(Role)
+
+    @extend_schema(
+        operation_id="lookup_assets",
+        summary="Which assets a list of references means",
+        request=LookupInputSerializer,
+        responses=LookupOutputSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        body = LookupInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        asked = {picking.plain_ref(ref): ref for ref in reversed(body.validated_data["refs"])}
+        refs = list(reversed(asked))
+        found = picking.assets_called(refs, kinds=body.validated_data.get("kinds", ()))
+        rows = {row["id"]: row for row in picked_assets(pk for ref in refs for pk in islice(found[ref], MOST_CHOICES))}
+        results = [
+            {
+                "ref": asked[ref],
+                "match": "none" if not found[ref] else "found" if len(found[ref]) == 1 else "several",
+                "count": len(found[ref]),
+                "assets": [rows[pk] for pk in found[ref][:MOST_CHOICES] if pk in rows],
+            }
+            for ref in refs
+        ]
+        return Response({"results": results})
+
+
+class AssetsWithin(APIView):
+    write_roles = frozenset(Role)
+
+    @extend_schema(
+        operation_id="list_assets_within",
+        summary="Assets that stand in an area drawn by hand",
+        request=WithinInputSerializer,
+        responses=WithinOutputSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        body = WithinInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        ring = [position[:2] for position in body.validated_data["polygon"]["coordinates"][0]]
+        if not all(-540.0 <= longitude <= 540.0 and -90.0 <= latitude <= 90.0 for longitude, latitude in ring):
+            raise invalid("polygon", _("A position is not on the globe."))
+        area = picking.area_drawn(ring)
+        if area is None:
+            raise invalid("polygon", _("It encloses nothing."))
+        kinds = body.validated_data.get("kinds") or [AssetKind.TOWER, AssetKind.BRIDGE]
+        assets = picking.assets_in_area(area, kinds)
+        rows = list(assets.select_related("line").only(*FIELDS_OF_AN_ASSET)[: picking.MOST_IN_AN_AREA])
+        count = len(rows) if len(rows) < picking.MOST_IN_AN_AREA else assets.count()
+        return Response({"count": count, "assets": [picked_asset(asset) for asset in rows]})
+
+
+class LineSupports(APIView):
+    @extend_schema(
+        operation_id="list_line_supports",
+        summary="Towers and poles of a line in order, or those from one to another",
+        parameters=[FROM, TO],
+        responses=SupportsOutputSerializer,
+    )
+    def get(self, request: Request, asset_id: int) -> Response:
+        line = _asset(asset_id, AssetKind.LINE)
+        start, end = _support_of(request, "from"), _support_of(request, "to")
+        if (start is None) != (end is None):
+            raise invalid("from" if start is None else "to", _("Both ends are needed, or none."))
+        if start is None or end is None:
+            return Response({"supports": picked_assets(picking.supports_of_line(line)), "parts": [], "length_m": line.length_m})
+        try:
+            supports = picking.supports_between(line, start.pk, end.pk)
+        except picking.NotOnTheLine as error:
+            raise ApiProblem(400, "not_on_line", _("Both towers must be on this line.")) from error
+        return Response({"supports": picked_assets(supports), "parts": [], "length_m": None})
+
+
+class StretchAlongLines(APIView):
+    @extend_schema(
+        operation_id="get_stretch",
+        summary="What is between two towers along the lines, also over several lines of a circuit",
+        parameters=[OpenApiParameter(name.name, OpenApiTypes.INT, required=True, description=name.description) for name in (FROM, TO)],
+        responses=SupportsOutputSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        start, end = _support_of(request, "from"), _support_of(request, "to")
+        if start is None or end is None:
+            raise invalid("from" if start is None else "to", _("Both ends are needed."))
+        if start == end:
+            raise invalid("to", _("Both ends are the same tower."))
+        try:
+            stretch = picking.stretch_along_lines(start, end)
+        except picking.NoWayAlongLines as error:
+            raise ApiProblem(404, "no_way_along_lines", _("No line leads from one tower to the other.")) from error
+        lines = {row["id"]: row for row in picked_assets(part.line for part in stretch.parts)}
+        parts = [
+            {"line": lines[part.line], "stretch": [list(part.start), list(part.end)], "length_m": part.length_m}
+            for part in stretch.parts
+            if part.line in lines
+        ]
+        return Response({"supports": picked_assets(stretch.supports), "parts": parts, "length_m": stretch.length_m})
+
+
+class RailwayBridges(APIView):
+    @extend_schema(
+        operation_id="list_railway_bridges",
+        summary="Bridges of a railway",
+        parameters=[
+            OpenApiParameter("sections", str, enum=["own", "all"], description="all: also of the joined sections of the same name"),
+            OpenApiParameter("over", bool, description="true: also bridges that lead over the track"),
+        ],
+        responses=BridgesOutputSerializer,
+    )
+    def get(self, request: Request, asset_id: int) -> Response:
+        railway = _asset(asset_id, AssetKind.RAILWAY)
+        found = picking.bridges_of_railway(
+            railway,
+            all_sections=request.query_params.get("sections") == "all",
+            also_over=request.query_params.get("over") == "true",
+        )
+        return Response({"sections": len(found.sections), "bridges": picked_assets(found.bridges)})
