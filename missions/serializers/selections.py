@@ -1,0 +1,87 @@
+"""Saved selections, in and out."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from inspection.selectors import asset_detail, asset_label
+from missions.fields import PositionField
+from missions.models import SavedSelection
+from missions.selection_selectors import KeptTarget, kept_targets
+from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
+from missions.serializers.shapes import TaskOutputSerializer
+
+
+class SelectionInputSerializer(OptionsSerializer):
+    """A name, and targets as in a mission; UAVs and options are not kept."""
+
+    uavs = None
+    objective = None
+    return_to_start = None
+    name = serializers.CharField(max_length=100)
+    targets = TargetInputSerializer(many=True, allow_empty=False)
+
+
+class SelectionTargetSerializer(serializers.Serializer):
+    asset = serializers.IntegerField(allow_null=True)
+    label = serializers.CharField()
+    detail = serializers.CharField(help_text="the asset's second fact; may be empty")
+    length_m = serializers.FloatField(allow_null=True)
+    kind = serializers.CharField(allow_null=True)
+    position = PositionField(allow_null=True, help_text="as picked, else the asset's centre")
+    stretch = serializers.ListField(child=PositionField(), allow_null=True)
+    is_point = serializers.BooleanField()
+    task = TaskOutputSerializer()
+
+
+class SelectionSummarySerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+    author = serializers.CharField(allow_null=True)
+    target_count = serializers.IntegerField()
+    revision = serializers.IntegerField(help_text="the ETag")
+    updated_at = serializers.DateTimeField()
+
+
+class SelectionSerializer(SelectionSummarySerializer):
+    targets = SelectionTargetSerializer(many=True, help_text="those that are still in the data")
+    missing = serializers.ListField(child=serializers.CharField(), help_text="what the others were called")
+
+
+class SelectionPageSerializer(serializers.Serializer):
+    results = SelectionSummarySerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+def selection_summary(selection: SavedSelection) -> dict[str, Any]:
+    return {
+        "id": selection.pk,
+        "name": selection.name,
+        "author": selection.author.username if selection.author else None,
+        "target_count": len(selection.targets),
+        "revision": selection.revision,
+        "updated_at": selection.updated_at,
+    }
+
+
+def selection_json(selection: SavedSelection) -> dict[str, Any]:
+    kept = kept_targets(selection)
+    return selection_summary(selection) | {
+        "targets": [_target(target) for target in kept if not target.is_missing],
+        "missing": [target.value["label"] for target in kept if target.is_missing],
+    }
+
+
+def _target(target: KeptTarget) -> dict[str, Any]:
+    value, asset = target.value, target.asset
+    return {
+        "asset": value["asset"],
+        "label": value["label"] if asset is None else asset_label(asset),
+        "detail": "" if asset is None else asset_detail(asset),
+        "length_m": None if asset is None else asset.length_m,
+        "kind": None if asset is None else asset.kind,
+        "position": value["position"] or (None if asset is None else list(asset.centre.coords)),
+        "stretch": value["stretch"],
+        "is_point": value["position"] is not None,
+        "task": value["task"],
+    }
