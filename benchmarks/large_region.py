@@ -29,7 +29,7 @@ TILES_A_ZOOM = 20
 DATABASE = "spanwise_large_region"
 
 
-def write_region(path: Path, assets: int) -> None:
+def write_region(path: Path, assets: int, side_deg: float = SIDE_DEG) -> None:
     """Of 100 assets some 93 are supports, 4 lines, 2 railways, 1 bridge. Nodes first, then ways, by number, as files have them."""
     rng = np.random.default_rng(7)
     lines = assets * 93 // 100 // TOWERS_A_LINE
@@ -40,7 +40,7 @@ def write_region(path: Path, assets: int) -> None:
 
     def path_of(steps: int, step_deg: float, tags: dict[str, str] | None) -> list[int]:
         nonlocal number
-        lon, lat = WEST + rng.random() * SIDE_DEG, SOUTH + rng.random() * SIDE_DEG
+        lon, lat = WEST + rng.random() * side_deg, SOUTH + rng.random() * side_deg
         bearing = rng.random() * 6.283
         refs = []
         for _ in range(steps):
@@ -95,7 +95,7 @@ def tiles_pass() -> None:
     rng = np.random.default_rng(11)
     rows = []
     for zoom in ZOOMS:
-        wanted = {_tile_of(zoom, *places[index]) for index in rng.integers(0, len(places), TILES_A_ZOOM * 3)}
+        wanted = {tile_of(zoom, *places[index]) for index in rng.integers(0, len(places), TILES_A_ZOOM * 3)}
         times, sizes = [], []
         for column, row in sorted(wanted)[:TILES_A_ZOOM]:
             vector_tile(zoom, column, row)  # what the database reads from disk the first time is not what users wait for
@@ -106,7 +106,7 @@ def tiles_pass() -> None:
     _report(tiles=rows)
 
 
-def _tile_of(zoom: int, lon: float, lat: float) -> tuple[int, int]:
+def tile_of(zoom: int, lon: float, lat: float) -> tuple[int, int]:
     across = (lon + 180) / 360 * 2**zoom
     down = (1 - np.log(np.tan(radians(lat)) + 1 / cos(radians(lat))) / np.pi) / 2 * 2**zoom
     return int(across), int(down)

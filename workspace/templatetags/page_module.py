@@ -1,0 +1,44 @@
+"""A page's script with all that it imports, so that the browser asks for everything at once instead of module by module."""
+
+import re
+from functools import cache
+from posixpath import dirname, join, normpath
+
+from django import template
+from django.contrib.staticfiles.storage import staticfiles_storage
+from django.utils.html import format_html, format_html_join
+from django.utils.safestring import SafeString
+
+register = template.Library()
+
+IMPORTED = re.compile(r"""^(?:import|export)\s[^;]*?from\s*["']([./][^"']+)["'];|^import\s*["']([./][^"']+)["'];""", re.M)
+
+
+@register.simple_tag
+def page_module(name: str) -> SafeString:
+    """`{% page_module "js/missions/main.js" %}`"""
+    address = staticfiles_storage.url(name)
+    preloads = format_html_join("\n", '<link rel="modulepreload" href="{}">', ((found,) for found in imported_by(address)))
+    return format_html('{}\n<script type="module" src="{}"></script>', preloads, address)
+
+
+@cache
+def imported_by(address: str) -> tuple[str, ...]:
+    """Addresses of all modules behind one, the nearest first. A hashed name's imports never change; before files are collected there are none."""
+    root = staticfiles_storage.base_url
+    found: dict[str, None] = {}
+    waiting = [address]
+    while waiting:
+        module = waiting.pop(0)
+        is_ours = module.startswith(f"{root}js/")  # a library is one file
+        if not is_ours or not staticfiles_storage.exists(module.removeprefix(root)):
+            continue
+        with staticfiles_storage.open(module.removeprefix(root)) as file:
+            text = file.read().decode()
+        for match in IMPORTED.finditer(text):
+            target = match[1] or match[2]
+            target = target if target.startswith("/") else normpath(join(dirname(module), target))
+            if target not in found and target != address:
+                found[target] = None
+                waiting.append(target)
+    return tuple(found)
