@@ -62,6 +62,7 @@ def texts_of_templates() -> Iterator[Text]:
 
 
 def texts_of_template(source: str, engine: Engine) -> Iterator[Text]:
+    yield from re.findall(r'\b_\("([^"]+)"\)', source)
     for node in _nodes(Template(source, engine=engine).nodelist):
         if isinstance(node, TranslateNode):
             literal = node.filter_expression.var.literal
