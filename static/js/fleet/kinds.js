@@ -1,0 +1,89 @@
+/** The three things of the fleet: where each comes from, what its table shows, how it is named and told in full. */
+
+import { h } from "../dom.js";
+import { t } from "../text.js";
+import { coordinateText, speedText } from "../units.js";
+import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, stateChip, uavsText, wattHours } from "./words.js";
+
+const caption = (words) => words && h("span", { class: "caption" }, words);
+const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+
+export const KINDS = {
+  uavs: {
+    tab: "uavs",
+    icon: "uav",
+    words: t("UAVs"),
+    one: t("New UAV"),
+    path: "/uavs",
+    read: flat,
+    columns: [
+      { words: t("Name"), cell: (uav) => caption(uav.type_name || t("no type")) },
+      { words: t("State"), cell: (uav) => stateChip(uav.state) },
+      { words: t("Base"), class: "wide", cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))] },
+      { words: t("Battery"), class: "number", cell: (uav) => batteryMark(uav.battery_percent) },
+      { words: t("Range"), class: "number wide", cell: (uav) => rangeText(uav.max_range_m) },
+      { words: t("Missions"), class: "number missions", cell: (uav) => `${uav.mission_count || "—"}` },
+    ],
+    facts: (uav) => [
+      term(t("Type"), uav.type_name || t("not stated")),
+      term(t("Base"), uav.base_name || t("not stated")),
+      term(t("Position"), `${coordinateText(uav.position)} · ${ageText(uav)}`),
+      term(t("Battery"), batteryMark(uav.battery_percent)),
+      term(t("Range"), fromType(uav, "max_range_m", rangeText(uav.max_range_m))),
+      term(t("Speed"), fromType(uav, "cruise_speed_mps", speedText(uav.cruise_speed_mps))),
+      term(t("Sensors"), uav.sensors.join(", ") || t("not stated")),
+      term(t("At the end"), endWords(uav.end_action)),
+      term(t("Serial number"), uav.serial_number),
+      term(t("MAVLink system id"), uav.mavlink_system_id && `${uav.mavlink_system_id}`),
+    ],
+    deleted: (uav) => t("{name} is deleted.", { name: uav.name }),
+    none: { title: t("No UAVs yet"), text: t("Add the first one, then plan a mission with it.") },
+  },
+  types: {
+    tab: "types",
+    icon: "settings",
+    words: t("Types"),
+    one: t("New type"),
+    path: "/uav-types",
+    read: (row) => row,
+    columns: [
+      { words: t("Name"), cell: (type) => caption(type.sensors.join(", ")) },
+      { words: t("Range"), class: "number", cell: (type) => rangeText(type.max_range_m) },
+      { words: t("Speed"), class: "number wide", cell: (type) => speedText(type.cruise_speed_mps) },
+      { words: t("Battery"), class: "number wide", cell: (type) => wattHours(type.battery_wh) },
+      { words: t("Mass"), class: "number wide", cell: (type) => kilograms(type.mass_kg) },
+      { words: t("UAVs"), class: "number", cell: (type) => `${type.uav_count || "—"}` },
+    ],
+    facts: (type) => [
+      term(t("Range"), rangeText(type.max_range_m)),
+      term(t("Speed"), speedText(type.cruise_speed_mps)),
+      term(t("Battery"), wattHours(type.battery_wh)),
+      term(t("Mass"), kilograms(type.mass_kg)),
+      term(t("Sensors"), type.sensors.join(", ") || t("not stated")),
+      term(t("UAVs"), type.uav_count ? uavsText(type.uav_count) : t("none")),
+    ],
+    deleted: (type) => t("The type {name} is deleted.", { name: type.name }),
+    none: { title: t("No types yet"), text: t("A type gives its range, speed and sensors to all its UAVs.") },
+  },
+  bases: {
+    tab: "bases",
+    icon: "warehouse",
+    words: t("Bases"),
+    one: t("New base"),
+    path: "/bases",
+    read: (row) => row,
+    columns: [
+      { words: t("Name"), cell: (base) => caption(base.note) },
+      { words: t("Place"), class: "wide", cell: (base) => coordinateText(base.position) },
+      { words: t("UAVs"), class: "number", cell: (base) => `${base.uav_count || "—"}` },
+    ],
+    facts: (base) => [
+      term(t("Place"), coordinateText(base.position)),
+      term(t("Note"), base.note),
+      term(t("UAVs"), base.uav_count ? uavsText(base.uav_count) : t("none")),
+    ],
+    deleted: (base) => t("The base {name} is deleted.", { name: base.name }),
+    none: { title: t("No bases yet"), text: t("A base is where UAVs stand and take off.") },
+  },
+};
+

@@ -1,0 +1,61 @@
+/** What the fleet's pages say about UAVs, types and bases. */
+
+import { h, icon } from "../dom.js";
+import { t, tn } from "../text.js";
+import { lengthText, numberText, percentText, whenText } from "../units.js";
+
+const LOW_PERCENT = 30;
+
+export const STATES = {
+  active: { words: t("In service"), icon: "check" },
+  maintenance: { words: t("In maintenance"), icon: "wrench" },
+  retired: { words: t("Retired"), icon: "archive" },
+};
+
+export const ENDS = [
+  ["hover", t("Hover over its last target")],
+  ["return", t("Return to start")],
+  ["land", t("Land at its last target")],
+];
+
+export const MISSION_STATES = {
+  draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"),
+  failed: t("Failed"),
+};
+
+export const CREDENTIALS = { "link-token": t("Token of the HTTP link"), "mavlink-key": t("MAVLink signing key") };
+
+export function stateChip(state) {
+  return h("span", { class: `chip ${state}` }, icon(STATES[state].icon, "small"), STATES[state].words);
+}
+
+export function endWords(end) {
+  return ENDS.find(([value]) => value === end)?.[1] ?? end;
+}
+
+/** "now", "today, 11:40": when the UAV was last known to be where it is. */
+export function ageText(uav) {
+  return uav.located_at ? whenText(uav.located_at) : t("age not known");
+}
+
+export const rangeText = (range_m) => (range_m === null ? t("not limited") : lengthText(range_m));
+
+export function fromType(uav, field, words) {
+  return uav.from_type.includes(field) ? t("{figure}, as its type", { figure: words }) : words;
+}
+
+export function batteryMark(percent) {
+  if (percent === null) return h("span", { class: "quiet-text" }, "—");
+  const bar = h("b", {});
+  bar.style.width = `${percent}%`;
+  return h("span", { class: `battery${percent < LOW_PERCENT ? " low" : ""}` }, h("i", { "aria-hidden": "true" }, bar), percentText(percent));
+}
+
+export const wattHours = (battery_wh) => (battery_wh === null ? "—" : `${numberText(battery_wh)}\u00a0Wh`);
+export const kilograms = (mass_kg) => (mass_kg === null ? "—" : `${numberText(mass_kg, Number.isInteger(mass_kg) ? 0 : 1)}\u00a0kg`);
+export const uavsText = (count) => tn(count, "{count} UAV", "{count} UAVs");
+
+/** A UAV of the API as one object. */
+export function flat(feature) {
+  return { id: feature.id, position: feature.geometry.coordinates.slice(0, 2), ...feature.properties };
+}
