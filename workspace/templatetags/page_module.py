@@ -24,7 +24,7 @@ def page_module(name: str) -> SafeString:
 
 @cache
 def imported_by(address: str) -> tuple[str, ...]:
-    """Addresses of all modules behind one, the nearest first. A hashed name's imports never change; before files are collected there are none."""
+    """Addresses of all modules behind one, the nearest first; a hashed name's imports never change. None before files are collected."""
     root = staticfiles_storage.base_url
     found: dict[str, None] = {}
     waiting = [address]
