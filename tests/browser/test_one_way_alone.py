@@ -22,7 +22,10 @@ FOCUSED = """() => {
 HAS_RING = """() => {
     const at = document.activeElement;
     const shown = [at, at.nextElementSibling, at.closest("label, li, .search-box")].filter(Boolean);
-    return shown.some((element) => { const style = getComputedStyle(element); return style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2; });
+    return shown.some((element) => {
+        const { outlineStyle, outlineWidth } = getComputedStyle(element);
+        return outlineStyle !== "none" && parseFloat(outlineWidth) >= 2;
+    });
 }"""
 
 
