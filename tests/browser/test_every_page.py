@@ -26,7 +26,8 @@ TOO_WIDE = """() => {
     const wide = document.documentElement.scrollWidth - innerWidth;
     if (wide <= 0) return [];
     const leaves = (element) => element.getBoundingClientRect().right > innerWidth + 1;
-    return [`${wide} px too wide`, ...[...document.body.querySelectorAll("*")].filter(leaves).slice(0, 5).map((at) => at.outerHTML.slice(0, 120))];
+    const guilty = [...document.body.querySelectorAll("*")].filter(leaves).slice(0, 5);
+    return [`${wide} px too wide`, ...guilty.map((at) => at.outerHTML.slice(0, 120))];
 }"""
 
 
