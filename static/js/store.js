@@ -26,9 +26,7 @@ export function createStore(initial) {
   return store;
 }
 
-const LONGEST_HISTORY = 100;
-
-/** Undo and redo over one name of the store. `changeTo` is one step; equal values make none. */
+/** Undo and redo over one name of the store, back to the beginning. `changeTo` is one step; equal values make none. */
 export function createHistory(store, name) {
   let past = [];
   let future = [];
@@ -42,25 +40,21 @@ export function createHistory(store, name) {
     changeTo(value) {
       const current = store.state[name];
       if (isSame(current, value)) return false;
-      past = [...past, current].slice(-LONGEST_HISTORY);
+      past.push(current);
       future = [];
       show(value);
       return true;
     },
     undo() {
       if (!past.length) return false;
-      future = [store.state[name], ...future];
-      const value = past.at(-1);
-      past = past.slice(0, -1);
-      show(value);
+      future.push(store.state[name]);
+      show(past.pop());
       return true;
     },
     redo() {
       if (!future.length) return false;
-      past = [...past, store.state[name]];
-      const [value, ...rest] = future;
-      future = rest;
-      show(value);
+      past.push(store.state[name]);
+      show(future.pop());
       return true;
     },
     /** The same step in other words, as the server has stored it: what went before can still be undone. */
