@@ -95,6 +95,7 @@ MIDDLEWARE = [
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",
     "django.contrib.auth.middleware.AuthenticationMiddleware",
+    "workspace.preferences.PreferencesMiddleware",
     "django.contrib.messages.middleware.MessageMiddleware",
     "django.middleware.clickjacking.XFrameOptionsMiddleware",
 ]
@@ -157,6 +158,7 @@ LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"
 
 PASSWORD_RESET_TIMEOUT = 3_600  # seconds that the link of a mail works
+SIGN_IN_LOG_DAYS = int(_float("SPANWISE_SIGN_IN_LOG_DAYS", 180))
 
 globals().update(mail_settings(os.environ.get("SPANWISE_EMAIL_URL", "console://")))
 DEFAULT_FROM_EMAIL = os.environ.get("SPANWISE_EMAIL_FROM", "Spanwise <spanwise@localhost>")
@@ -218,6 +220,12 @@ SPECTACULAR_SETTINGS = {
         "WaypointKind": "missions.models.WaypointKind",
         "TaskKind": ["look", "photo", "hold"],
         "JobState": "workspace.models.JobState",
+        "Role": "workspace.models.Role",
+        "Theme": "workspace.models.Theme",
+        "Units": "workspace.models.Units",
+        "Language": "workspace.models.Language",
+        "SignInOutcome": "workspace.models.SignInOutcome",
+        "InvitationState": "workspace.people_serializers.InvitationState",
         "ProposalState": "inspection.models.ProposalState",
         "GapState": "inspection.models.GapState",
         "MissionState": "missions.models.MissionState",
@@ -269,6 +277,7 @@ CELERY_BEAT_SCHEDULE = {
         "options": {"expires": 60},
     },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
+    "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")

@@ -1,13 +1,10 @@
 """Addresses of the pages."""
 
-from django.contrib.auth.views import LogoutView
 from django.urls import path
 
-from missions.pages import FleetPage, MissionPage, MissionsPage, SignInPage
+from missions.pages import FleetPage, MissionPage, MissionsPage
 
 urlpatterns = [
-    path("sign-in", SignInPage.as_view(), name="sign-in"),
-    path("sign-out", LogoutView.as_view(), name="sign-out"),
     path("", MissionsPage.as_view(), name="missions"),
     path("uavs", FleetPage.as_view(), name="fleet"),
     path("missions/new", MissionPage.as_view(), name="mission-new"),

@@ -148,7 +148,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
     # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
     places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, compression="off")
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme)
-    links = _proxied("/new-password/", "page", headers, scheme, faults="emerg")
+    links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, faults="emerg")
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;
 pid {_quoted(folder / "nginx.pid")};
@@ -166,9 +166,9 @@ http {{
     charset utf-8;
     charset_types text/css text/plain text/javascript image/svg+xml;
 {temporary}
-    # A link to a new password lets its holder in: it is written into no log, nor is a fault of the application at it.
+    # A link to a new password, and an invitation, let their holder in: they are written into no log, nor is a fault of the application at them.
     map $request $told_request {{
-        "~^(?<told>[A-Z]+ /new-password/)" "$told...";
+        "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
         default $request;
     }}
     log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';

@@ -4,14 +4,14 @@ from threading import Thread
 from typing import Any
 
 from django.contrib.auth import views
-from django.contrib.auth.forms import PasswordResetForm
+from django.contrib.auth.forms import PasswordResetForm, SetPasswordForm
 from django.core.exceptions import ValidationError
+from django.http import HttpResponse
 from django.urls import reverse_lazy
+from django.utils.translation import gettext as _
 
-from workspace.sign_in_attempts import address_of, count_failure, is_locked
-
-# Counted like wrong sign-ins, under names that nobody can have: nobody is locked out of signing in by it.
-_OF_AN_ACCOUNT, _OF_AN_ADDRESS = "\nreset\n", "\nresets from here"
+from workspace.known_browsers import remember
+from workspace.sign_in_attempts import HeldBack, address_of, network_of, take_turn
 
 
 class LostPasswordForm(PasswordResetForm):
@@ -23,10 +23,11 @@ class LostPasswordForm(PasswordResetForm):
 
     def clean_email(self) -> str:
         email: str = self.cleaned_data["email"]
-        for name, address in ((_OF_AN_ACCOUNT + email, ""), (_OF_AN_ADDRESS, self.address)):
-            if is_locked(name, address):
-                raise ValidationError("Too many mails were asked for. Wait 15 min, then try again.", code="locked")
-            count_failure(name, address)
+        try:
+            take_turn("mails to", email)
+            take_turn("mails from", network_of(self.address))
+        except HeldBack as error:
+            raise ValidationError(_("Too many mails were asked for. Wait 15 min, then try again."), code="locked") from error
         return email
 
     def send_mail(self, *args: Any, **options: Any) -> None:
@@ -56,6 +57,12 @@ class NewPasswordPage(views.PasswordResetConfirmView):
 
     template_name = "account/new_password.html"
     success_url = reverse_lazy("new-password-set")
+
+    def form_valid(self, form: SetPasswordForm) -> HttpResponse:
+        """Whoever reads the account's mail is its owner: limits that strangers cause do not hold them back in this browser."""
+        response = super().form_valid(form)
+        remember(self.request, response, form.user.get_username())
+        return response
 
 
 class NewPasswordSetPage(views.PasswordResetCompleteView):

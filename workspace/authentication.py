@@ -5,6 +5,7 @@ from typing import Any
 from django.conf import settings
 from django.contrib.auth.backends import ModelBackend
 from django.utils import timezone
+from django.utils.translation import gettext as _
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from drf_spectacular.plumbing import build_bearer_security_scheme_object
 from rest_framework.authentication import BaseAuthentication, get_authorization_header
@@ -12,7 +13,7 @@ from rest_framework.exceptions import AuthenticationFailed
 from rest_framework.request import Request
 
 from workspace.models import ApiToken, Role, User
-from workspace.services import hash_token
+from workspace.services import hash_token, note_use
 
 LONGEST_TOKEN = 200
 
@@ -21,12 +22,13 @@ class BearerTokenAuthentication(BaseAuthentication):
     """`Authorization: Bearer spw_…`. The answer never tells whether a token is unknown, expired or revoked."""
 
     def authenticate(self, request: Request) -> tuple[User, ApiToken] | None:
-        scheme, _, token = get_authorization_header(request).strip().partition(b" ")
+        scheme, *rest = get_authorization_header(request).strip().split(b" ", 1)
         if scheme.lower() != b"bearer":
             return None
-        found = self._valid_token(token.strip())
+        found = self._valid_token(b"".join(rest).strip())
         if found is None:
-            raise AuthenticationFailed("The token is not valid.")
+            raise AuthenticationFailed(_("The token is not valid."))
+        note_use(token=found)
         return found.user, found
 
     def authenticate_header(self, request: Request) -> str:

@@ -6,6 +6,7 @@ from django.contrib.auth.models import AbstractUser
 from django.contrib.auth.models import UserManager as DjangoUserManager
 from django.db import models
 from django.db.models.functions import Now
+from django.utils.crypto import salted_hmac
 
 
 class Organisation(models.Model):
@@ -75,11 +76,18 @@ class User(AbstractUser):
     time_zone = models.CharField(max_length=64, blank=True, help_text="IANA name; empty: the browser's")
     language = models.CharField(max_length=5, choices=Language.choices, blank=True, default=Language.AS_THE_BROWSER)
     single_keys = models.BooleanField(default=True, help_text="shortcuts of one key on the pages")
+    last_seen_at = models.DateTimeField(null=True, blank=True, editable=False, help_text="to the minute")
+    session_generation = models.PositiveIntegerField(default=0, editable=False, help_text="a session of an earlier one has ended")
 
     objects = UserManager()
 
     class Meta:
         constraints = [models.CheckConstraint(condition=models.Q(role__in=Role.values), name="user_role_known")]
+
+    def _get_session_auth_hash(self, secret: str | None = None) -> str:
+        """Sessions end with a new password, as in Django, and with a new generation."""
+        text = f"{self.password}{self.session_generation or ''}"
+        return salted_hmac("workspace.session", text, secret=secret, algorithm="sha256").hexdigest()
 
     @property
     def is_staff(self) -> bool:

@@ -1,18 +1,94 @@
-"""Pages of one's own account, and of the administration of everybody's."""
+"""Pages of one's own account, of the administration of everybody's, and the one behind an invitation's link."""
 
+from typing import Any
+
+from django.contrib.auth import login
+from django.contrib.auth.forms import BaseUserCreationForm, UserCreationForm
 from django.contrib.auth.mixins import UserPassesTestMixin
+from django.db import IntegrityError, transaction
+from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
+from django.shortcuts import render, resolve_url
+from django.utils.decorators import method_decorator
+from django.utils.translation import gettext as _
+from django.views.decorators.cache import never_cache
+from django.views.generic import FormView
 
+from workspace.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
+from workspace.models import Language, Role, Theme, Units, User
 from workspace.pages import SignedInPage
+from workspace.sign_in_pages import welcome
+
+BACKEND = "workspace.authentication.RoleBackend"
+
+
+def choices_of(kind: Any) -> list[dict[str, str]]:
+    return [{"value": value, "label": str(label)} for value, label in kind.choices]
 
 
 class AccountPage(SignedInPage):
     template_name = "account.html"
+    extra_context = {"section": "account"}
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"themes": choices_of(Theme), "units": choices_of(Units), "languages": choices_of(Language)}
 
 
 class AdministrationPage(UserPassesTestMixin, SignedInPage):
     """People, invitations and the sign-in log: for administrators."""
 
     template_name = "administration.html"
+    extra_context = {"section": "administration"}
 
     def test_func(self) -> bool:
         return bool(self.request.user.is_authenticated and self.request.user.is_superuser)
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"roles": choices_of(Role), "mailLeavesHere": mail_leaves_here()}
+
+
+class NewAccountForm(UserCreationForm):
+    """The role and the organisation are the invitation's."""
+
+    class Meta(BaseUserCreationForm.Meta):
+        model = User
+        fields = ("username", "first_name", "last_name", "email")
+
+
+@method_decorator(never_cache, name="dispatch")
+class InvitationPage(FormView):
+    """Makes the account and signs in. A link that works no more says so, whatever the reason."""
+
+    template_name = "account/invitation.html"
+    form_class = NewAccountForm
+
+    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
+        try:
+            self.invitation = open_invitation(kwargs["token"])
+        except InvitationGone:
+            return self._gone()
+        if request.user.is_authenticated:
+            return render(request, "account/invitation_signed_in.html")
+        return super().dispatch(request, *args, **kwargs)
+
+    def get_initial(self) -> dict[str, Any]:
+        return {"email": self.invitation.email}
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"invitation": self.invitation}
+
+    def form_valid(self, form: NewAccountForm) -> HttpResponse:
+        try:
+            with transaction.atomic():
+                user = accept_invitation(token=self.kwargs["token"], user=form.save(commit=False))
+        except InvitationGone:
+            return self._gone()
+        except IntegrityError:  # of two that chose the same name at the same moment
+            form.add_error("username", _("Somebody has this name already."))
+            return self.form_invalid(form)
+        login(self.request, user, backend=BACKEND)
+        response = HttpResponseRedirect(resolve_url("missions"))
+        welcome(self.request, response, user)
+        return response
+
+    def _gone(self) -> HttpResponse:
+        return render(self.request, "account/invitation_gone.html", status=410)

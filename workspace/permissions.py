@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 
@@ -10,6 +11,7 @@ from workspace.models import Role
 PLANNERS = frozenset({Role.OPERATOR, Role.ADMINISTRATOR})
 CURATORS = frozenset({Role.CURATOR, Role.ADMINISTRATOR})
 ADMINISTRATORS = frozenset({Role.ADMINISTRATOR})
+EVERYBODY = frozenset(Role)
 
 
 class RolePermission(BasePermission):
@@ -25,3 +27,21 @@ class RolePermission(BasePermission):
         wanted = " or ".join(role.label.lower() for role in Role if role in write_roles and role != Role.ADMINISTRATOR)
         self.message = f"{Role(user.role).label}s cannot do this. Ask an administrator for the {wanted or 'administrator'} role."
         return False
+
+
+class AdministratorsAlone(RolePermission):
+    """Who works here, and who came to the door, is for administrators to see, too."""
+
+    def has_permission(self, request: Request, view: Any) -> bool:
+        self.message = _("Only administrators see and change who works here.")
+        return bool(request.user.is_authenticated and request.user.role in ADMINISTRATORS)
+
+
+class InTheBrowserAlone(RolePermission):
+    """What could outlive a lost token: no token makes another one, changes a password or ends sessions."""
+
+    def has_permission(self, request: Request, view: Any) -> bool:
+        if request.auth is not None and request.method not in SAFE_METHODS:
+            self.message = _("A token cannot do this. Sign in with a browser.")
+            return False
+        return super().has_permission(request, view)

@@ -10,6 +10,7 @@ from uuid import UUID
 from django.db import connection, transaction
 from django.db.models import Q
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, IdempotencyKey, Job, JobState, Organisation, Role, User
 
@@ -17,6 +18,7 @@ LEASE_S = 60  # a worker that says nothing for so long is taken for dead
 QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
 MAX_ATTEMPTS = 3
 IDEMPOTENCY_KEPT = timedelta(hours=48)
+USE_NOTED_EVERY = timedelta(minutes=1)
 ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: one at a time takes the role away, or an administrator's access
 
 
@@ -28,7 +30,7 @@ class NoAdministratorLeft(ValueError):
     """Without an administrator who may sign in nobody could give the role back."""
 
     def __init__(self) -> None:
-        super().__init__("This would leave no administrator who can sign in. Make somebody else an administrator first.")
+        super().__init__(_("This would leave no administrator who can sign in. Make somebody else an administrator first."))
 
 
 def hash_token(token: str) -> str:
@@ -40,6 +42,13 @@ def create_api_token(*, user: User, name: str, expires_at: datetime) -> str:
     token = f"spw_{secrets.token_urlsafe(32)}"
     ApiToken.objects.create(user=user, name=name, token_sha256=hash_token(token), expires_at=expires_at)
     return token
+
+
+def note_use(*, token: ApiToken) -> None:
+    """When it was used last, to the minute: a script that asks often writes seldom."""
+    now = timezone.now()
+    if token.last_used_at is None or now - token.last_used_at >= USE_NOTED_EVERY:
+        ApiToken.objects.filter(pk=token.pk).update(last_used_at=now)
 
 
 def record_change(

@@ -8,7 +8,7 @@ from django.db import transaction
 from kombu.exceptions import OperationalError
 from redis.exceptions import RedisError
 
-from workspace import services
+from workspace import services, sign_in_log
 from workspace.models import Job
 
 logger = logging.getLogger(__name__)
@@ -35,3 +35,8 @@ def requeue_lost_jobs() -> None:
 @shared_task(time_limit=30, soft_time_limit=25)
 def forget_old_idempotency_keys() -> None:
     services.forget_old_idempotency_keys()
+
+
+@shared_task(time_limit=30, soft_time_limit=25)
+def forget_old_sign_ins() -> None:
+    sign_in_log.forget_old_sign_ins()

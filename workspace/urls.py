@@ -2,9 +2,22 @@
 
 from django.urls import path
 
-from workspace import views
+from workspace import account_views, people_views, views
 
 urlpatterns = [
+    path("account", account_views.Account.as_view(), name="api-account"),
+    path("account/password", account_views.AccountPassword.as_view(), name="api-account-password"),
+    path("account/sign-out-everywhere", account_views.AccountSessions.as_view(), name="api-account-sessions"),
+    path("account/tokens", account_views.AccountTokens.as_view(), name="api-account-tokens"),
+    path("account/tokens/<int:token_id>", account_views.AccountToken.as_view(), name="api-account-token"),
+    path("account/sign-ins", account_views.AccountSignIns.as_view(), name="api-account-sign-ins"),
+    path("people", people_views.PersonList.as_view(), name="api-people"),
+    path("people/<int:user_id>", people_views.PersonDetail.as_view(), name="api-person"),
+    path("people/<int:user_id>/sign-out", people_views.PersonSessions.as_view(), name="api-person-sessions"),
+    path("people/<int:user_id>/tokens", people_views.PersonTokens.as_view(), name="api-person-tokens"),
+    path("invitations", people_views.InvitationList.as_view(), name="api-invitations"),
+    path("invitations/<int:invitation_id>", people_views.InvitationDetail.as_view(), name="api-invitation"),
+    path("sign-ins", people_views.SignInList.as_view(), name="api-sign-ins"),
     path("jobs", views.JobList.as_view(), name="api-jobs"),
     path("jobs/<uuid:job_id>", views.JobDetail.as_view(), name="api-job"),
     path("jobs/<uuid:job_id>/cancel", views.JobCancel.as_view(), name="api-job-cancel"),

@@ -20,6 +20,8 @@ CURATED = re.compile(
 # a POST because the question is long; nothing is stored
 ASKED_BY_ALL = {"terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "report_presence"}
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
+SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(people|invitations|sign-ins)(/|$)")
+ONES_OWN = re.compile(r"/api/v1/account(/|$)")
 
 
 def operations() -> list[tuple[str, str, str]]:
@@ -50,18 +52,28 @@ def test_whoever_is_signed_in_may_read_everything_but_what_has_not_been_decided(
     for role in Role:
         client = client_of(somebody(role))
         refused = {address for method, address, _ in operations() if method in SAFE and status(client, method, address) in {401, 403}}
-        hidden = {address for method, address, _ in operations() if method in SAFE and SEEN_BY_CURATORS_ALONE.match(address)}
-        assert refused == (set() if role in {Role.CURATOR, Role.ADMINISTRATOR} else hidden), role
+        hidden_from = [(SEEN_BY_CURATORS_ALONE, {Role.CURATOR, Role.ADMINISTRATOR}), (SEEN_BY_ADMINISTRATORS_ALONE, {Role.ADMINISTRATOR})]
+        hidden = {
+            address
+            for method, address, _ in operations()
+            for what, roles in hidden_from
+            if method in SAFE and what.match(address) and role not in roles
+        }
+        assert refused == hidden, role
 
 
 @pytest.mark.parametrize("role", Role)
-def test_operators_change_what_is_flown_and_curators_the_ground(role: Role) -> None:
+def test_operators_change_what_is_flown_curators_the_ground_administrators_people_and_everybody_their_own(role: Role) -> None:
     client = client_of(somebody(role))
     for method, address, name in operations():
         if method in SAFE or name in ASKED_BY_ALL:
             continue
         allowed = {Role.ADMINISTRATOR, Role.CURATOR if CURATED.match(address) else Role.OPERATOR}
         allowed |= {Role.CURATOR} if name in ALSO_CURATORS else set()
+        if SEEN_BY_ADMINISTRATORS_ALONE.match(address):
+            allowed = {Role.ADMINISTRATOR}
+        if ONES_OWN.match(address):
+            allowed = set(Role)
         answered = status(client, method, address)
         if role in allowed:
             assert answered not in {401, 403, 500}, (method, address)

@@ -1,0 +1,148 @@
+"""The API's doors to one's own account."""
+
+from django.contrib.auth import update_session_auth_hash
+from django.db.models import F
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from workspace import accounts
+from workspace.errors import ApiProblem
+from workspace.models import SignInOutcome
+from workspace.paging import page_of
+from workspace.people_serializers import (
+    AccountChangeSerializer,
+    AccountSerializer,
+    NewTokenSerializer,
+    PasswordChangeSerializer,
+    SignInPageSerializer,
+    SignInSerializer,
+    TokenInputSerializer,
+    TokenListSerializer,
+    TokenSerializer,
+    with_secret,
+)
+from workspace.permissions import EVERYBODY, InTheBrowserAlone
+from workspace.schema import PAGE_PARAMETERS
+from workspace.sign_in_attempts import HeldBack, take_turn
+from workspace.sign_in_log import record_sign_in
+
+
+class Account(APIView):
+    write_roles = EVERYBODY
+
+    @extend_schema(operation_id="get_account", summary="Who is signed in, and what they prefer", responses=AccountSerializer)
+    def get(self, request: Request) -> Response:
+        return Response(AccountSerializer(request.user).data)
+
+    @extend_schema(
+        operation_id="change_account",
+        summary="Change one's own name and preferences",
+        request=AccountChangeSerializer,
+        responses=AccountSerializer,
+    )
+    def patch(self, request: Request) -> Response:
+        body = AccountChangeSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        return Response(AccountSerializer(accounts.change_account(user=request.user, **body.validated_data)).data)
+
+
+class AccountPassword(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="change_password",
+        summary="Change one's own password",
+        description="All other sessions end. Not with a token. Five wrong tries in a quarter of an hour.",
+        request=PasswordChangeSerializer,
+        responses={204: OpenApiResponse(description="Changed.")},
+    )
+    def post(self, request: Request) -> Response:
+        body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
+        body.is_valid(raise_exception=True)
+        try:
+            take_turn("password of", str(request.user.pk))
+        except HeldBack as held:
+            raise ApiProblem(429, "held_back", _("Too many tries. Wait 15 min, then try again."), retry_after_s=held.wait_s) from held
+        if not request.user.check_password(body.validated_data["old_password"]):
+            message = _("This is not your password.")
+            record_sign_in(request, SignInOutcome.WRONG, user=request.user)
+            raise ApiProblem(400, "invalid", message, details={"old_password": [message]})
+        accounts.change_password(user=request.user, password=body.validated_data["new_password"])
+        update_session_auth_hash(request, request.user)
+        return Response(status=204)
+
+
+class AccountSessions(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="sign_out_everywhere",
+        summary="End one's own sessions in all other browsers",
+        description="The session that asks stays. Tokens stay, too. Not with a token.",
+        request=None,
+        responses={204: OpenApiResponse(description="Ended.")},
+    )
+    def post(self, request: Request) -> Response:
+        accounts.end_sessions(user=request.user, actor=request.user)
+        update_session_auth_hash(request, request.user)
+        return Response(status=204)
+
+
+class AccountTokens(APIView):
+    """A token is answered once and not kept, so that the same request sent again makes another one."""
+
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="list_tokens", summary="One's own tokens, those that work first, then the newest", responses=TokenListSerializer
+    )
+    def get(self, request: Request) -> Response:
+        tokens = request.user.api_tokens.order_by(F("revoked_at").desc(nulls_first=True), "-created_at")[:200]
+        return Response({"results": TokenSerializer(tokens, many=True).data})
+
+    @extend_schema(
+        operation_id="make_token",
+        summary="Make a token; only this answer shows it",
+        description="Not with a token.",
+        request=TokenInputSerializer,
+        responses={201: NewTokenSerializer, 409: OpenApiResponse(description="There are too many that work.")},
+    )
+    def post(self, request: Request) -> Response:
+        body = TokenInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        try:
+            row, token = accounts.make_token(user=request.user, **body.validated_data)
+        except accounts.TooManyTokens as error:
+            message = _("You have {count} tokens that work. Revoke one that is not needed any more.").format(count=accounts.MOST_TOKENS)
+            raise ApiProblem(409, "too_many_tokens", message) from error
+        return Response(with_secret(NewTokenSerializer, row, token=token), status=201)
+
+
+class AccountToken(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(operation_id="revoke_token", summary="Revoke one of one's own tokens", responses=TokenSerializer)
+    def delete(self, request: Request, token_id: int) -> Response:
+        token = request.user.api_tokens.filter(pk=token_id).first()
+        if token is None:
+            raise ApiProblem(404, "not_found", _("You have no such token."))
+        return Response(TokenSerializer(accounts.revoke_token(token=token, actor=request.user)).data)
+
+
+class AccountSignIns(APIView):
+    @extend_schema(
+        operation_id="list_own_sign_ins",
+        summary="When and from where somebody signed in, or tried to, with one's own name; newest first",
+        parameters=PAGE_PARAMETERS,
+        responses=SignInPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        page = page_of(request, request.user.sign_ins.select_related("user"), order=("-recorded_at", "-pk"))
+        return Response({"results": SignInSerializer(page.rows, many=True).data, "next": page.next})

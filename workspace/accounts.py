@@ -1,0 +1,109 @@
+"""Writes of one's own account, and of other people's by an administrator: preferences, passwords, sessions, tokens."""
+
+import json
+import zlib
+from datetime import datetime, timedelta
+from typing import Any
+
+from django.db import transaction
+from django.db.models import F
+from django.utils import timezone
+
+from workspace.models import ApiToken, User
+from workspace.services import create_api_token, person_facts, record_change, save_person
+
+MOST_TOKENS = 50  # of one person, valid at the same time
+CHANGEABLE_BY_ADMINISTRATORS = ("first_name", "last_name", "email", "role", "is_active")
+
+
+class ChangedMeanwhile(Exception):
+    """Somebody else has changed the person since; nothing was stored. `person` is how they are now."""
+
+    def __init__(self, person: User) -> None:
+        super().__init__("changed meanwhile")
+        self.person = person
+
+
+class TooManyTokens(Exception):
+    """Each is a key that somebody may find: old ones are to be revoked first."""
+
+
+def change_account(*, user: User, **values: Any) -> User:
+    """One's own name and preferences."""
+    for name, value in values.items():
+        setattr(user, name, value)
+    user.save(update_fields=list(values))
+    return user
+
+
+def change_password(*, user: User, password: str) -> None:
+    """All sessions end; the caller keeps the one it works for."""
+    with transaction.atomic():
+        user.set_password(password)
+        user.save(update_fields=["password"])
+        _record(user, user, "password changed")
+
+
+def end_sessions(*, user: User, actor: User) -> None:
+    """Everywhere, at once; the caller may keep the one it works for. Tokens stay."""
+    with transaction.atomic():
+        User.objects.filter(pk=user.pk).update(session_generation=F("session_generation") + 1)
+        user.refresh_from_db(fields=["session_generation"])
+        _record(user, actor, "signed out everywhere")
+
+
+def make_token(*, user: User, name: str, days: int) -> tuple[ApiToken, str]:
+    """The row and the token itself, which cannot be shown again. Raises TooManyTokens."""
+    expires_at = timezone.now() + timedelta(days=days)
+    with transaction.atomic():
+        User.objects.select_for_update().get(pk=user.pk)
+        if user.api_tokens.filter(revoked_at=None, expires_at__gt=timezone.now()).count() >= MOST_TOKENS:
+            raise TooManyTokens
+        token = create_api_token(user=user, name=name, expires_at=expires_at)
+        row = user.api_tokens.latest("pk")
+        _record_token(row, user, "created", {"name": name, "expires_at": _seconds(expires_at)})
+    return row, token
+
+
+def revoke_token(*, token: ApiToken, actor: User) -> ApiToken:
+    """From now on nobody gets in with it. A second time changes nothing."""
+    with transaction.atomic():
+        if ApiToken.objects.filter(pk=token.pk, revoked_at=None).update(revoked_at=timezone.now()):
+            _record_token(token, actor, "revoked", {"name": token.name})
+    token.refresh_from_db()
+    return token
+
+
+def revision_of_person(user: User) -> int:
+    """A short digest of what administrators change: it differs when somebody else was faster."""
+    facts = json.dumps([getattr(user, name) for name in CHANGEABLE_BY_ADMINISTRATORS])
+    return zlib.crc32(facts.encode()) % 1_000_000_000
+
+
+def change_person(*, user_id: int, actor: User, seen_revision: int | None, **values: Any) -> User:
+    """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft."""
+    with transaction.atomic():
+        user = User.objects.select_for_update().get(pk=user_id, organisation_id=actor.organisation_id)
+        if seen_revision is not None and seen_revision != revision_of_person(user):
+            raise ChangedMeanwhile(user)
+        for name, value in values.items():
+            setattr(user, name, value)
+        return save_person(user=user, actor=actor)
+
+
+def _record(user: User, actor: User, action: str) -> None:
+    facts = person_facts(user)
+    record_change(
+        organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
+    )
+
+
+def _record_token(token: ApiToken, actor: User, action: str, facts: dict[str, Any]) -> None:
+    before, after = (None, facts) if action == "created" else (facts, None)
+    record_change(
+        organisation=actor.organisation, actor=actor, action=action, subject_type="token", subject_id=token.pk, before=before, after=after
+    )
+
+
+def _seconds(time: datetime) -> str:
+    return time.isoformat(timespec="seconds")

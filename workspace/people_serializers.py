@@ -1,0 +1,194 @@
+"""Shapes of the API about accounts, people, invitations and sign-ins."""
+
+from typing import Any
+
+from django.contrib.auth.password_validation import validate_password
+from django.utils import timezone
+from django.utils.translation import gettext as _
+from rest_framework import serializers
+
+from workspace.accounts import revision_of_person
+from workspace.invitations import LONGEST_DAYS, state_of
+from workspace.invitations import InvitationState as State
+from workspace.models import ApiToken, Invitation, Language, Role, SignInEntry, SignInOutcome, Theme, Units, User
+from workspace.preferences import TIME_ZONES
+
+InvitationState = [state.value for state in State]
+LONGEST_TOKEN_DAYS = 3_650
+
+
+class AccountSerializer(serializers.ModelSerializer):
+    """Who is signed in, and what they prefer. What is stored and sent stays metric and UTC whatever they prefer."""
+
+    organisation = serializers.CharField(source="organisation.name", read_only=True)
+
+    class Meta:
+        model = User
+        fields = [
+            "id", "username", "first_name", "last_name", "email", "role", "organisation", "theme", "units", "time_zone", "language",
+            "single_keys", "last_login",
+        ]  # fmt: skip
+        read_only_fields = ["id", "username", "email", "role", "organisation", "last_login"]
+
+
+class AccountChangeSerializer(serializers.Serializer):
+    """Only what is to change."""
+
+    first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
+    last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
+    theme = serializers.ChoiceField(choices=Theme.choices, required=False)
+    units = serializers.ChoiceField(choices=Units.choices, required=False)
+    time_zone = serializers.CharField(max_length=64, allow_blank=True, required=False, help_text="IANA name; empty: the browser's")
+    language = serializers.ChoiceField(choices=Language.choices, required=False, allow_blank=True)
+    single_keys = serializers.BooleanField(required=False)
+
+    def validate_time_zone(self, value: str) -> str:
+        if value and value not in TIME_ZONES:
+            raise serializers.ValidationError(_("There is no time zone of this name."))
+        return value
+
+
+class PasswordChangeSerializer(serializers.Serializer):
+    old_password = serializers.CharField(trim_whitespace=False, max_length=4_096)
+    new_password = serializers.CharField(trim_whitespace=False, max_length=4_096)
+
+    def validate_new_password(self, value: str) -> str:
+        validate_password(value, self.context["user"])
+        return value
+
+
+class TokenSerializer(serializers.ModelSerializer):
+    """A bearer token, without the token itself."""
+
+    is_valid = serializers.SerializerMethodField()
+
+    class Meta:
+        model = ApiToken
+        fields = ["id", "name", "created_at", "expires_at", "revoked_at", "last_used_at", "is_valid"]
+        read_only_fields = fields
+
+    def get_is_valid(self, token: ApiToken) -> bool:
+        return token.revoked_at is None and token.expires_at > timezone.now()
+
+
+class NewTokenSerializer(TokenSerializer):
+    """The one answer that has the token itself."""
+
+    token = serializers.CharField(read_only=True, help_text="shown this once")
+
+    class Meta(TokenSerializer.Meta):
+        fields = [*TokenSerializer.Meta.fields, "token"]
+        read_only_fields = fields
+
+
+class TokenInputSerializer(serializers.Serializer):
+    name = serializers.CharField(max_length=100)
+    days = serializers.IntegerField(min_value=1, max_value=LONGEST_TOKEN_DAYS, default=90)
+
+
+class TokenListSerializer(serializers.Serializer):
+    results = TokenSerializer(many=True)
+
+
+class PersonSerializer(serializers.ModelSerializer):
+    """An account as administrators see it."""
+
+    revision = serializers.SerializerMethodField(help_text="for If-Match")
+    valid_tokens = serializers.IntegerField(read_only=True)
+
+    class Meta:
+        model = User
+        fields = [
+            "id", "username", "first_name", "last_name", "email", "role", "is_active", "date_joined", "last_login", "last_seen_at",
+            "valid_tokens", "revision",
+        ]  # fmt: skip
+        read_only_fields = fields
+
+    def get_revision(self, user: User) -> int:
+        return revision_of_person(user)
+
+
+class PersonChangeSerializer(serializers.Serializer):
+    """Only what is to change."""
+
+    first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
+    last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
+    email = serializers.EmailField(allow_blank=True, required=False)
+    role = serializers.ChoiceField(choices=Role.choices, required=False)
+    is_active = serializers.BooleanField(required=False, help_text="whether they may sign in")
+
+
+class PersonPageSerializer(serializers.Serializer):
+    results = PersonSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+class InvitationSerializer(serializers.ModelSerializer):
+    """An invitation, without the link itself."""
+
+    state = serializers.SerializerMethodField()
+    invited_by = serializers.SerializerMethodField()
+    accepted_by = serializers.SerializerMethodField()
+
+    class Meta:
+        model = Invitation
+        fields = ["id", "email", "role", "state", "invited_by", "created_at", "expires_at", "revoked_at", "accepted_at", "accepted_by"]
+        read_only_fields = fields
+
+    def get_state(self, invitation: Invitation) -> str:
+        return state_of(invitation).value
+
+    def get_invited_by(self, invitation: Invitation) -> str | None:
+        return invitation.invited_by and invitation.invited_by.username
+
+    def get_accepted_by(self, invitation: Invitation) -> str | None:
+        return invitation.accepted_by and invitation.accepted_by.username
+
+
+class NewInvitationSerializer(InvitationSerializer):
+    """The one answer that has the link itself."""
+
+    link = serializers.CharField(read_only=True, help_text="shown this once")
+    was_mailed = serializers.BooleanField(read_only=True)
+
+    class Meta(InvitationSerializer.Meta):
+        fields = [*InvitationSerializer.Meta.fields, "link", "was_mailed"]
+        read_only_fields = fields
+
+
+class InvitationInputSerializer(serializers.Serializer):
+    role = serializers.ChoiceField(choices=Role.choices)
+    email = serializers.EmailField(allow_blank=True, default="", help_text="where the link is sent, if mail leaves here")
+    days = serializers.IntegerField(min_value=1, max_value=LONGEST_DAYS, default=7)
+
+
+class InvitationPageSerializer(serializers.Serializer):
+    results = InvitationSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+class SignInSerializer(serializers.ModelSerializer):
+    """A try to sign in, or a signing out. `username` is null where nobody has the name that was typed."""
+
+    username = serializers.SerializerMethodField()
+    outcome = serializers.ChoiceField(choices=SignInOutcome.choices)
+
+    class Meta:
+        model = SignInEntry
+        fields = ["id", "recorded_at", "outcome", "username", "address", "user_agent"]
+        read_only_fields = fields
+
+    def get_username(self, entry: SignInEntry) -> str | None:
+        return entry.user and entry.user.username
+
+
+class SignInPageSerializer(serializers.Serializer):
+    results = SignInSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+def with_secret(shape: type[serializers.ModelSerializer], row: Any, **secret: Any) -> dict[str, Any]:
+    """A row with what is shown once."""
+    for name, value in secret.items():
+        setattr(row, name, value)
+    return dict(shape(row).data)

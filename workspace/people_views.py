@@ -1,0 +1,241 @@
+"""The API's doors for administrators: people of one's organisation, invitations, the log of sign-ins."""
+
+from datetime import timedelta
+from typing import Any
+
+from django.db.models import Count, Q, QuerySet
+from django.http import Http404
+from django.urls import reverse
+from django.utils import timezone
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from workspace import accounts, invitations
+from workspace.errors import ApiProblem
+from workspace.invitations import InvitationState
+from workspace.models import ApiToken, Invitation, Role, SignInEntry, SignInOutcome, User
+from workspace.paging import page_of
+from workspace.people_serializers import (
+    InvitationInputSerializer,
+    InvitationPageSerializer,
+    InvitationSerializer,
+    NewInvitationSerializer,
+    PersonChangeSerializer,
+    PersonPageSerializer,
+    PersonSerializer,
+    SignInPageSerializer,
+    SignInSerializer,
+    with_secret,
+)
+from workspace.permissions import AdministratorsAlone
+from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.schema import PAGE_PARAMETERS
+from workspace.services import NoAdministratorLeft
+
+HERE_WITHIN = timedelta(minutes=5)
+
+
+def _one_of(request: Request, name: str, known: list[str]) -> str:
+    value = request.query_params.get(name, "")
+    if value and value not in known:
+        message = _("Known are {names}.").format(names=", ".join(known))
+        raise ApiProblem(400, "invalid", f"{name}: {message}", details={name: [message]})
+    return value
+
+
+def _people(request: Request) -> QuerySet[User]:
+    valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
+    return User.objects.filter(organisation_id=request.user.organisation_id).annotate(valid_tokens=Count("api_tokens", filter=valid))
+
+
+def _person(request: Request, user_id: int) -> User:
+    try:
+        return _people(request).get(pk=user_id)
+    except User.DoesNotExist as error:
+        raise Http404 from error
+
+
+def _named(text: str, before: str = "") -> Q:
+    """Each word somewhere in the name or the address."""
+    wanted = Q()
+    for word in text.split():
+        names = ("username", "first_name", "last_name", "email")
+        found = Q()
+        for name in names:
+            found |= Q(**{f"{before}{name}__icontains": word})
+        wanted &= found
+    return wanted
+
+
+class PersonList(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="list_people",
+        summary="People of one's organisation by user name",
+        parameters=[
+            OpenApiParameter("text", str, description="words of the user name, the name or the e-mail address"),
+            OpenApiParameter("role", str, enum=Role.values),
+            OpenApiParameter("access", str, enum=["in", "out", "here"], description="may sign in; is kept out; was here in the last 5 min"),
+            *PAGE_PARAMETERS,
+        ],
+        responses=PersonPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        people = _people(request).filter(_named(request.query_params.get("text", "")[:200]))
+        if role := _one_of(request, "role", Role.values):
+            people = people.filter(role=role)
+        if access := _one_of(request, "access", ["in", "out", "here"]):
+            wanted: dict[str, dict[str, Any]] = {
+                "in": {"is_active": True},
+                "out": {"is_active": False},
+                "here": {"is_active": True, "last_seen_at__gt": timezone.now() - HERE_WITHIN},
+            }
+            people = people.filter(**wanted[access])
+        page = page_of(request, people, order=("username",))
+        return Response({"results": PersonSerializer(page.rows, many=True).data, "next": page.next})
+
+
+class PersonDetail(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(operation_id="get_person", summary="One person", responses=PersonSerializer)
+    def get(self, request: Request, user_id: int) -> Response:
+        return self._answer(request, user_id)
+
+    @extend_schema(
+        operation_id="change_person",
+        summary="Change somebody's name, address, role or access",
+        description="One administrator who can sign in is always left.",
+        parameters=[IF_MATCH_REQUIRED],
+        request=PersonChangeSerializer,
+        responses={200: PersonSerializer, 409: OpenApiResponse(description="No administrator would be left."), **PRECONDITION_ANSWERS},
+    )
+    def patch(self, request: Request, user_id: int) -> Response:
+        body = PersonChangeSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        _person(request, user_id)
+        try:
+            accounts.change_person(user_id=user_id, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
+        except accounts.ChangedMeanwhile as error:
+            current = PersonSerializer(_person(request, user_id)).data
+            words = _("Somebody else has changed {name} in the meantime. Look again.").format(name=error.person.username)
+            raise ApiProblem(412, "changed", words, details={"current": current}) from error
+        except NoAdministratorLeft as error:
+            raise ApiProblem(409, "no_administrator_left", str(error)) from error
+        return self._answer(request, user_id)
+
+    @staticmethod
+    def _answer(request: Request, user_id: int) -> Response:
+        person = _person(request, user_id)
+        return Response(PersonSerializer(person).data, headers=etag_of(accounts.revision_of_person(person)))
+
+
+class PersonSessions(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="sign_person_out",
+        summary="End all sessions of somebody",
+        description="Their tokens stay.",
+        request=None,
+        responses={204: OpenApiResponse(description="Ended.")},
+    )
+    def post(self, request: Request, user_id: int) -> Response:
+        accounts.end_sessions(user=_person(request, user_id), actor=request.user)
+        return Response(status=204)
+
+
+class PersonTokens(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="revoke_tokens_of_person",
+        summary="Revoke all tokens of somebody",
+        responses={204: OpenApiResponse(description="Revoked.")},
+    )
+    def delete(self, request: Request, user_id: int) -> Response:
+        for token in ApiToken.objects.filter(user=_person(request, user_id), revoked_at=None):
+            accounts.revoke_token(token=token, actor=request.user)
+        return Response(status=204)
+
+
+class InvitationList(APIView):
+    """A link is answered once and not kept, so that the same request sent again makes another one."""
+
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="list_invitations",
+        summary="Invitations, newest first",
+        parameters=[OpenApiParameter("state", str, enum=[state.value for state in InvitationState]), *PAGE_PARAMETERS],
+        responses=InvitationPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        rows = invitations.invitations_of(request.user).select_related("invited_by", "accepted_by")
+        if state := _one_of(request, "state", [state.value for state in InvitationState]):
+            rows = rows.filter(invitations.in_state(InvitationState(state)))
+        page = page_of(request, rows, order=("-created_at", "-pk"))
+        return Response({"results": InvitationSerializer(page.rows, many=True).data, "next": page.next})
+
+    @extend_schema(
+        operation_id="invite",
+        summary="Make a link for a new account; only this answer shows it",
+        request=InvitationInputSerializer,
+        responses={201: NewInvitationSerializer},
+    )
+    def post(self, request: Request) -> Response:
+        body = InvitationInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        invitation, token = invitations.invite(actor=request.user, **body.validated_data)
+        link = request.build_absolute_uri(reverse("invitation", args=[token]))
+        was_mailed = invitations.send_invitation(invitation=invitation, link=link)
+        return Response(with_secret(NewInvitationSerializer, invitation, link=link, was_mailed=was_mailed), status=201)
+
+
+class InvitationDetail(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses=InvitationSerializer)
+    def delete(self, request: Request, invitation_id: int) -> Response:
+        try:
+            invitation = invitations.invitations_of(request.user).get(pk=invitation_id)
+        except Invitation.DoesNotExist as error:
+            raise Http404 from error
+        return Response(InvitationSerializer(invitations.revoke_invitation(invitation=invitation, actor=request.user)).data)
+
+
+class SignInList(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="list_sign_ins",
+        summary="Sign-ins, tries and sign-outs, newest first",
+        description="Those of one's organisation, and tries with names that nobody has.",
+        parameters=[
+            OpenApiParameter("text", str, description="words of the person's name or e-mail address"),
+            OpenApiParameter("outcome", str, enum=SignInOutcome.values),
+            OpenApiParameter("address", str, description="beginning of the IP address"),
+            OpenApiParameter("days", int, description="only the last so many days"),
+            *PAGE_PARAMETERS,
+        ],
+        responses=SignInPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        entries = SignInEntry.objects.filter(Q(user__organisation_id=request.user.organisation_id) | Q(user=None)).select_related("user")
+        if text := request.query_params.get("text", "")[:200].strip():
+            entries = entries.filter(_named(text, "user__"))
+        if outcome := _one_of(request, "outcome", SignInOutcome.values):
+            entries = entries.filter(outcome=outcome)
+        if address := request.query_params.get("address", "")[:45].strip():
+            entries = entries.filter(address__istartswith=address)
+        if days := request.query_params.get("days", ""):
+            if not (days.isascii() and days.isdigit() and 0 < int(days[:6]) < 100_000):
+                message = _("A whole number from 1 is needed.")
+                raise ApiProblem(400, "invalid", f"days: {message}", details={"days": [message]})
+            entries = entries.filter(recorded_at__gt=timezone.now() - timedelta(days=int(days[:6])))
+        page = page_of(request, entries, order=("-recorded_at", "-pk"))
+        return Response({"results": SignInSerializer(page.rows, many=True).data, "next": page.next})
