@@ -33,6 +33,7 @@ function placeFields(position, onMove) {
   const read = () => [longitude.read(), latitude.read()];
   for (const field of [latitude, longitude]) field.input.addEventListener("input", () => read().every(Number.isFinite) && onMove(read()));
   return {
+    element: h("div", {}, h("div", { class: "pair" }, latitude.element, longitude.element), h("p", { class: "caption" }, t("Or drag the pin on the map, or click into it."))),
     fields: [latitude, longitude],
     read,
     set([lon, lat]) {
@@ -72,7 +73,7 @@ function uavFields(uav, { types, bases, place, isNew }) {
   showButton();
   return {
     fields: [name, type, base, range, speed, ...rest],
-    elements: [name.element, pair(type, base), pair(...place.fields), button, h("div", {}, pair(range, speed), hint), pair(rest[0], rest[4]), rest[1].element, rest[2].element, rest[3].element],
+    elements: [name.element, pair(type, base), place.element, button, h("div", {}, pair(range, speed), hint), pair(rest[0], rest[4]), rest[1].element, rest[2].element, rest[3].element],
   };
 }
 
@@ -91,7 +92,7 @@ function typeFields(type) {
 function baseFields(base, { place }) {
   const name = textField("name", t("Name"), base.name, { required: true });
   const note = textField("note", t("Note"), base.note, { maxlength: 300, hint: t("How to get there, whom to call.") });
-  return { fields: [name, note], elements: [name.element, pair(...place.fields), note.element] };
+  return { fields: [name, note], elements: [name.element, place.element, note.element] };
 }
 
 const MAKERS = { uavs: uavFields, types: typeFields, bases: baseFields };
@@ -111,7 +112,6 @@ export function createForm({ tab, body, types, bases, isNew, onMove, onSave, onC
     "form",
     { class: "fleet-form" },
     notice,
-    place && h("p", { class: "caption" }, t("Drag the pin on the map, click into it, or type the place.")),
     elements,
     h("div", { class: "form-acts" }, save, h("button", { type: "button", class: "button", onclick: onCancel }, t("Cancel"))),
   );

@@ -6,15 +6,13 @@ import { readPage, startChrome } from "../page/chrome.js";
 import { say, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
-import { bodies, BLANK, createForm } from "./forms.js";
+import { createEditing, ifUnchanged } from "./editing.js";
+import { IN_USE, mountFilters } from "./filters.js";
 import { KINDS } from "./kinds.js";
-import { conflictNotice, mountPanel } from "./panel.js";
+import { mountPanel } from "./panel.js";
 import { mountTable } from "./table.js";
-import { STATES } from "./words.js";
 
-const TYPING_MS = 250;
 const PAGE = 100;
-const IN_USE = ""; // all but the retired ones
 const wide = matchMedia("(min-width: 1001px)");
 
 const page = readPage();
@@ -23,20 +21,15 @@ const store = createStore({
   tab: KINDS[address.get("tab")] ? address.get("tab") : "uavs", uavs: null, types: null, bases: null, numbers: null, next: null,
   text: "", state: IN_USE, type: "", base: "", chosen: null, problem: null,
 });
-let edit = null; // { tab, row or null, etag, form, began, key }
 let map = null;
 let ground = null;
 
-const kindNow = () => KINDS[store.state.tab];
-const rowNow = ({ tab, id }) => store.state[tab]?.find((row) => row.id === id) ?? null;
-const etagOf = (row) => ({ headers: { "If-Match": `"${row.revision}"` } });
+const chosenRow = () => store.state.chosen && (store.state[store.state.chosen.tab]?.find((row) => row.id === store.state.chosen.id) ?? null);
 
+const filters = mountFilters(store, { onTab: turnTo, onChange: load });
 const table = mountTable({ canPlan: page.canPlan, onChoose: (id) => choose(store.state.tab, id), onNew: startNew, onClear: clearFilter });
-const panel = mountPanel({ canPlan: page.canPlan, acts: { back: close, edit: () => startEdit(chosenRow()), put, remove: takeOff, refresh: load, failed: tell, showUavs } });
-
-function chosenRow() {
-  return store.state.chosen && rowNow(store.state.chosen);
-}
+const panel = mountPanel({ canPlan: page.canPlan, acts: { back: close, edit: () => editing.start(chosenRow()), put, remove: takeOff, refresh: load, failed: tell, showUavs } });
+const editing = createEditing({ store, page, panel, isWide: () => wide.matches, open, map: () => map, showMap, turnTo, choose, close, load });
 
 // what went wrong, and what then
 
@@ -45,33 +38,21 @@ function tell(error, again = load) {
   store.update({ problem: { error, again } });
 }
 
-store.listen(["problem"], ({ problem }) => {
-  byId("fleet-problem").replaceChildren(
-    ...(problem
-      ? [
-          h(
-            "div",
-            { class: "notice critical", role: "alert" },
-            icon(problem.error.isAway ? "cloud-off" : "circle-alert"),
-            h(
-              "p",
-              {},
-              `${problem.error.message} `,
-              problem.error.isSignedOut ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in")) : h("button", { type: "button", class: "text-button", onclick: () => (store.update({ problem: null }), problem.again()) }, t("Try again")),
-            ),
-          ),
-        ]
-      : []),
-  );
-});
+function problemNotice({ error, again }) {
+  const way = error.isSignedOut
+    ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))
+    : h("button", { type: "button", class: "text-button", onclick: () => (store.update({ problem: null }), again()) }, t("Try again"));
+  return h("div", { class: "notice critical", role: "alert" }, icon(error.isAway ? "cloud-off" : "circle-alert"), h("p", {}, `${error.message} `, way));
+}
+
+store.listen(["problem"], ({ problem }) => byId("fleet-problem").replaceChildren(...(problem ? [problemNotice(problem)] : [])));
 
 // what is there
 
 function uavsAddress() {
   const { text, state, type, base, tab } = store.state;
   const query = new URLSearchParams({ limit: PAGE });
-  if (tab === "uavs" && text) query.set("text", text);
-  for (const [name, value] of Object.entries({ state, type, base })) if (value) query.set(name, value);
+  for (const [name, value] of Object.entries({ text: tab === "uavs" ? text : "", state, type, base })) if (value) query.set(name, value);
   return `/uavs?${query}`;
 }
 
@@ -98,71 +79,28 @@ async function loadMore() {
   }
 }
 
-const shownRows = ({ tab, text, ...state }) => (tab === "uavs" ? state.uavs : (state[tab]?.filter((row) => row.name.toLocaleLowerCase().includes(text.toLocaleLowerCase())) ?? null));
+/** UAVs are filtered by the server; types and bases are few and all here. */
+function shownRows({ tab, text, ...state }) {
+  const wanted = text.toLocaleLowerCase();
+  return tab === "uavs" || state[tab] === null ? state[tab] : state[tab].filter((row) => row.name.toLocaleLowerCase().includes(wanted));
+}
 
 store.listen(["tab", "uavs", "types", "bases", "chosen", "text", "next"], (state) => {
   const { tab, text, chosen } = state;
   const isFiltered = Boolean(text || (tab === "uavs" && (state.state || state.type || state.base)));
   table.draw({ kind: KINDS[tab], rows: shownRows(state), chosenId: chosen?.tab === tab ? chosen.id : null, next: tab === "uavs" ? state.next : null, isFiltered, text });
-});
-
-store.listen(["tab"], ({ tab }) => {
-  byId("of-uavs").hidden = tab !== "uavs";
   const words = document.getElementById("new-words");
   if (words) words.textContent = KINDS[tab].one;
 });
 
-// filters
-
-byId("fleet-tabs").append(
-  ...Object.values(KINDS).map(({ tab, words }) =>
-    h("label", {}, h("input", { type: "radio", name: "fleet-tab", value: tab, checked: store.state.tab === tab, onchange: () => turnTo(tab) }), h("span", { class: "segment" }, words, h("span", { class: "count" }))),
-  ),
-);
-
-store.listen(["numbers", "types", "bases"], ({ numbers, types, bases }) => {
-  const counts = { uavs: numbers && numbers.active + numbers.maintenance, types: types?.length, bases: bases?.length };
-  for (const input of byId("fleet-tabs").querySelectorAll("input")) input.parentElement.querySelector(".count").textContent = counts[input.value] ?? "";
-});
-
-function options(select, chosen, choices) {
-  select.replaceChildren(...choices.map(([value, words]) => h("option", { value: `${value}`, selected: `${value}` === chosen }, words)));
-}
-
-store.listen(["numbers", "types", "bases", "state", "type", "base"], ({ numbers, types, bases, state, type, base }) => {
-  const counted = (words, count) => (numbers ? `${words} (${count})` : words);
-  const of = (name) => numbers?.[name] ?? 0;
-  options(byId("fleet-state"), state, [
-    [IN_USE, counted(t("All but retired"), of("active") + of("maintenance"))],
-    ...Object.entries(STATES).map(([value, { words }]) => [value, counted(words, of(value))]),
-    ["all", counted(t("All"), of("active") + of("maintenance") + of("retired"))],
-  ]);
-  options(byId("fleet-type"), type, [["", t("Any type")], ...(types ?? []).map((row) => [row.id, row.name])]);
-  options(byId("fleet-base"), base, [["", t("Any base")], ...(bases ?? []).map((row) => [row.id, row.name])]);
-});
-
-for (const name of ["state", "type", "base"]) {
-  byId(`fleet-${name}`).addEventListener("change", (event) => {
-    store.update({ [name]: event.target.value });
-    load();
-  });
-}
-
-let typing = 0;
-byId("fleet-text").addEventListener("input", (event) => {
-  store.update({ text: event.target.value.trim() });
-  clearTimeout(typing);
-  if (store.state.tab === "uavs") typing = setTimeout(load, TYPING_MS);
-});
-
 function clearFilter() {
-  byId("fleet-text").value = "";
-  store.update({ text: "", state: IN_USE, type: "", base: "" });
+  filters.set({});
   load();
-  byId("fleet-text").focus();
+  filters.focus();
 }
 
 function turnTo(tab) {
+  if (tab === store.state.tab) return;
   close();
   store.update({ tab });
   remember();
@@ -170,20 +108,15 @@ function turnTo(tab) {
 }
 
 function showUavs(tab, id) {
-  close();
-  byId("fleet-text").value = "";
-  store.update({ tab: "uavs", text: "", state: "all", type: tab === "types" ? `${id}` : "", base: tab === "bases" ? `${id}` : "" });
-  byId("fleet-tabs").querySelector("input[value=uavs]").checked = true;
-  remember();
+  turnTo("uavs");
+  filters.set({ state: "all", type: tab === "types" ? `${id}` : "", base: tab === "bases" ? `${id}` : "" });
   load();
 }
 
 /** The address says what is looked at: it can be passed on. */
 function remember() {
   const { tab, chosen } = store.state;
-  const query = new URLSearchParams();
-  if (tab !== "uavs") query.set("tab", tab);
-  if (chosen) query.set("id", chosen.id);
+  const query = new URLSearchParams({ ...(tab === "uavs" ? {} : { tab }), ...(chosen ? { id: chosen.id } : {}) });
   history.replaceState(history.state, "", `${location.pathname}${query.size ? `?${query}` : ""}`);
 }
 
@@ -192,10 +125,9 @@ function remember() {
 async function showMap() {
   const isSeen = wide.matches || byId("fleet-body").dataset.open;
   if (!isSeen || store.state.uavs === null) return;
-  if (!map) {
-    const { createFleetMap } = await import("./fleet_map.js");
-    map ??= createFleetMap({ page, rows: store.state, ground, onChoose: (tab, id) => (tab === store.state.tab ? choose(tab, id) : (turnTo(tab), (byId("fleet-tabs").querySelector(`input[value=${tab}]`).checked = true), choose(tab, id))) });
-  }
+  const { createFleetMap } = await import("./fleet_map.js");
+  const onChoose = (tab, id) => (turnTo(tab), choose(tab, id));
+  map ??= createFleetMap({ page, rows: store.state, ground, onChoose });
   map.show(store.state, store.state.chosen);
 }
 
@@ -210,7 +142,7 @@ function open() {
 }
 
 async function choose(tab, id, { keepFocus = false } = {}) {
-  if (!leaveEdit()) return;
+  if (!editing.leave()) return;
   try {
     const { data } = await get(`${KINDS[tab].path}/${id}`);
     const row = KINDS[tab].read(data);
@@ -231,7 +163,7 @@ async function choose(tab, id, { keepFocus = false } = {}) {
 }
 
 function close() {
-  if (!leaveEdit()) return;
+  if (!editing.leave()) return;
   const id = store.state.chosen?.id;
   delete byId("fleet-body").dataset.open;
   delete byId("fleet-side").dataset.panel;
@@ -241,192 +173,69 @@ function close() {
   if (id) byId("fleet-rows").querySelector(`a[href$="id=${id}"]`)?.focus({ preventScroll: true });
 }
 
+function startNew() {
+  if (!editing.leave()) return;
+  store.update({ chosen: null });
+  editing.start(null);
+}
+
 // change
 
-/** words(row) for the toast, back(row) what takes it back. */
-async function act(what, again) {
+/** A refusal is told in a toast, with a way to what is there now where somebody was faster. */
+async function attempt(change) {
   try {
-    return await what();
+    await change();
   } catch (error) {
     if (error.status === 412) toast(error.message, { label: t("Look"), act: () => choose(store.state.tab, store.state.chosen.id) });
     else if (error.status === 409) toast(error.message);
-    else tell(error, again);
-    return null;
+    else tell(error, () => attempt(change));
   }
 }
 
-async function put(state) {
-  const row = chosenRow();
-  const before = row.state;
-  await act(async () => {
-    const { data } = await patch(`/uavs/${row.id}`, { state }, etagOf(row));
-    const changed = KINDS.uavs.read(data);
-    const words = { active: t("{name} is in service.", row), maintenance: t("{name} is in maintenance.", row), retired: t("{name} is retired.", row) }[state];
-    toast(words, { label: t("Undo"), act: () => act(async () => (await patch(`/uavs/${row.id}`, { state: before }, etagOf(changed)), await again(row.id))) });
-    await again(row.id);
-  }, () => put(state));
-}
-
 /** The list and what is chosen, as they are now. */
-async function again(id) {
+async function refresh(id) {
   await load();
   if (store.state.chosen?.id === id) await choose(store.state.tab, id, { keepFocus: true });
 }
 
-async function takeOff() {
+function put(state) {
+  const row = chosenRow();
+  const words = { active: t("{name} is in service.", row), maintenance: t("{name} is in maintenance.", row), retired: t("{name} is retired.", row) }[state];
+  return attempt(async () => {
+    const { data } = await patch(`/uavs/${row.id}`, { state }, ifUnchanged(row));
+    const takeBack = () => attempt(async () => (await patch(`/uavs/${row.id}`, { state: row.state }, ifUnchanged(KINDS.uavs.read(data))), await refresh(row.id)));
+    toast(words, { label: t("Undo"), act: takeBack });
+    await refresh(row.id);
+  });
+}
+
+function takeOff() {
   const { tab } = store.state;
   const row = chosenRow();
-  const kind = KINDS[tab];
-  await act(async () => {
-    await remove(`${kind.path}/${row.id}`, etagOf(row));
+  const { path, deleted } = KINDS[tab];
+  return attempt(async () => {
+    await remove(`${path}/${row.id}`, ifUnchanged(row));
     close();
     await load();
-    toast(kind.deleted(row), { label: t("Undo"), act: () => act(async () => (await post(`${kind.path}/${row.id}/restore`), await load(), await choose(tab, row.id))) });
-  }, takeOff);
-}
-
-// edit
-
-function startNew() {
-  if (!leaveEdit()) return;
-  store.update({ chosen: null });
-  startEdit(null);
-}
-
-async function startEdit(row, kept = null) {
-  const { tab, types, bases, uavs } = store.state;
-  open();
-  await showMap();
-  const began = row ? bodies[tab](row) : { ...BLANK[tab] };
-  if ("position" in began && !began.position) began.position = (await placeOfNew(bases, uavs)) ?? [0, 0];
-  const form = createForm({
-    tab, body: { ...began, ...kept?.body, from_type: [] }, types: types ?? [], bases: bases ?? [], isNew: !row, onMove: (position) => map?.movePin(position), onSave: save, onCancel: cancel,
+    toast(deleted(row), { label: t("Undo"), act: () => attempt(async () => (await post(`${path}/${row.id}/restore`), await load(), turnTo(tab), await choose(tab, row.id))) });
   });
-  edit = { tab, row, form, began: row ? form0(began) : form.body(), etag: kept?.etag ?? (row && etagOf(row)), key: crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` };
-  panel.edit(row ? t("Edit {name}", { name: row.name }) : kindNow().one, form);
-  if (began.position) {
-    map?.place(kept?.body.position ?? began.position, (position) => form.setPlace(position));
-    map?.look(kept?.body.position ?? began.position);
-  }
-  map?.show(store.state, store.state.chosen);
-  form.first.focus({ preventScroll: wide.matches });
-}
-
-const form0 = (body) => {
-  const { from_type: _, ...rest } = body;
-  return rest;
-};
-
-/** Where a new one stands at first: the middle of the map. */
-async function placeOfNew(bases, uavs) {
-  if (map) return map.centre();
-  return bases?.[0]?.position ?? uavs?.[0]?.position ?? (page.extent && [(page.extent[0] + page.extent[2]) / 2, (page.extent[1] + page.extent[3]) / 2]);
-}
-
-const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-const changesOf = () => {
-  const body = edit.form.body();
-  return Object.fromEntries(Object.entries(body).filter(([name, value]) => !isSame(value, edit.began[name])));
-};
-
-/** Drops the edit, with a way back where something was changed. False while it is being stored. */
-function leaveEdit() {
-  if (!edit) return true;
-  if (edit.isSaving) return false;
-  const { tab, row, form, etag } = edit;
-  const changed = Object.keys(changesOf()).length > 0;
-  const kept = { body: form.body(), etag };
-  edit = null;
-  map?.place(null);
-  if (changed) {
-    toast(t("Your edit is dropped."), {
-      label: t("Undo"),
-      async act() {
-        if (store.state.tab !== tab) turnTo(tab);
-        byId("fleet-tabs").querySelector(`input[value=${tab}]`).checked = true;
-        store.update({ chosen: row && { tab, id: row.id } });
-        await startEdit(row, kept);
-      },
-    });
-  }
-  return true;
-}
-
-function cancel() {
-  const { row, tab } = edit;
-  if (!leaveEdit()) return;
-  if (row) choose(tab, row.id);
-  else close();
-}
-
-async function save() {
-  const { tab, row, form, etag, key } = edit;
-  const kind = KINDS[tab];
-  const changes = changesOf();
-  if (row && !Object.keys(changes).length) {
-    cancel();
-    return;
-  }
-  form.clear();
-  edit.isSaving = true;
-  form.busy(true);
-  try {
-    const { data } = row ? await patch(`${kind.path}/${row.id}`, changes, etag) : await post(kind.path, withoutNull(form.body()), { headers: { "Idempotency-Key": key } });
-    edit = null;
-    map?.place(null);
-    toast(t("Saved."));
-    await load();
-    await choose(tab, data.id);
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    edit.isSaving = false;
-    if (error.status < 500 && error.status) edit.key = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
-    if (error.status === 412 && error.details?.current) settle(error.details, kind);
-    else form.tell(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message, error.details);
-  } finally {
-    form.busy(false);
-  }
-}
-
-/** What a new row does not say is left to the server. */
-const withoutNull = (body) => Object.fromEntries(Object.entries(body).filter(([, value]) => value !== null));
-
-function settle({ current, changed_by }, kind) {
-  const now = kind.read(current);
-  const theirs = bodies[kind.tab](now);
-  const { form, began } = edit;
-  form.ask(
-    conflictNotice({
-      who: changed_by, seen: began, theirs, form,
-      onTheirs() {
-        edit = null;
-        map?.place(null);
-        load().then(() => choose(kind.tab, now.id));
-      },
-      onMine() {
-        edit.etag = etagOf(now);
-        save();
-      },
-    }),
-  );
 }
 
 addEventListener("beforeunload", (event) => {
-  if (edit && Object.keys(changesOf()).length) event.preventDefault();
+  if (editing.isChanged()) event.preventDefault();
 });
-
 document.getElementById("new-row")?.addEventListener("click", startNew);
 byId("fleet-more").addEventListener("click", loadMore);
 
 startChrome({
   bindings: [
-    { keys: ["/"], words: t("Find in the fleet"), act: () => byId("fleet-text").focus() },
+    { keys: ["/"], words: t("Find in the fleet"), act: () => filters.focus() },
     { keys: ["j"], words: t("Next in the list"), act: () => table.step(1) },
     { keys: ["k"], words: t("Previous in the list"), act: () => table.step(-1) },
     { keys: ["c"], words: t("Add one"), act: () => (page.canPlan ? startNew() : false) },
-    { keys: ["e"], words: t("Edit"), act: () => (chosenRow() && !edit && page.canPlan ? void startEdit(chosenRow()) : false) },
-    { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (edit ? edit.form.element.requestSubmit() : false) },
-    { keys: ["escape"], words: t("A step back"), whileTyping: true, act: () => (edit ? cancel() : store.state.chosen ? close() : false) },
+    { keys: ["e"], words: t("Edit"), act: () => (chosenRow() && !editing.isOpen() && page.canPlan ? void editing.start(chosenRow()) : false) },
+    { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (editing.isOpen() ? editing.submit() : false) },
+    { keys: ["escape"], words: t("A step back"), whileTyping: true, act: () => (editing.isOpen() ? editing.cancel() : store.state.chosen ? close() : false) },
   ],
 });
 

@@ -16,7 +16,7 @@ export function mountPanel({ canPlan, acts }) {
   function stateButtons(uav) {
     if (uav.state === "retired") return [button("archive-restore", t("Bring back"), () => acts.put("active"))];
     return [
-      uav.state === "active" ? button("wrench", t("To maintenance"), () => acts.put("maintenance")) : button("check", t("Back in service"), () => acts.put("active")),
+      uav.state === "active" ? button("wrench", t("Maintenance"), () => acts.put("maintenance")) : button("check", t("Back in service"), () => acts.put("active")),
       button("archive", t("Retire"), () => acts.put("retired")),
     ];
   }
@@ -54,7 +54,7 @@ export function mountPanel({ canPlan, acts }) {
         back(),
         h("div", { class: "panel-head" }, title, isUav && stateChip(row.state)),
         isUav && row.state === "retired" && h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
-        canPlan && h("div", { class: "panel-acts" }, button("pencil", t("Edit"), acts.edit), isUav && stateButtons(row), button("trash-2", t("Delete"), acts.remove, "danger")),
+        canPlan && h("div", { class: "panel-acts" }, button("pencil", t("Edit"), acts.edit), isUav && stateButtons(row), h("button", { type: "button", class: "icon-button", "aria-label": t("Delete {name}", row), title: t("Delete"), onclick: acts.remove }, icon("trash-2"))),
         h("dl", { class: "facts" }, kind.facts(row)),
         !isUav && row.uav_count > 0 && h("p", {}, h("button", { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) }, tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"))),
         isUav && h("h3", {}, t("Link")),

@@ -1,0 +1,139 @@
+/** Adding and editing one row of the fleet: the form, the pin on the map, what was not saved, and who was faster. */
+
+import { ApiError, patch, post } from "../api.js";
+import { toast } from "../page/toast.js";
+import { t } from "../text.js";
+import { bodies, BLANK, createForm } from "./forms.js";
+import { KINDS } from "./kinds.js";
+import { conflictNotice } from "./panel.js";
+
+const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+const newKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+export const ifUnchanged = (row) => ({ headers: { "If-Match": `"${row.revision}"` } });
+
+/** What a new row does not say is left to the server. */
+const stated = (body) => Object.fromEntries(Object.entries(body).filter(([, value]) => value !== null));
+
+/**
+ * context: { store, page, panel, isWide(), open(), map(): the map or null, showMap(): a promise, turnTo(tab), choose(tab, id), close(), load() }.
+ * `leave()` is false while the edit is being stored.
+ */
+export function createEditing(context) {
+  const { store } = context;
+  let edit = null; // { tab, row or null, etag, form, began, key, isSaving }
+
+  /** Where a new one stands at first: the middle of the map. */
+  function placeOfNew() {
+    const { bases, uavs } = store.state;
+    const { extent } = context.page;
+    if (context.map()) return context.map().centre();
+    return bases?.[0]?.position ?? uavs?.[0]?.position ?? (extent ? [(extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2] : [0, 0]);
+  }
+
+  async function start(row, kept = null) {
+    const { tab, types, bases } = store.state;
+    context.open();
+    await context.showMap();
+    const began = row ? bodies[tab](row) : bodies[tab](BLANK[tab]);
+    if ("position" in began && !began.position) began.position = placeOfNew();
+    const body = { ...began, ...kept?.body };
+    const form = createForm({ tab, body, types: types ?? [], bases: bases ?? [], isNew: !row, onMove: (position) => context.map()?.movePin(position), onSave: save, onCancel: cancel });
+    edit = { tab, row, form, began, etag: kept?.etag ?? (row && ifUnchanged(row)), key: newKey(), isSaving: false };
+    context.panel.edit(row ? t("Edit {name}", row) : KINDS[tab].one, form);
+    const map = context.map();
+    if (body.position) {
+      map?.place(body.position, (position) => form.setPlace(position));
+      map?.look(body.position);
+    }
+    map?.show(store.state, store.state.chosen);
+    form.first.focus({ preventScroll: context.isWide() });
+  }
+
+  function changes() {
+    if (!edit) return {};
+    return Object.fromEntries(Object.entries(edit.form.body()).filter(([name, value]) => !isSame(value, edit.began[name])));
+  }
+
+  const isChanged = () => Object.keys(changes()).length > 0;
+
+  function end() {
+    edit = null;
+    context.map()?.place(null);
+  }
+
+  /** Ends the edit, with a way back where something was changed. */
+  function leave() {
+    if (!edit) return true;
+    if (edit.isSaving) return false;
+    const { tab, row, form, etag } = edit;
+    const kept = isChanged() && { body: form.body(), etag };
+    end();
+    if (kept) {
+      toast(t("Your edit is dropped."), {
+        label: t("Undo"),
+        async act() {
+          context.turnTo(tab);
+          store.update({ chosen: row && { tab, id: row.id } });
+          await start(row, kept);
+        },
+      });
+    }
+    return true;
+  }
+
+  function cancel() {
+    const { row, tab } = edit;
+    if (!leave()) return;
+    if (row) context.choose(tab, row.id);
+    else context.close();
+  }
+
+  async function save() {
+    if (edit.isSaving) return;
+    const { tab, row, form, etag, key } = edit;
+    const kind = KINDS[tab];
+    if (row && !isChanged()) {
+      cancel();
+      return;
+    }
+    form.clear();
+    form.busy(true);
+    edit.isSaving = true;
+    try {
+      const { data } = row ? await patch(`${kind.path}/${row.id}`, changes(), etag) : await post(kind.path, stated(form.body()), { headers: { "Idempotency-Key": key } });
+      end();
+      toast(t("Saved."));
+      await context.load();
+      await context.choose(tab, data.id);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      edit.isSaving = false;
+      if (!error.isAway) edit.key = newKey(); // an answer that was lost is asked for again under the same key
+      if (error.status === 412 && error.details?.current) settle(error.details, kind);
+      else form.tell(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message, error.details);
+    } finally {
+      form.busy(false);
+    }
+  }
+
+  function settle({ current, changed_by }, kind) {
+    const now = kind.read(current);
+    const { form, began } = edit;
+    form.ask(
+      conflictNotice({
+        who: changed_by, seen: began, theirs: bodies[kind.tab](now), form,
+        async onTheirs() {
+          end();
+          await context.load();
+          await context.choose(kind.tab, now.id);
+        },
+        onMine() {
+          edit.etag = ifUnchanged(now);
+          save();
+        },
+      }),
+    );
+  }
+
+  return { start, leave, cancel, isOpen: () => edit !== null, isChanged, submit: () => edit.form.element.requestSubmit() };
+}
