@@ -8,7 +8,7 @@ from django.db import connection
 from inspection.selectors.assets import VOLTAGE_NOT_STATED
 
 DEEPEST_ZOOM = 22
-RECIPE = 4  # part of the ETag: counts the changes to this file's statements
+RECIPE = 5  # part of the ETag: counts the changes to this file's statements
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
@@ -22,6 +22,7 @@ BRIDGE_ZOOM = 10
 TOWER_ZOOM = 10
 OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
 ZONE_LABEL_ZOOM = 9
+LONGEST_SCHEDULE = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
 MOST_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
 MOST_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
 
@@ -73,10 +74,11 @@ TOWERS = """inspection_asset LEFT JOIN (
            COALESCE(NULLIF(ref, ''), NULLIF(name, ''), NULLIF(operator, '')) AS line_owner
     FROM inspection_asset
 ) line ON own_id = line_id"""
-ZONE_COLUMNS = """
+ZONE_COLUMNS = f"""
     id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
     lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference,
-    (ST_XMax(geometry) - ST_XMin(geometry))::float8 AS width_deg
+    (ST_XMax(geometry) - ST_XMin(geometry))::float8 AS width_deg,
+    CASE WHEN LENGTH(schedule::text) <= {LONGEST_SCHEDULE} THEN schedule::text END AS schedule
 """
 ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
 

@@ -5,7 +5,8 @@ import { hashOf, showsAnything, viewOf } from "../../static/js/map/address.js";
 import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
 import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
 import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
-import { distinct, plainWords } from "../../static/js/map/furniture.js";
+import { distinct } from "../../static/js/map/furniture.js";
+import { plainWords } from "../../static/js/map/tips.js";
 import { mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { placeSketch } from "../../static/js/missions/sketch.js";
 

@@ -2,12 +2,12 @@
 
 import { byId } from "../dom.js";
 import { piecesOf, routeClicks } from "../map/click_router.js";
-import { createTip, layersMenu, mountCoordinates, mountLegend, mountScale, setAttribution, tipOf } from "../map/furniture.js";
+import { mountControls } from "../map/controls.js";
+import { createTip } from "../map/furniture.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createMap } from "../map/map_view.js";
-import { rememberedUnder, rememberUnder, underChoices } from "../map/under.js";
-import { toggleMenu } from "../page/chrome.js";
-import { onTheme } from "../page/theme.js";
+import { tipOf } from "../map/tips.js";
+import { rememberedUnder } from "../map/under.js";
 import { t } from "../text.js";
 
 const SETTLED_MS = 350;
@@ -16,76 +16,32 @@ const NEAR_ZOOM = 14;
 /**
  * on: { click(thing, position, point), hover(thing, point, position), box([W, S, E, N]), tool() , kinds() }, each optional. A page that
  * draws returns true from `isBusy()` while the pointer belongs to the drawing: then nothing is picked and no tip comes up.
- * Returns { map, view, ready, fit(box), show(position or box), setGround(ground), box(), ring(geometries), onRecolour(act) }.
+ * Returns { map, view, bindings, ready, fit(box), show(position or box), setGround(ground), box(), ring(geometries), onRecolour(act) }.
  */
 export function mountGroundMap(page, on = {}) {
   const container = byId("map");
   const frame = container.parentElement;
-  let under = rememberedUnder(page);
   let ground = null;
-  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under, describe: t("Map"), bounds: page.extent, extent: page.extent });
+  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under: rememberedUnder(page), describe: t("Map"), bounds: page.extent, extent: page.extent });
   const { map } = view;
-  const hidden = new Set();
   const repainted = new Set();
   const tip = createTip(frame);
-  const showCoordinates = mountCoordinates();
   const isBusy = () => on.isBusy?.() ?? false;
   let pointed = null;
-
-  // The focus ring is for the keyboard: a click into the map gives it the focus too, and a key pressed later would show the ring.
-  container.addEventListener("pointerdown", () => (container.dataset.pointed = "true"));
-  container.addEventListener("focusout", () => delete container.dataset.pointed);
-  container.project = (position) => map.project(position); // screen place of a position, for tests
-  map.on("idle", () => (container.dataset.idle = "true"));
-  map.on("movestart", () => delete container.dataset.idle);
-  mountScale(map);
-  mountLegend(map);
-  byId("zoom-in").addEventListener("click", () => map.zoomIn());
-  byId("zoom-out").addEventListener("click", () => map.zoomOut());
-  byId("fit").addEventListener("click", () => fit(extent()));
-  onTheme(() =>
-    requestAnimationFrame(() => {
-      view.recolour();
-      repainted.forEach((act) => act(view.palette()));
-    }),
-  );
-
-  const attribute = () => setAttribution([...(ground?.attribution ?? []), under === "base-map" && page.baseMap.attribution, under === "satellite" && page.satellite.attribution]);
-  const layers = byId("open-layers");
-  layers.addEventListener("click", () =>
-    toggleMenu(layers, () =>
-      layersMenu({
-        under: {
-          choices: underChoices(page),
-          chosen: () => under,
-          choose(name) {
-            under = name;
-            view.putUnder(name);
-            attribute();
-            rememberUnder(name);
-          },
-        },
-        isShown: (group) => !hidden.has(group.name),
-        show(group, visible) {
-          if (visible) hidden.delete(group.name);
-          else hidden.add(group.name);
-          view.show(group.layers, visible);
-        },
-      }),
-    ),
-  );
+  const controls = mountControls(view, page, { isBusy, fit: () => fit(extent()), recoloured: (palette) => repainted.forEach((act) => act(palette)) });
 
   routeClicks(map, {
     tool: () => on.tool?.() ?? "point",
     kinds: () => on.kinds?.() ?? null,
     click(thing, position, point) {
       tip(null);
+      if (controls.click(position)) return;
       if (!isBusy()) on.click?.(thing, position, point);
     },
     hover(thing, point, position) {
-      showCoordinates(position);
-      const met = isBusy() ? null : thing;
-      tip(met ? `${met.kind} ${met.id}` : null, point, () => tipOf(met));
+      controls.hover(position);
+      const met = isBusy() || controls.isMeasuring() ? null : thing;
+      tip(met ? `${met.kind} ${met.id}` : null, point, (refresh) => tipOf({ ...met, place: position }, refresh));
       on.hover?.(met, point, position);
       if (met?.id === pointed?.id && met?.kind === pointed?.kind) return;
       pointed = met;
@@ -107,6 +63,7 @@ export function mountGroundMap(page, on = {}) {
   return {
     map,
     view,
+    bindings: controls.bindings,
     ready: view.ready,
     opensAtPlace: view.opensAtPlace,
     fit,
@@ -130,9 +87,7 @@ export function mountGroundMap(page, on = {}) {
     },
     setGround(next) {
       ground = next;
-      attribute();
-      byId("demo-badge").hidden = !ground?.is_synthetic;
-      byId("map-empty").hidden = !ground || ground.extent !== null;
+      controls.setGround(next);
     },
   };
 }

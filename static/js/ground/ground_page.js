@@ -20,6 +20,7 @@ export function mountGroundPage(on = {}) {
     startChrome({
       bindings: [
         ...bindings,
+        ...map.bindings,
         { keys: ["f"], words: t("Fit everything"), act: () => map.fitAll() },
         { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
         { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },

@@ -6,13 +6,13 @@ export const TILES = "ground-tiles";
 /** Layers that a click or the pointer can meet, in the order of picking. */
 export const PICKABLE = ["towers", "towers-high", "towers-ring", "bridges-fill", "bridges", "bridge-points", "railways", "lines", "lines-unknown", "zones-fill"];
 
-/** What the layers menu switches: words, and the layers behind them. */
+/** What the layers menu switches, and the layers behind it. */
 export const GROUPS = [
-  { name: "Power lines", layers: ["lines-casing", "lines", "lines-unknown", "line-labels"] },
-  { name: "Towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels"] },
-  { name: "Railways", layers: ["railways", "railways-ties"] },
-  { name: "Bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
-  { name: "No-fly zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zone-labels"] },
+  { key: "lines", layers: ["lines-casing", "lines", "lines-unknown", "line-labels"] },
+  { key: "towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels"] },
+  { key: "railways", layers: ["railways", "railways-ties"] },
+  { key: "bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
+  { key: "zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zones-outline-resting", "zone-labels"] },
 ];
 
 const voltage = ["coalesce", ["get", "voltage"], -1];
@@ -20,6 +20,11 @@ const byVoltage = (...values) => {
   const [unknown, under50, from50, from100, from200, from380] = values;
   return ["step", voltage, unknown, 0, under50, 50, from50, 100, from100, 200, from200, 380, from380];
 };
+/** Bands of voltage by their least kV, and the one of a feature. */
+export const BANDS = ["380", "200", "100", "50", "0", "none"];
+export const bandOf = byVoltage("none", "0", "50", "100", "200", "380");
+export const voltageBand = (voltage_kv) => (voltage_kv === undefined || voltage_kv === null ? "none" : BANDS.find((band) => voltage_kv >= Number(band)));
+const whereResting = (yes, no) => ["case", ["boolean", ["feature-state", "resting"], false], yes, no]; // a zone that its schedule does not put in force now
 const WIDTHS_PX = [1.2, 0.8, 1.1, 1.6, 2.2, 3]; // at zoom 12: not stated, under 50, 50, 100, 200, 380 kV and over
 const widthsTimes = (factor, more = 0) => byVoltage(...WIDTHS_PX.map((width) => width * factor + more));
 const lineWidth = (more = 0) => ["interpolate", ["linear"], ["zoom"], 5, widthsTimes(0.5, more), 9, widthsTimes(0.75, more), 12, widthsTimes(1, more), 17, widthsTimes(1.7, more)];
@@ -71,6 +76,7 @@ export function mapStyle(palette, options) {
       "strip-point": { type: "geojson", data: NOTHING },
       "many-targets": { type: "geojson", data: NOTHING },
       selection: { type: "geojson", data: NOTHING },
+      measure: { type: "geojson", data: NOTHING },
     },
     layers: [
       { id: "ground", type: "background", paint: { "background-color": palette.ground } },
@@ -80,6 +86,7 @@ export function mapStyle(palette, options) {
       ...routeLayers(palette),
       ...labelLayers(palette),
       ...selectionLayers(palette),
+      ...measureLayers(palette),
     ],
   };
 }
@@ -92,7 +99,7 @@ function infrastructureLayers(palette) {
   const lineColour = byVoltage(palette.voltUnknown, palette.volt20, palette.volt66, palette.volt132, palette.volt220, palette.volt400);
   return [
     tiles("zones-fill", "fill", "zones", { paint: { "fill-color": palette.zone, "fill-opacity": palette.isDark ? 0.08 : 0.07 } }),
-    tiles("zones-hatch", "fill", "zones", { paint: { "fill-pattern": "hatch", "fill-opacity": 0.75 } }),
+    tiles("zones-hatch", "fill", "zones", { paint: { "fill-pattern": "hatch", "fill-opacity": whereResting(0, 0.75) } }),
     tiles("railways", "line", "railways", {
       minzoom: 8,
       paint: { "line-color": palette.railway, "line-width": ["interpolate", ["linear"], ["zoom"], 8, 1, 12, 1.8, 15, 2.6] },
@@ -128,7 +135,8 @@ function infrastructureLayers(palette) {
         "circle-stroke-width": ["case", isPole, 1, 1.4],
       },
     }),
-    tiles("zones-outline", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.75 } }),
+    tiles("zones-outline", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.75, "line-opacity": whereResting(0, 1) } }),
+    tiles("zones-outline-resting", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.5, "line-dasharray": [5, 4], "line-opacity": whereResting(1, 0) } }),
     {
       id: "picked-shapes",
       type: "line",
@@ -248,6 +256,31 @@ function selectionLayers(palette) {
       filter: ["!=", ["geometry-type"], "Point"],
       layout: { "line-join": "round" }, // no caps: the pieces of a line overlap at the edges of tiles
       paint: { "line-color": palette.select, "line-width": 2, "line-gap-width": 6 },
+    },
+  ];
+}
+
+function measureLayers(palette) {
+  const round = { "line-cap": "round", "line-join": "round" };
+  const whereRole = (role) => ["==", ["get", "role"], role];
+  return [
+    { id: "measure-casing", type: "line", source: "measure", filter: whereRole("path"), layout: round, paint: { "line-color": palette.casing, "line-width": 5.5 } },
+    { id: "measure-path", type: "line", source: "measure", filter: whereRole("path"), layout: round, paint: { "line-color": palette.ink, "line-width": 2 } },
+    { id: "measure-next", type: "line", source: "measure", filter: whereRole("next"), paint: { "line-color": palette.ink, "line-width": 1.5, "line-dasharray": [3, 2] } },
+    {
+      id: "measure-points",
+      type: "circle",
+      source: "measure",
+      filter: whereRole("point"),
+      paint: { "circle-radius": 4, "circle-color": palette.raised, "circle-stroke-color": palette.ink, "circle-stroke-width": 2 },
+    },
+    {
+      id: "measure-labels",
+      type: "symbol",
+      source: "measure",
+      filter: whereRole("point"),
+      layout: { "text-font": palette.fonts, "text-size": 12, "text-field": ["get", "label"], "text-anchor": "bottom", "text-offset": [0, -0.7], "text-allow-overlap": true },
+      paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 2 },
     },
   ];
 }

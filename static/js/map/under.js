@@ -1,12 +1,14 @@
 /** What lies under the map: which raster maps are offered, and which one somebody chose last. */
 
+import { t } from "../text.js";
+
 const KEY = "spanwise.base-map";
 
 const offered = (page) => [["base-map", page.baseMap], ["satellite", page.satellite]].filter(([, layer]) => layer.tiles).map(([name]) => name);
-const WORDS = { "base-map": "Map", satellite: "Satellite" };
+const WORDS = { "base-map": t("Map"), satellite: t("Satellite") };
 
 export function underChoices(page) {
-  return [{ value: "", words: "None" }, ...offered(page).map((value) => ({ value, words: WORDS[value] }))];
+  return [{ value: "", words: t("None") }, ...offered(page).map((value) => ({ value, words: WORDS[value] }))];
 }
 
 export function rememberedUnder(page) {

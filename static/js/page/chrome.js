@@ -67,11 +67,11 @@ export function toggleMenu(opener, make) {
   menu.style.top = `${box.bottom + menu.offsetHeight + 12 > innerHeight ? Math.max(8, box.top + scrollY - menu.offsetHeight - 6) : below}px`;
   opener.setAttribute("aria-expanded", "true");
   openMenu = { opener, menu };
-  menu.querySelector("button, a")?.focus({ preventScroll: true });
+  menu.querySelector("button, a, input")?.focus({ preventScroll: true });
   menu.addEventListener("keydown", (event) => {
     const items = [...menu.querySelectorAll("button, a")];
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (step) {
+    if (step && items.includes(document.activeElement)) {
       event.preventDefault();
       items[(items.indexOf(document.activeElement) + step + items.length) % items.length].focus();
     }

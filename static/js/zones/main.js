@@ -2,7 +2,7 @@
 
 import { byId, h, icon } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
-import { plainWords } from "../map/furniture.js";
+import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
 import { coordinateText, lengthText, whenText } from "../units.js";
 import { zoneForm } from "./form.js";

@@ -7,6 +7,7 @@ import { mergePills } from "../pills.js";
 
 const MOST_MARKERS = 200;
 const MOST_NAMES = 6;
+const REACH_PX = 4;
 const MISSED = -1; // instead of a route's number
 
 const lookOf = (pill) => (pill.isMissed ? "missed" : pill.sequence === null ? "waiting" : `route-${routeNumber(pill.sequence)}`);
@@ -93,6 +94,7 @@ export function createTargets(map, { onPick, onHover }) {
           ? pills.map((pill) => ({
               type: "Feature",
               properties: {
+                key: pill.key,
                 route: pill.isMissed ? MISSED : pill.sequence === null ? 0 : routeNumber(pill.sequence),
                 label: pill.isMissed ? "×" : `${pill.letter}${pill.number}`,
               },
@@ -101,6 +103,12 @@ export function createTargets(map, { onPick, onHover }) {
           : [],
       });
       draw();
+    },
+    /** The target of the layer at a place on the screen, where there are too many for markers: its key, or null. */
+    at({ x, y }) {
+      if (pills.length <= MOST_MARKERS) return null;
+      const box = [[x - REACH_PX, y - REACH_PX], [x + REACH_PX, y + REACH_PX]];
+      return map.queryRenderedFeatures(box, { layers: ["many-targets"] })[0]?.properties.key ?? null;
     },
     lookAt(sequence) {
       lookedAt = sequence;

@@ -1,0 +1,92 @@
+/** The legend: what is drawn how. On the map it says what is in view, in the layers menu all of it. */
+
+import { byId, h, svg } from "../dom.js";
+import { t } from "../text.js";
+import { bandName } from "./shown.js";
+import { voltageBand } from "./style.js";
+
+const sample = (...drawing) => svg("svg", { width: 26, height: 12, viewBox: "0 0 26 12", "aria-hidden": "true" }, drawing);
+const stroke = (token, width, rest = {}) => svg("path", { d: "M1 6H25", stroke: `var(${token})`, "stroke-width": width, fill: "none", ...rest });
+
+const line = (token, width, rest) => () => sample(stroke(token, width, rest));
+
+/** Rows: the layer that shows it is in view, words, drawing. */
+const ROWS = [
+  { layer: "lines", words: bandName("380"), band: "380", draw: line("--volt-400", 3) },
+  { layer: "lines", words: bandName("200"), band: "200", draw: line("--volt-220", 2.2) },
+  { layer: "lines", words: bandName("100"), band: "100", draw: line("--volt-132", 1.6) },
+  { layer: "lines", words: bandName("50"), band: "50", draw: line("--volt-66", 1.1) },
+  { layer: "lines", words: bandName("0"), band: "0", draw: line("--volt-20", 0.9) },
+  { layer: "lines-unknown", words: bandName("none"), band: "none", draw: line("--volt-unknown", 1.3, { "stroke-dasharray": "5 3" }) },
+  { layer: "railways", words: t("Railway"), draw: () => sample(stroke("--railway", 2.6), stroke("--ground", 1.3, { "stroke-dasharray": "5 5" })) },
+  { layer: "bridges", words: t("Bridge"), draw: () => sample(svg("path", { d: "M1 4H25M1 8H25", stroke: "var(--bridge)", "stroke-width": 1.5 })) },
+  {
+    layer: "zones-fill",
+    words: t("No-fly zone"),
+    draw: () =>
+      sample(
+        svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3 }),
+        svg("path", { d: "M5 10l8-8M11 10l8-8M17 10l5-5", stroke: "var(--zone)", "stroke-width": 0.9 }),
+      ),
+  },
+  {
+    layer: "zones-fill",
+    rests: true,
+    words: t("No-fly zone, not in force now"),
+    draw: () => sample(svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3, "stroke-dasharray": "4 3" })),
+  },
+  {
+    layer: "towers-ring",
+    words: t("Tower"),
+    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 3, fill: "var(--ground)", stroke: "var(--tower)", "stroke-width": 1.4 })),
+  },
+  {
+    layer: "routes",
+    words: t("Route, flown to the arrow"),
+    draw: () => sample(stroke("--route-1", 3), svg("path", { d: "M17 6L10 2L12 6L10 10Z", fill: "var(--route-1)", stroke: "var(--map-casing)", "stroke-width": 1 })),
+  },
+  {
+    layer: "many-targets",
+    words: t("Target"),
+    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 4.5, fill: "var(--raised)", stroke: "var(--ink-2)", "stroke-width": 1.75 })),
+  },
+];
+
+/** UAVs stand on the map as HTML, not in a layer. */
+const UAV_ROW = {
+  words: t("UAV"),
+  draw: () => sample(svg("path", { d: "M13 1L18.5 11L13 8.5L7.5 11Z", fill: "var(--map-casing)", stroke: "var(--ink-2)", "stroke-width": 1.3, "stroke-linejoin": "round" })),
+};
+
+const items = (rows) => rows.map(({ words, draw }) => h("li", {}, draw(), words));
+
+/** All rows, for where there is room. */
+export const legendItems = () => items([...ROWS, UAV_ROW]);
+
+/** The small drawing of a voltage band. */
+export const bandSample = (band) => ROWS.find((row) => row.band === band).draw();
+
+function isWithin(element, frame) {
+  const [inner, outer] = [element.getBoundingClientRect(), frame.getBoundingClientRect()];
+  return inner.right > outer.left && inner.left < outer.right && inner.bottom > outer.top && inner.top < outer.bottom;
+}
+
+const keyOf = (layer, band = "", rests = false) => `${layer}/${band}/${rests}`;
+
+/** A legend of what is in view. */
+export function mountLegend(map) {
+  const legend = byId("legend");
+  let shown = "";
+  map.on("idle", () => {
+    const layers = [...new Set(ROWS.map((row) => row.layer))].filter((id) => map.getLayer(id));
+    const seen = new Set();
+    for (const { layer, properties, state } of map.queryRenderedFeatures({ layers })) seen.add(keyOf(layer.id, layer.id === "lines" ? voltageBand(properties.voltage) : "", Boolean(state.resting)));
+    const rows = ROWS.filter((row) => seen.has(keyOf(row.layer, row.layer === "lines" ? row.band : "", Boolean(row.rests))));
+    if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer()))) rows.push(UAV_ROW);
+    const words = rows.map((row) => row.words).join();
+    if (words === shown) return;
+    shown = words;
+    legend.hidden = rows.length === 0;
+    legend.replaceChildren(...items(rows));
+  });
+}

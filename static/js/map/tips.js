@@ -1,0 +1,95 @@
+/** What the tooltip of the map says of an asset or a zone. A zone's times and source are asked for when it is looked at. */
+
+import { get } from "../api.js";
+import { h, icon } from "../dom.js";
+import { t } from "../text.js";
+import { lengthText, whenText } from "../units.js";
+import { bandDrawing, heightsText } from "../zones/heights.js";
+import { isInForce } from "../zones/in_force.js";
+
+const KEPT_MS = 60_000;
+
+const KIND_WORDS = () => ({
+  tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge"), pole: t("Pole"), portal: t("Portal"),
+  minor_line: t("Minor power line"), cable: t("Cable"), tram: t("Tramway"), subway: t("Subway"),
+});
+
+/** The words of a zone file's code: "AIR_TRAFFIC, NATURE" becomes "Air traffic, nature". Other texts stay as they are. */
+export function plainWords(text) {
+  if (!/^[A-Z][A-Z_]+(, ?[A-Z][A-Z_]+)*$/.test(text)) return text;
+  const words = text.toLowerCase().replaceAll("_", " ");
+  return words[0].toUpperCase() + words.slice(1);
+}
+
+const quiet = (words) => words && h("div", { class: "quiet-text" }, words);
+
+/** `refresh(content)` is called with more, once it is known. */
+export function tipOf(thing, refresh) {
+  if (thing.kind === "zone") return zoneTip(thing, refresh);
+  const { properties } = thing;
+  const length = properties.length_m ? lengthText(properties.length_m) : "";
+  const isSaid = !properties.voltages || `${properties.label} ${properties.detail ?? ""}`.includes(properties.voltages);
+  return [
+    h("strong", {}, properties.label),
+    h("div", {}, [KIND_WORDS()[properties.subtype] ?? KIND_WORDS()[thing.kind], length].filter(Boolean).join(", ")),
+    quiet(properties.detail),
+    quiet(isSaid ? "" : properties.voltages),
+    properties.flyable === false && quiet(t("Not part of the flying network")),
+  ].filter(Boolean);
+}
+
+const known = new Map(); // zone → { at, properties }
+
+async function detailsOf(id) {
+  const kept = known.get(id);
+  if (kept && Date.now() - kept.at < KEPT_MS) return kept.properties;
+  const { properties } = (await get(`/zones/${id}`)).data;
+  known.set(id, { at: Date.now(), properties });
+  return properties;
+}
+
+function zoneTip(thing, refresh) {
+  const kept = known.get(thing.id);
+  detailsOf(thing.id).then(
+    (details) => kept?.properties !== details && refresh(zoneContent(thing, details)),
+    () => refresh(zoneContent(thing, null, t("Times and source cannot be read now."))),
+  );
+  return zoneContent(thing, kept?.properties ?? null);
+}
+
+const limitOf = (value_m, reference) => (value_m === undefined || value_m === null ? null : { value_m, reference: reference ?? "" });
+
+/** Whether the zone applies now, in words; by the schedule in the tile. */
+function nowWords({ schedule }, place) {
+  if (!schedule) return "";
+  return { true: t("In force now"), false: t("Not in force now"), null: t("Whether it is in force now is not known") }[isInForce(JSON.parse(schedule), Date.now(), place)];
+}
+
+function zoneContent({ properties, place }, details, problem = "") {
+  const limits = {
+    lower_limit: limitOf(properties.lower_limit_m, properties.lower_reference),
+    upper_limit: limitOf(properties.upper_limit_m, properties.upper_reference),
+  };
+  const why = [properties.restriction, properties.reason].filter(Boolean).map(plainWords).join(" · ");
+  return [
+    h("strong", {}, properties.name),
+    h("span", { class: "zone-chip" }, icon("circle-alert", "small"), t("No-fly zone")),
+    h(
+      "div",
+      { class: "tip-band" },
+      bandDrawing(limits),
+      h("div", {}, h("div", {}, heightsText(limits)), h("div", {}, details ? details.schedule_words : properties.schedule ? t("At times") : ""), quiet(place ? nowWords(properties, place) : "")),
+    ),
+    why && h("div", {}, why),
+    quiet(problem || (details ? sourceWords(details) : t("Reading times and source…"))),
+    quiet(t("Plans count it at all heights and times.")),
+  ].filter(Boolean);
+}
+
+/** Where the zone is from, and how old what is known of it is. */
+function sourceWords({ zone_set, source, is_edited, updated_at }) {
+  if (!source) return t("Drawn here, changed {when}", { when: whenText(updated_at) });
+  const name = zone_set ?? source.file_name;
+  const words = source.fetched_at ? t("{name}, fetched {when}", { name, when: whenText(source.fetched_at) }) : t("{name}, read in {when}", { name, when: whenText(source.imported_at) });
+  return is_edited ? `${words} · ${t("edited by hand")}` : words;
+}
