@@ -1,5 +1,18 @@
 /** German, put together from one catalogue for each room of the program. */
 
+import admin from "./de/admin.js";
+import assets from "./de/assets.js";
+import draw from "./de/draw.js";
+import fleet from "./de/fleet.js";
+import gaps from "./de/gaps.js";
 import general from "./de/general.js";
+import ground from "./de/ground.js";
+import imports from "./de/imports.js";
+import map from "./de/map.js";
+import mission from "./de/mission.js";
+import missionPanels from "./de/mission_panels.js";
+import missions from "./de/missions.js";
+import terrain from "./de/terrain.js";
+import zones from "./de/zones.js";
 
-export default { ...general };
+export default { ...admin, ...assets, ...draw, ...fleet, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...terrain, ...zones };

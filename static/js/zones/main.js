@@ -38,7 +38,7 @@ function details({ properties }) {
       "dl",
       { class: "facts" },
       term(t("Circle"), properties.circle && t("{radius} round {place}", { radius: lengthText(properties.circle.radius_m), place: coordinateText(properties.circle.centre) })), term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
-      term(t("Set"), properties.zone_set ?? t("Drawn here")), term(t("File"), source?.file_name), term(t("Licence"), source ? source.licence || t("not stated") : ""), term(t("Attribution"), source?.attribution),
+      term(t("Zone set"), properties.zone_set ?? t("Drawn here")), term(t("File"), source?.file_name), term(t("Licence"), source ? source.licence || t("not stated") : ""), term(t("Attribution"), source?.attribution),
       term(t("Valid"), source ? validityText(source) || t("not stated") : ""), term(t("Address"), source?.source_address), term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)), term(t("Imported"), source?.imported_at && whenText(source.imported_at)), term(t("Changed"), whenText(properties.updated_at)),
     ),
     h("p", { class: "caption" }, t("Facts as the source states them; whether you may fly is for you to judge.")),
