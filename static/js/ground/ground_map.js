@@ -45,7 +45,9 @@ export function mountGroundMap(page, on = {}) {
       on.hover?.(met, point, position);
       if (met?.id === pointed?.id && met?.kind === pointed?.kind) return;
       pointed = met;
-      if (!on.ringsItself) ring(pointed ? piecesOf(map, pointed) : []);
+      if (on.ringsItself) return;
+      selectionLayer.showZone(map, pointed?.kind === "zone" ? pointed.id : null);
+      ring(pointed && pointed.kind !== "zone" ? piecesOf(map, pointed) : []);
     },
     box: (box) => on.box?.(box),
   });

@@ -86,6 +86,7 @@ export function mountControls(view, page, act) {
     const place = [lngLat.lng, lngLat.lat];
     anchor.style.transform = `translate(${point.x}px, ${point.y}px)`;
     closeMenu();
+    byId("map-tip").hidden = true;
     toggleMenu(anchor, () => {
       const menu = menuOf(t("This place"), [
         { icon: "copy", label: t("Copy the coordinates"), act: () => copyPlace(place) },

@@ -12,7 +12,7 @@ export const GROUPS = [
   { key: "towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels"] },
   { key: "railways", layers: ["railways", "railways-ties"] },
   { key: "bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
-  { key: "zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zones-outline-resting", "zone-labels"] },
+  { key: "zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zones-outline-resting", "zones-lit", "zone-labels"] },
 ];
 
 const voltage = ["coalesce", ["get", "voltage"], -1];
@@ -137,6 +137,10 @@ function infrastructureLayers(palette) {
     }),
     tiles("zones-outline", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.75, "line-opacity": whereResting(0, 1) } }),
     tiles("zones-outline-resting", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.5, "line-dasharray": [5, 4], "line-opacity": whereResting(1, 0) } }),
+    tiles("zones-lit", "line", "zones", {
+      layout: { "line-join": "round" },
+      paint: { "line-color": palette.select, "line-width": 2, "line-gap-width": 6, "line-opacity": ["case", ["boolean", ["feature-state", "lit"], false], 1, 0] },
+    }),
     {
       id: "picked-shapes",
       type: "line",

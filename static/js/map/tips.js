@@ -90,6 +90,6 @@ function zoneContent({ properties, place }, details, problem = "") {
 function sourceWords({ zone_set, source, is_edited, updated_at }) {
   if (!source) return t("Drawn here, changed {when}", { when: whenText(updated_at) });
   const name = zone_set ?? source.file_name;
-  const words = source.fetched_at ? t("{name}, fetched {when}", { name, when: whenText(source.fetched_at) }) : t("{name}, read in {when}", { name, when: whenText(source.imported_at) });
+  const words = source.fetched_at ? t("From {name}, fetched {when}", { name, when: whenText(source.fetched_at) }) : t("From {name}, read in {when}", { name, when: whenText(source.imported_at) });
   return is_edited ? `${words} · ${t("edited by hand")}` : words;
 }
