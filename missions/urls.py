@@ -3,10 +3,13 @@
 from django.urls import path
 
 from missions import views
+from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.selections import SelectionDetail, SelectionList
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
+    path("plans/why-target", WhyTarget.as_view(), name="api-plans-why-target"),
+    path("plans/why-route", WhyRoute.as_view(), name="api-plans-why-route"),
     path("missions", views.MissionList.as_view(), name="api-missions"),
     path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
     path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from django.contrib.gis.geos import LineString
+from django.contrib.gis.geos import LineString, Polygon
 
 from inspection.geodesy.wgs84 import FloatArray
+from inspection.graph.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, NEAREST_POLE_DEG, widen
 from inspection.models import NoFlyZone
 from inspection.terrain.profile import stretches_inside
 
@@ -22,15 +23,26 @@ class ZoneStretch:
     to_m: float
 
 
-def zones_along(line: FloatArray) -> list[ZoneStretch]:
-    """line of shape (k, 2), lon lat [deg]; in the order of the line."""
+def zones_along(line: FloatArray, near_m: float = 0.0) -> list[ZoneStretch]:
+    """line of shape (k, 2), lon lat [deg]; in the order of the line. With near_m also where it passes within so many metres of a zone."""
     path = LineString(line.tolist(), srid=4326)
     fields = ("name", "geometry", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference")
+    around = _box_around(line, near_m) if near_m else path
     found = []
-    for zone in NoFlyZone.objects.filter(geometry__intersects=path).only(*fields)[:MOST_ZONES]:
-        for from_m, to_m in stretches_inside(line, shapely.from_wkb(bytes(zone.geometry.wkb))):
+    for zone in NoFlyZone.objects.filter(geometry__intersects=around).only(*fields)[:MOST_ZONES]:
+        area = shapely.from_wkb(bytes(zone.geometry.wkb))
+        if near_m:
+            (area,) = widen(np.array([area], dtype=object), near_m)
+        for from_m, to_m in stretches_inside(line, area):
             found.append(ZoneStretch(zone, from_m, to_m))
     return sorted(found, key=lambda stretch: (stretch.from_m, stretch.zone.pk))
+
+
+def _box_around(line: FloatArray, near_m: float) -> Polygon:
+    west, south, east, north = box_of_line(line)
+    high = near_m / METRES_PER_DEGREE_LAT
+    wide = near_m / (METRES_PER_DEGREE_LON * np.cos(np.radians(min(max(abs(south), abs(north)) + high, NEAREST_POLE_DEG))))
+    return Polygon.from_bbox((west - wide, south - high, east + wide, north + high))
 
 
 def box_of_line(line: FloatArray) -> tuple[float, float, float, float]:

@@ -73,10 +73,11 @@ class ProfileInputSerializer(serializers.Serializer):
     step_m = serializers.FloatField(
         min_value=1, max_value=100_000, required=False, help_text="no less than half a post's distance, which it is unless told"
     )
+    near_m = serializers.FloatField(min_value=0, max_value=5_000, default=0, help_text="zones so near to the line are named too")
 
 
 class ZoneAlongSerializer(serializers.Serializer):
-    """A stretch of the line that lies in a zone."""
+    """A stretch of the line that lies in a zone, or as near to it as was asked."""
 
     id = serializers.IntegerField()
     name = serializers.CharField()

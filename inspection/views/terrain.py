@@ -110,7 +110,7 @@ class Profile(APIView):
                 "step_m": round(float(np.diff(found.distance_m).max()), 2),
                 "vertical_datums": sorted({model.vertical_datum for model in models}),
                 "sources": sorted({model.data_import.file_name for model in models}),
-                "zones": [zone_along_json(stretch) for stretch in zones_along(line)],
+                "zones": [zone_along_json(stretch) for stretch in zones_along(line, body.validated_data["near_m"])],
             }
         )
 

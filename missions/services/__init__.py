@@ -29,6 +29,8 @@ from missions.services.plan_json import FLAT_GROUND, TERRAIN_MODEL
 from missions.services.planning import GraphOutdated, make_plan
 from missions.services.requests import InvalidRequest, PlanRequest, TargetRequest, UavRequest, request_from_json, request_to_json
 from missions.services.uavs import change_uav, create_uav, delete_uav, restore_uav
+from missions.services.why_route import explain_route
+from missions.services.why_target import explain_unreached_target
 
 __all__ = [
     "FLAT_GROUND",
@@ -60,6 +62,8 @@ __all__ = [
     "delete_uav",
     "delete_uav_type",
     "duplicate_mission",
+    "explain_route",
+    "explain_unreached_target",
     "make_credential",
     "make_plan",
     "mavlink_signing_key",

@@ -45,7 +45,7 @@ def make_plan(
     uavs = [number for number in range(len(request.uavs)) if number not in grounded]
 
     on_progress(0.05, "Measuring the ways between the targets")
-    visits, courses = _visits(places)
+    visits, courses = visits_of_places(places)
     ways = ways_between(
         scene.graph,
         scene.zones,
@@ -106,7 +106,7 @@ def end_action(request: PlanRequest, uav: int) -> EndAction:
     return EndAction.RETURN if request.return_to_start else request.uavs[uav].end_action
 
 
-def _visits(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
+def visits_of_places(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
     """The ways of doing each place, with the course of each: a stretch can be flown from either end."""
     visits, courses = [], []
     for number, place in enumerate(places):

@@ -18,7 +18,10 @@ CURATED = re.compile(
     r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|gaps|geometry-checks|uploads|imports|terrain|regions)(/|$)"
 )
 # a POST because the question is long; nothing is stored
-ASKED_BY_ALL = {"terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "report_presence"}
+ASKED_BY_ALL = {
+    "terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "report_presence",
+    "explain_unreached_target", "explain_route",
+}  # fmt: skip
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(people|invitations|sign-ins)(/|$)")
 ONES_OWN = re.compile(r"/api/v1/account(/|$)")

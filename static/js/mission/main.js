@@ -5,25 +5,34 @@ import { byId } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountWorkbench } from "../page/workbench.js";
 import { createHistory, createStore } from "../store.js";
+import { t } from "../text.js";
 import { createActions } from "./actions.js";
 import { createDrafts } from "./draft.js";
+import { standingUavs } from "./fleet.js";
 import { mountMap } from "./map_panel.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFoot } from "./panels/foot.js";
 import { mountHeader } from "./panels/header.js";
 import { mountOptions } from "./panels/options.js";
 import { mountOptionsRead } from "./panels/options_read.js";
+import { mountProfile } from "./panels/profile.js";
 import { mountRoutes } from "./panels/routes.js";
+import { askForList } from "./panels/paste_list.js";
+import { showSelections } from "./panels/saved_selections.js";
 import { mountTargets } from "./panels/targets.js";
+import { mountTools } from "./panels/tools.js";
 import { mountUavs } from "./panels/uavs.js";
+import { mountWhy } from "./panels/why.js";
 import { isUnsaved } from "./plan_view.js";
+import { createGrounds } from "./profile.js";
 import { EMPTY, uavOf } from "./selection.js";
 
 const page = readPage();
 const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
-  tool: "point", litTarget: null, chosenTarget: null, lookedAt: null, chosenRoute: null,
+  lastPlan: null, planningBeside: null, why: null, along: null,
+  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null,
 });
 const history = createHistory(store, "selection");
 const drafts = createDrafts({ user: page.userId, editor: crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` });
@@ -39,18 +48,26 @@ uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre
 if (page.canPlan) mountOptions(store, actions, page.canPlan);
 else mountOptionsRead(store);
 mountFoot(store, actions);
-mountRoutes(store, { onAlong: (position) => map.showPoint(position) });
+const grounds = createGrounds();
+mountRoutes(store, { grounds, showPoint: (position) => map.showPoint(position) });
+mountProfile(store, { grounds });
+mountWhy(store, actions, { canPlan: page.canPlan });
 const finder = mountFinder({
   canPlan: page.canPlan,
   box: () => map.box(),
   show: (feature) => map.show(targetOfFeature(feature)),
   add: (feature) => actions.addTargets([targetOfFeature(feature)]),
+  addAll: (features) => actions.addMany(features.map(targetOfFeature), (added) => t("{added} from the search.", { added })),
+  things: () => standingUavs(store.state).map(({ name, base_name, position }) => ({ name, position, icon: "uav", detail: base_name })),
+  goTo: (place) => map.goTo(place),
 });
+if (page.canPlan) mountTools(store, { pasteList: () => askForList(actions), savedSelections: () => showSelections(store, actions) });
 
 startChrome({
   bindings: [
     { keys: ["/"], words: "Find an asset", act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
+    ...map.bindings,
     { keys: ["f"], words: "Fit the mission", act: () => map.fit() },
     { keys: ["+", "="], words: "Zoom in", act: () => map.zoom(1) },
     { keys: ["-"], words: "Zoom out", act: () => map.zoom(-1) },
@@ -70,25 +87,29 @@ function planningKeys() {
     { keys: ["mod+s"], words: "Save", whileTyping: true, act: () => void actions.save() },
     { keys: ["mod+z"], words: "Undo", act: actions.undo },
     { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: actions.redo },
-    { keys: ["delete", "backspace"], words: "Remove the chosen target", act: removeChosen },
+    { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
     { keys: ["v"], words: "Pick points", act: choose("point") },
     { keys: ["b"], words: "Pick by box", act: choose("box") },
+    { keys: ["o"], words: t("Draw round what is picked"), act: choose("lasso") },
     { keys: ["w"], words: "Pick whole lines", act: choose("line") },
+    { keys: ["t"], words: t("Pick a stretch between two towers"), act: choose("stretch") },
+    { keys: ["i"], words: t("Paste a list"), act: () => void askForList(actions) },
   ];
 }
 
 function removeChosen() {
-  const key = store.state.chosenTarget;
-  if (!key) return false;
-  actions.removeTargets([key]);
+  const { chosenTargets } = store.state;
+  if (!chosenTargets.length) return false;
+  actions.removeTargets(chosenTargets);
   return true;
 }
 
 function escape() {
   if (map.closeTop()) return;
-  if (store.state.problem) store.update({ problem: null });
+  if (store.state.why) store.update({ why: null });
+  else if (store.state.problem) store.update({ problem: null });
   else if (store.state.tool !== "point") store.update({ tool: "point" });
-  else store.update({ chosenTarget: null, chosenRoute: null });
+  else store.update({ chosenTarget: null, chosenTargets: [], chosenRoute: null });
 }
 
 function placeInTheMiddle() {

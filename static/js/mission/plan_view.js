@@ -1,22 +1,25 @@
 /** What a plan means for the page: letters, numbers, sentences. Values in, values out. */
 
 import { routeLetter } from "../map/palette.js";
-import { countText, durationText, lengthText } from "../units.js";
+import { t, tn } from "../text.js";
+import { durationText, lengthText } from "../units.js";
 import { basisOf } from "./selection.js";
 
 const REASONS = {
-  no_path: "No way along the network leads there.",
-  inside_zone: "It stands inside a no-fly zone.",
-  beyond_range: "It is out of range.",
-  too_far_from_network: "It is too far from the network.",
-  above_height_limit: "It is higher than may be flown.",
-  asset_gone: "It is no longer in the data.",
+  no_path: t("No way along the network leads there."),
+  inside_zone: t("It stands inside a no-fly zone."),
+  beyond_range: t("It is out of range."),
+  too_far_from_network: t("It is too far from the network."),
+  above_height_limit: t("It is higher than may be flown."),
+  asset_gone: t("It is no longer in the data."),
 };
 
 export const OBJECTIVES = [
-  { value: "makespan", words: "Even routes", meaning: "The longest route as short as possible" },
-  { value: "total", words: "Fly least", meaning: "All routes together as short as possible" },
+  { value: "makespan", words: t("Even routes"), meaning: t("The longest route as short as possible") },
+  { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
 ];
+
+export const otherObjective = (objective) => (objective === "total" ? "makespan" : "total");
 
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
 export function routesOf(plan) {
@@ -51,7 +54,7 @@ export function unreachedOf(plan) {
   return plan.result.unassigned.map((entry) => ({
     target: plan.targets[entry.target],
     reason: entry.reason,
-    sentence: entry.message || REASONS[entry.reason] || "No route visits it.",
+    sentence: entry.message || REASONS[entry.reason] || t("No route visits it."),
   }));
 }
 
@@ -69,32 +72,48 @@ export function sentenceOf(plan) {
   const { routes, unassigned, total_length_m } = plan.result;
   const flying = routes.filter((route) => route.geometry).length;
   const visited = plan.targets.length - unassigned.length;
-  if (!flying) return { sentence: "No target can be reached", facts: countText(plan.targets.length, "target") };
-  const reached = unassigned.length ? `${visited} of ${countText(plan.targets.length, "target")}` : `all ${countText(visited, "target")}`;
-  const ends = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start) ? "Done in" : "All back in";
-  return { sentence: `${ends} ${durationText(longestDuration_s(plan.result))}`, facts: `${reached} · ${countText(flying, "UAV")} · ${lengthText(total_length_m)}` };
+  if (!flying) return { sentence: t("No target can be reached"), facts: tn(plan.targets.length, "{count} target", "{count} targets") };
+  const reached = unassigned.length
+    ? tn(plan.targets.length, "{visited} of {count} target", "{visited} of {count} targets", { visited })
+    : tn(visited, "all {count} target", "all {count} targets");
+  const time = durationText(longestDuration_s(plan.result));
+  const endsAfield = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start);
+  const sentence = endsAfield ? t("Done in {time}", { time }) : t("All back in {time}", { time });
+  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m)].join(" · ") };
 }
 
 /** How a route's flight ends: "ends hovering at A2". */
 export function endingOf({ end_action, letter, targets }) {
-  if (end_action === "return") return "returns to start";
+  if (end_action === "return") return t("returns to start");
   const last = `${letter}${targets.length}`;
-  return end_action === "land" ? `lands at ${last}` : `ends hovering at ${last}`;
+  return end_action === "land" ? t("lands at {target}", { target: last }) : t("ends hovering at {target}", { target: last });
 }
 
 /** The same for what is picked, before it is planned. */
 export function endingsOf({ return_to_start, uavs }) {
-  if (return_to_start) return "Each UAV flies back to where it took off";
+  if (return_to_start) return t("Each UAV flies back to where it took off");
   const actions = new Set(uavs.map((uav) => uav.end_action));
-  if (actions.size === 1 && actions.has("hover")) return "Each UAV ends hovering at its last target";
-  if (actions.size === 1 && actions.has("land")) return "Each UAV lands at its last target";
-  if (actions.size === 1 && actions.has("return")) return "Each UAV of this mission is set to fly back all the same";
-  return actions.size ? "Each UAV ends as set for it, see its row" : "Each UAV ends at its last target";
+  if (actions.size === 1 && actions.has("hover")) return t("Each UAV ends hovering at its last target");
+  if (actions.size === 1 && actions.has("land")) return t("Each UAV lands at its last target");
+  if (actions.size === 1 && actions.has("return")) return t("Each UAV of this mission is set to fly back all the same");
+  return actions.size ? t("Each UAV ends as set for it, see its row") : t("Each UAV ends at its last target");
 }
 
 export function stripLabel(route, targets) {
-  const names = route.targets.map((target, index) => `${index + 1} ${targets[target]?.label ?? "target"}`).join(", ");
-  return `${route.name} flies ${lengthText(route.length_m)} in ${durationText(route.duration_s)} and ${endingOf(route)}: ${names || "no targets"}.`;
+  const names = route.targets.map((target, index) => `${index + 1} ${targets[target]?.label ?? t("Target")}`).join(", ");
+  const values = { name: route.name, length: lengthText(route.length_m), time: durationText(route.duration_s), ending: endingOf(route), targets: names || t("no targets") };
+  return t("{name} flies {length} in {time} and {ending}: {targets}.", values);
+}
+
+/** The plan to compare the present one with: the one before it on the page, else the one that the mission remembers. */
+export function lastPlanOf({ lastPlan, mission }) {
+  return lastPlan ?? mission?.last_plan ?? null;
+}
+
+/** Whose profile and reasons are shown where nobody has chosen: the longest route's. Null where nobody flies. */
+export function shownRoute({ plan, lookedAt, chosenRoute }) {
+  const flown = routesOf(plan).filter((route) => route.geometry);
+  return [lookedAt, chosenRoute].map((sequence) => flown.find((route) => route.sequence === sequence)).find(Boolean) ?? flown.sort((a, b) => b.length_m - a.length_m)[0] ?? null;
 }
 
 /** Whether the plan on the page is the plan of what is picked. */

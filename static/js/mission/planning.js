@@ -1,30 +1,39 @@
-/** Planning what is picked, following the job where it is a large one, and stopping it. */
+/** Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and stopping it. */
 
 import { follow, post } from "../api.js";
 import { say, toast } from "../page/toast.js";
-import { countText } from "../units.js";
-import { sentenceOf, unreachedOf } from "./plan_view.js";
+import { t, tn } from "../text.js";
+import { isSamePlan, summaryOfPlan } from "./compare.js";
+import { otherObjective, sentenceOf, unreachedOf } from "./plan_view.js";
 import * as picks from "./selection.js";
+
+const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
 
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
 export function planOf(result, selection) {
   return { result, basis: picks.basisOf(selection), targets: selection.targets, uavs: selection.uavs };
 }
 
+/** Results by what they were made for; the oldest go. */
+export function withResult(figures, basis, result) {
+  const rest = Object.entries(figures).filter(([known]) => known !== basis);
+  return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
+}
+
 /** context: see actions.js. `running.stopping` is the AbortController of what is being waited for. */
-export function createPlanning({ store, selection, problem, failed, running }) {
+export function createPlanning({ store, selection, change, problem, failed, running }) {
   async function waitForJob(jobId, what) {
     const job = await follow(jobId, {
       signal: running.stopping?.signal,
-      onProgress: (at) => store.update({ planning: { what: at.message || what, share: at.progress, job: jobId } }),
+      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.progress, job: jobId } }),
     });
     if (job.state === "cancelled" && !job.result) throw new DOMException("stopped", "AbortError");
     return job;
   }
 
   function missing() {
-    if (!selection().targets.length) return ["Nothing picked yet.", "Click a tower, bridge or track on the map, then plan."];
-    if (!selection().uavs.length) return ["No UAV is chosen.", "Tick one in the list, or add the first one."];
+    if (!selection().targets.length) return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
+    if (!selection().uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
     return null;
   }
 
@@ -36,20 +45,23 @@ export function createPlanning({ store, selection, problem, failed, running }) {
       return;
     }
     const asked = selection();
-    const what = `Planning ${countText(asked.targets.length, "target")}`;
+    const what = tn(asked.targets.length, "Planning {count} target", "Planning {count} targets");
+    aside.stop();
     running.stopping = new AbortController();
-    store.update({ planning: { what, share: null, job: null }, problem: null });
+    store.update({ planning: { what, share: null, job: null, isStopping: false }, problem: null });
     try {
       const answer = await post("/plans", picks.requestOf(asked), { signal: running.stopping.signal });
       const result = answer.status === 202 ? (await waitForJob(answer.data.job, what)).result : answer.data;
       const made = planOf(result, asked);
-      store.update({ plan: made, figures: { ...store.state.figures, [made.basis]: result }, planIsStored: false, chosenRoute: null });
+      if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
+      store.update({ plan: made, figures: withResult(store.state.figures, made.basis, result), planIsStored: false, chosenRoute: null, why: null });
       const { sentence, facts } = sentenceOf(made);
       const unreached = unreachedOf(made).length;
-      say(`${sentence}. ${facts}.${unreached ? ` ${countText(unreached, "target is", "targets are")} not reached.` : ""}`);
+      say([`${sentence}. ${facts}.`, unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached.")].filter(Boolean).join(" "));
+      aside.start(asked);
     } catch (error) {
-      if (error.name === "AbortError") toast("Planning stopped. Nothing was changed.");
-      else failed("Not planned.", error, [{ label: "Plan again", act: plan }]);
+      if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
+      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }]);
     } finally {
       running.stopping = null;
       store.update({ planning: null });
@@ -58,13 +70,94 @@ export function createPlanning({ store, selection, problem, failed, running }) {
 
   async function stop() {
     const job = store.state.planning?.job;
-    try {
-      if (job) await post(`/jobs/${job}/cancel`, {});
-    } catch (error) {
-      if (error.status !== 409) failed("Not stopped.", error); // 409: it ended by itself
+    if (!job) {
+      running.stopping?.abort();
+      return;
     }
-    if (!job) running.stopping?.abort();
+    store.update({ planning: { ...store.state.planning, isStopping: true } });
+    try {
+      await post(`/jobs/${job}/cancel`, {});
+    } catch (error) {
+      if (error.status === 409) return; // it ended by itself
+      if (store.state.planning) store.update({ planning: { ...store.state.planning, isStopping: false } });
+      failed(t("Not stopped."), error);
+    }
   }
 
-  return { plan, stop, waitForJob };
+  const aside = planBeside(store);
+
+  // A selection that has been planned before, by undo or by the other objective, shows its plan again.
+  store.listen(["selection"], (state) => {
+    const basis = picks.basisOf(state.selection);
+    const known = state.figures[basis];
+    if (known && state.plan && state.plan.basis !== basis) {
+      store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: null });
+    }
+    aside.keepOnlyFor(state.selection);
+  });
+
+  let shown = null; // the plan on the page in short
+  store.listen(["plan"], ({ plan: now }) => {
+    if (!now) return;
+    const summary = summaryOfPlan(now);
+    if (shown && !isSamePlan(shown, summary)) store.update({ lastPlan: shown });
+    shown = summary;
+  });
+
+  /** A line of which only parts can be flown becomes these parts. */
+  function replaceByStretches(target, stretches) {
+    const parts = stretches.map((stretch) => {
+      const part = { ...target, position: null, stretch, centre: stretch[0] };
+      return { ...part, key: picks.keyOf(part) };
+    });
+    store.update({ why: null });
+    change({ ...selection(), targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])) });
+  }
+
+  return { plan, stop, replaceByStretches, waitForJob };
+}
+
+/** The same by the other objective, planned behind the page: its figures stand in the choice, and one click shows it. */
+function planBeside(store) {
+  let stopping = null;
+  let job = null;
+
+  function stop() {
+    stopping?.abort();
+    if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+    [stopping, job] = [null, null];
+    store.update({ planningBeside: null });
+  }
+
+  async function start(asked) {
+    const other = { ...asked, objective: otherObjective(asked.objective) };
+    const basis = picks.basisOf(other);
+    if (store.state.figures[basis]) return;
+    const own = new AbortController();
+    stopping = own;
+    store.update({ planningBeside: basis });
+    try {
+      const answer = await post("/plans", picks.requestOf(other), { signal: own.signal });
+      if (answer.status === 202) job = answer.data.job;
+      const result = job ? (await follow(job, { signal: own.signal })).result : answer.data;
+      if (result) store.update({ figures: withResult(store.state.figures, basis, result) });
+    } catch (error) {
+      if (error.name !== "AbortError") say(t("The other way of planning has no figures: {reason}", { reason: error.message }));
+    } finally {
+      if (stopping === own) {
+        [stopping, job] = [null, null];
+        store.update({ planningBeside: null });
+      }
+    }
+  }
+
+  return {
+    start,
+    stop,
+    keepOnlyFor(selection) {
+      const { planningBeside } = store.state;
+      const wanted = ["total", "makespan"].map((objective) => picks.basisOf({ ...selection, objective }));
+      if (planningBeside && !wanted.includes(planningBeside)) stop();
+    },
+  };
 }

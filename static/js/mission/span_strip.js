@@ -1,7 +1,8 @@
 /** The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets, pills several of them. */
 
 import { h, svg } from "../dom.js";
-import { lengthText } from "../units.js";
+import { t } from "../text.js";
+import { lengthText, LONG_UNIT, numberText } from "../units.js";
 
 const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const TICK_SPACING_PX = 3.5;
@@ -41,10 +42,18 @@ export function profileOf(waypoints, length_m) {
   return { places, legs, targets, ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end") };
 }
 
+/** The axis that strips and the profile share: distance flown [m] to px, and back. */
+export function scaleOf(longest_m, width_px) {
+  const room = width_px - 2 * EDGE_PX;
+  return {
+    x: (distance_m) => EDGE_PX + (longest_m > 0 ? (distance_m / longest_m) * room : 0),
+    distanceAt: (x) => (room > 0 ? ((x - EDGE_PX) / room) * longest_m : 0),
+  };
+}
+
 /** Places in px: ticks thinned, targets pushed apart when they would touch, and merged into one pill where that would push them far. */
 export function layOut(profile, longest_m, width_px) {
-  const room = width_px - 2 * EDGE_PX;
-  const x = (distance) => EDGE_PX + (longest_m > 0 ? (distance / longest_m) * room : 0);
+  const { x } = scaleOf(longest_m, width_px);
   const ticks = [];
   for (const distance of profile.ticks) {
     if (!ticks.length || x(distance) - ticks.at(-1) >= TICK_SPACING_PX) ticks.push(x(distance));
@@ -102,60 +111,90 @@ export function positionAt(waypoints, places, distance) {
   return [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share];
 }
 
-/** Round figures for the axis, in km: at most six. */
-export function axisTicks(longest_m) {
-  const longest_km = longest_m / 1000;
-  if (!(longest_km > 0)) return [0];
-  const rough = longest_km / 5;
+/** Round figures for the axis, in the reader's long unit (km): at most six. */
+export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
+  const longest = longest_m / unit_m;
+  if (!(longest > 0)) return [0];
+  const rough = longest / 5;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough);
-  return Array.from({ length: Math.floor(longest_km / step + 1e-9) + 1 }, (_, index) => Number((index * step).toPrecision(6)));
+  return Array.from({ length: Math.floor(longest / step + 1e-9) + 1 }, (_, index) => Number((index * step).toPrecision(6)));
 }
 
-/** strip({ waypoints, length_m, longest_m, width_px, label, names, onAlong }) → SVG element */
-export function spanStrip({ waypoints, length_m, longest_m, width_px, label, onAlong }) {
+/** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name }].
+ *
+ * Returns { element, point(metres or null), light(target or null) }; positionAt gives the place on the map.
+ */
+export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], onAlong, onTarget }) {
   const profile = profileOf(waypoints, length_m);
-  const plan = layOut(profile, longest_m, width_px);
-  const mark = (x) => svg("rect", { x: x - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
+  const { element, plan, x } = drawing({ profile, longest_m, width_px, label, zones, onTarget });
+  const { distanceAt } = scaleOf(longest_m, width_px);
   const cursor = svg("line", { y1: 0, y2: HEIGHT_PX, class: "strip-cursor", visibility: "hidden" });
-  const drawing = svg(
+  element.append(cursor);
+  element.addEventListener("pointermove", (event) => {
+    const at = Math.min(plan.end, Math.max(plan.start, event.clientX - element.getBoundingClientRect().left));
+    onAlong?.(Math.min(length_m, Math.max(0, distanceAt(at))));
+  });
+  element.addEventListener("pointerleave", () => onAlong?.(null));
+  return {
+    element,
+    point(at_m) {
+      cursor.setAttribute("visibility", at_m === null ? "hidden" : "visible");
+      if (at_m === null) return;
+      cursor.setAttribute("x1", x(at_m));
+      cursor.setAttribute("x2", x(at_m));
+    },
+    light(target) {
+      for (const pill of element.querySelectorAll(".strip-target")) pill.classList.toggle("lit", target !== null && pill.dataset.targets.split(" ").includes(`${target}`));
+    },
+    positionAt: (at_m) => positionAt(waypoints, profile.places, at_m),
+  };
+}
+
+/** A strip of a plan in short, without a pointer: the same drawing, pale. */
+export function paleStrip({ profile, longest_m, width_px, label }) {
+  const { element } = drawing({ profile, longest_m, width_px, label, zones: [] });
+  element.classList.add("pale");
+  return element;
+}
+
+function drawing({ profile, longest_m, width_px, label, zones, onTarget }) {
+  const plan = layOut(profile, longest_m, width_px);
+  const { x } = scaleOf(longest_m, width_px);
+  const mark = (at) => svg("rect", { x: at - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
+  const element = svg(
     "svg",
     { class: "strip", role: "img", "aria-label": label, width: width_px, height: HEIGHT_PX, viewBox: `0 0 ${width_px} ${HEIGHT_PX}` },
-    plan.ticks.map((x) => svg("line", { x1: x, x2: x, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" })),
+    zones.map(({ from_m, to_m, name }) => svg("rect", { class: "strip-zone", x: x(from_m), y: MIDDLE_PX - 10, width: Math.max(3, x(to_m) - x(from_m)), height: 20 }, svg("title", {}, name))),
+    plan.ticks.map((at) => svg("line", { x1: at, x2: at, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" })),
     plan.legs.map((leg) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: leg.offNetwork ? "strip-leg off" : "strip-leg" })),
     mark(plan.start),
     mark(plan.end),
-    plan.pills.map(({ x, width, label: numbers }) =>
-      svg("g", { class: "strip-target" }, svg("rect", { x: x - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, numbers)),
-    ),
-    cursor,
+    plan.pills.map(({ x: at, width, label: numbers, targets }) => {
+      const pill = svg("g", { class: "strip-target" }, svg("rect", { x: at - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x: at, y: MIDDLE_PX + 4 }, numbers));
+      pill.dataset.targets = targets.join(" ");
+      if (onTarget) {
+        pill.addEventListener("pointerenter", () => onTarget(targets[0]));
+        pill.addEventListener("pointerleave", () => onTarget(null));
+      }
+      return pill;
+    }),
   );
-  drawing.addEventListener("pointermove", (event) => {
-    const x = Math.min(plan.end, Math.max(plan.start, event.clientX - drawing.getBoundingClientRect().left));
-    const at = plan.end > plan.start ? ((x - plan.start) / (plan.end - plan.start)) * length_m : 0;
-    cursor.setAttribute("x1", x);
-    cursor.setAttribute("x2", x);
-    cursor.setAttribute("visibility", "visible");
-    onAlong?.(positionAt(waypoints, profile.places, at));
-  });
-  drawing.addEventListener("pointerleave", () => {
-    cursor.setAttribute("visibility", "hidden");
-    onAlong?.(null);
-  });
-  return drawing;
+  return { element, plan, x };
 }
 
 /** The axis under a list of strips. */
 export function stripAxis(longest_m, width_px) {
-  const room = width_px - 2 * EDGE_PX;
+  const { x } = scaleOf(longest_m, width_px);
   const ticks = axisTicks(longest_m);
+  const digits = Math.max(0, ...ticks.map((tick) => (`${tick}`.split(".")[1] ?? "").length));
   return svg(
     "svg",
     { class: "strip-axis", width: width_px, height: 22, "aria-hidden": "true" },
-    ticks.map((tick_km, index) => {
-      const x = EDGE_PX + ((tick_km * 1000) / longest_m) * room;
-      const isLast = index === ticks.length - 1;
-      return [svg("line", { x1: x, x2: x, y1: 0, y2: 4 }), svg("text", { x, y: 16 }, isLast ? `${tick_km} km` : `${tick_km}`)];
+    ticks.map((tick, index) => {
+      const at = x(tick * LONG_UNIT.metres);
+      const figure = numberText(tick, Number.isInteger(tick) ? 0 : digits);
+      return [svg("line", { x1: at, x2: at, y1: 0, y2: 4 }), svg("text", { x: at, y: 16 }, index === ticks.length - 1 ? `${figure}\u00a0${LONG_UNIT.unit}` : figure)];
     }),
   );
 }
@@ -166,12 +205,12 @@ export function stripTable({ waypoints, length_m, targets, name }) {
   return h(
     "table",
     { class: "unseen" },
-    h("caption", {}, `Route of ${name}`),
-    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Target"), h("th", { scope: "col" }, "Distance flown"))),
+    h("caption", {}, t("Route of {name}", { name })),
+    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("Target")), h("th", { scope: "col" }, t("Distance flown")))),
     h(
       "tbody",
       {},
-      profile.targets.map(({ target, at }) => h("tr", {}, h("td", {}, targets[target]?.label ?? "Target"), h("td", {}, lengthText(at)))),
+      profile.targets.map(({ target, at }) => h("tr", {}, h("td", {}, targets[target]?.label ?? t("Target")), h("td", {}, lengthText(at)))),
     ),
   );
 }

@@ -1,6 +1,7 @@
 /** The one primary button, saving, and how far a long plan has come. */
 
 import { byId } from "../../dom.js";
+import { t } from "../../text.js";
 import { percentText } from "../../units.js";
 import { isUnsaved } from "../plan_view.js";
 
@@ -13,15 +14,18 @@ export function mountFoot(store, actions) {
 
   store.listen(["planning", "saving", "plan", "selection", "name", "mission", "planIsStored", "savedBasis"], (state) => {
     const isBusy = state.planning !== null;
-    plan.querySelector("span").textContent = isBusy ? "Planning" : state.plan ? "Plan again" : "Plan";
+    plan.querySelector("span").textContent = isBusy ? t("Planning") : state.plan ? t("Plan again") : t("Plan");
     plan.setAttribute("aria-busy", String(isBusy));
     stop.hidden = !isBusy;
+    stop.textContent = state.planning?.isStopping ? t("Stopping") : state.planning?.job ? t("Stop, keep the best") : t("Stop");
+    stop.setAttribute("aria-busy", String(Boolean(state.planning?.isStopping)));
+    stop.disabled = Boolean(state.planning?.isStopping);
     save.hidden = isBusy;
-    save.textContent = state.saving ? "Saving" : "Save";
+    save.textContent = state.saving ? t("Saving") : t("Save");
     save.setAttribute("aria-busy", String(state.saving));
     const nothing = !isUnsaved(state);
     save.disabled = nothing;
-    save.title = nothing ? (state.mission ? "Everything is saved" : "Nothing to save yet") : "Save (Ctrl+S)";
+    save.title = nothing ? (state.mission ? t("Everything is saved") : t("Nothing to save yet")) : t("Save (Ctrl+S)");
   });
 
   store.listen(["planning"], ({ planning }) => {
@@ -29,7 +33,7 @@ export function mountFoot(store, actions) {
     if (!planning) return;
     const known = planning.share !== null && planning.share !== undefined;
     byId("job-what").textContent = planning.what;
-    byId("job-how-far").textContent = known ? percentText(planning.share * 100) : "";
+    byId("job-how-far").textContent = [planning.job && planning.found !== planning.what ? planning.found : "", known ? percentText(planning.share * 100) : ""].filter(Boolean).join(" · ");
     const bar = byId("job-progress");
     if (known) bar.setAttribute("aria-valuenow", String(Math.round(planning.share * 100)));
     else bar.removeAttribute("aria-valuenow");

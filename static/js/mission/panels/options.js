@@ -1,29 +1,40 @@
-/** What the plan is to be best at, with the figures of each where they are known, and whether UAVs fly back. */
+/** What the plan is to be best at, both with their figures once they are planned, and whether UAVs fly back. */
 
 import { byId, h } from "../../dom.js";
+import { t } from "../../text.js";
 import { endingsOf, figuresOf, OBJECTIVES } from "../plan_view.js";
 import { basisOf } from "../selection.js";
 
 export function mountOptions(store, actions, canPlan) {
-  const choices = OBJECTIVES.map(({ value, words }) => {
+  const choices = OBJECTIVES.map(({ value, words, meaning }) => {
     const radio = h("input", { type: "radio", name: "objective", value, disabled: !canPlan, onchange: () => actions.setOption("objective", value) });
     const figures = h("small", {});
-    return { value, radio, figures, label: h("label", {}, radio, h("span", { class: "segment" }, h("span", {}, words), figures)) };
+    return { value, radio, figures, label: h("label", { title: meaning }, radio, h("span", { class: "segment" }, h("span", {}, words), figures)) };
   });
-  byId("objective").append(...choices.map((choice) => choice.label));
+  const group = byId("objective");
+  group.append(...choices.map((choice) => choice.label));
+  const home = byId("objective-before-plan");
   const meaning = h("p", { class: "caption objective-meaning" });
-  byId("objective").after(meaning);
+  home.after(meaning);
 
   const back = byId("return-to-start");
   const ending = back.closest("label").querySelector("small");
   back.disabled = !canPlan;
   back.addEventListener("change", () => actions.setOption("return_to_start", back.checked));
 
-  store.listen(["selection", "figures"], ({ selection, figures }) => {
+  /** Beside the routes once there are some: the choice is then between two results. */
+  function settle({ plan }) {
+    const place = plan ? byId("objective-of-plan") : home;
+    if (group.parentElement !== place) place.append(group);
+    meaning.hidden = Boolean(plan);
+  }
+
+  store.listen(["plan"], settle);
+  store.listen(["selection", "figures", "planningBeside", "plan"], ({ selection, figures, planningBeside, plan }) => {
     for (const choice of choices) {
       choice.radio.checked = selection.objective === choice.value;
-      const known = figures[basisOf({ ...selection, objective: choice.value })];
-      choice.figures.textContent = known ? figuresOf(known) : "";
+      const basis = basisOf({ ...selection, objective: choice.value });
+      choice.figures.textContent = figures[basis] ? figuresOf(figures[basis]) : planningBeside === basis ? t("planning") : plan ? t("not planned") : "";
     }
     meaning.textContent = OBJECTIVES.find(({ value }) => value === selection.objective)?.meaning ?? "";
     back.checked = selection.return_to_start;

@@ -1,53 +1,86 @@
-/** The dock: the sentence, then a strip for each UAV, all on one axis. */
+/** The dock: the sentence, then a strip for each UAV, all on one axis; on request the strip of the plan before under each. */
 
 import { byId, h } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
-import { countText, durationText, lengthText } from "../../units.js";
-import { endingOf, isPlanCurrent, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
-import { spanStrip, stripAxis, stripTable } from "../span_strip.js";
+import { t, tn } from "../../text.js";
+import { durationText, lengthText } from "../../units.js";
+import { counterpart, profileOfSummary } from "../compare.js";
+import { endingOf, isPlanCurrent, lastPlanOf, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
+import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
-const NAME_PX = 152; // as in mission.css
+const BESIDE_PX = 152 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
+const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
 /** One whose start lies in a zone; the notice and the row of the UAV say which. */
 const isGrounded = ({ result }, { sequence }) => (result.warnings ?? []).some(({ code, uav }) => code === "uav_inside_zone" && uav === sequence);
 
-export function mountRoutes(store, { onAlong }) {
+/** "+1.2 km", "−3 min", "=": more or less than before. */
+export function moreOrLess(difference, least, textOf) {
+  if (Math.abs(difference) < least) return "=";
+  return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
+}
+
+/** Room for a strip: what the grid leaves beside name and figures. On a phone all of it. */
+export function stripRoom(dock) {
+  const room = dock.querySelector(".dock-main").clientWidth;
+  return Math.max(160, matchMedia("(max-width: 720px)").matches ? room - 32 : room - BESIDE_PX);
+}
+
+export function mountRoutes(store, { grounds, showPoint }) {
   const dock = byId("dock");
   const list = byId("route-list");
+  const strips = new Map(); // sequence → what spanStrip gives
+  const zonesOf = new WeakMap(); // waypoints of a route → stretches beside zones
   let width_px = 0;
 
-  function row(route, state) {
+  function row(route, state, before) {
     const isUsed = Boolean(route.geometry);
     const look = () => store.update({ lookedAt: route.sequence });
     const leave = () => store.update({ lookedAt: null });
+    const old = before && counterpart(route, before);
+    const second = isUsed ? `${tn(route.targets.length, "{count} target", "{count} targets")} · ${endingOf(route)}` : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
+    const delta = (words) => old && h("small", {}, words);
     return h(
       "li",
       { class: `route route-${routeNumber(route.sequence)}`, dataset: { sequence: route.sequence }, onpointerenter: look, onpointerleave: leave, onfocusin: look, onfocusout: leave },
       h(
         "button",
-        { type: "button", class: "who", disabled: !isUsed, onclick: () => store.update({ chosenRoute: store.state.chosenRoute === route.sequence ? null : route.sequence }) },
+        { type: "button", class: "who", disabled: !isUsed, "aria-pressed": String(state.chosenRoute === route.sequence), title: second, onclick: () => store.update({ chosenRoute: store.state.chosenRoute === route.sequence ? null : route.sequence }) },
         h("span", { class: "letter" }, route.letter),
-        h(
-          "span",
-          {},
-          h("strong", {}, route.name),
-          isUsed && h("small", { class: "desk-line" }, countText(route.targets.length, "target")),
-          h("small", {}, isUsed ? endingOf(route) : isGrounded(state.plan, route) ? "cannot take off" : "not needed"),
-        ),
+        h("span", {}, h("strong", {}, route.name), h("small", {}, second)),
       ),
-      h("div", { class: "strip-place" }, isUsed && strip(route, state)),
-      h("span", { class: "figure" }, isUsed ? lengthText(route.length_m) : "—"),
-      h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—"),
+      h("div", { class: "strip-place" }, isUsed && strip(route, state, longest(state, before)), old?.length_m > 0 && oldStrip(old, longest(state, before))),
+      h("span", { class: "figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
+      h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText))),
+      isUsed &&
+        h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?")),
     );
   }
 
-  function strip(route, { plan }) {
-    const { result, targets } = plan;
+  function longest({ plan }, before) {
+    return Math.max(plan.result.longest_route_m, ...(before?.routes ?? []).map((route) => route.length_m));
+  }
+
+  function strip(route, { plan }, longest_m) {
+    const { targets } = plan;
     const { waypoints, length_m } = route;
-    return [
-      spanStrip({ waypoints, length_m, longest_m: result.longest_route_m, width_px, label: stripLabel(route, targets), onAlong }),
-      h("div", {}, stripTable({ waypoints, length_m, targets, name: route.name })),
-    ];
+    const drawn = spanStrip({
+      waypoints,
+      length_m,
+      longest_m,
+      width_px,
+      label: stripLabel(route, targets),
+      zones: zonesOf.get(waypoints) ?? [],
+      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
+      onTarget: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
+    });
+    strips.set(route.sequence, drawn);
+    return [drawn.element, h("div", {}, stripTable({ waypoints, length_m, targets, name: route.name }))];
+  }
+
+  function oldStrip(old, longest_m) {
+    const words = t("In the last plan {name} flew {length} in {time}.", { name: old.uav, length: lengthText(old.length_m), time: durationText(old.duration_s) });
+    return paleStrip({ profile: profileOfSummary(old), longest_m, width_px, label: words });
   }
 
   function draw(state) {
@@ -55,31 +88,60 @@ export function mountRoutes(store, { onAlong }) {
     if (!state.plan) return;
     const { sentence, facts } = sentenceOf(state.plan);
     byId("plan-sentence").textContent = `${sentence}.`;
-    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · for the selection before`;
-    width_px = measure();
-    list.replaceChildren(...routesOf(state.plan).map((route) => row(route, state)));
-    byId("route-axis").replaceChildren(h("div", {}, stripAxis(state.plan.result.longest_route_m || 1, width_px)));
+    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${t("for the selection before")}`;
+    width_px = stripRoom(dock);
+    const last = lastPlanOf(state);
+    const before = state.why?.compare ? last : null;
+    const compare = byId("compare-plans");
+    compare.hidden = !last;
+    compare.setAttribute("aria-pressed", String(Boolean(before)));
+    strips.clear();
+    const focused = list.contains(document.activeElement) ? [...list.children].findIndex((item) => item.contains(document.activeElement)) : -1;
+    list.replaceChildren(...routesOf(state.plan).map((route) => row(route, state, before)));
+    if (focused >= 0) list.children[focused]?.querySelector("button:not(:disabled)")?.focus({ preventScroll: true });
+    byId("route-axis").replaceChildren(h("div", {}, stripAxis(longest(state, before) || 1, width_px)));
     mark(state);
   }
 
-  /** Room for a strip: what the grid leaves beside name and figures. */
-  function measure() {
-    const room = dock.clientWidth - 32;
-    return Math.max(160, matchMedia("(max-width: 720px)").matches ? room : room - NAME_PX - 2 * 76 - 3 * 12);
-  }
-
-  function mark({ lookedAt, chosenRoute }) {
+  function mark(state) {
     for (const element of list.children) {
       const sequence = Number(element.dataset.sequence);
-      element.classList.toggle("lit", lookedAt === sequence);
-      element.classList.toggle("chosen", chosenRoute === sequence);
+      element.classList.toggle("lit", state.lookedAt === sequence);
+      element.classList.toggle("chosen", state.chosenRoute === sequence);
+      element.querySelector(".who").setAttribute("aria-pressed", String(state.chosenRoute === sequence));
+    }
+    const target = state.plan && state.litTarget ? state.plan.targets.findIndex(({ key }) => key === state.litTarget) : -1;
+    for (const drawn of strips.values()) drawn.light(target < 0 ? null : target);
+  }
+
+  function follow({ along }) {
+    for (const [sequence, drawn] of strips) drawn.point(along?.sequence === sequence ? along.at_m : null);
+    showPoint(along && strips.has(along.sequence) ? strips.get(along.sequence).positionAt(along.at_m) : null);
+  }
+
+  /** Where routes go round zones, once the server has said so. */
+  function lookForZones({ plan }) {
+    for (const route of routesOf(plan).filter(({ geometry }) => geometry).slice(0, MOST_LOOKED_AT)) {
+      if (zonesOf.has(route.waypoints)) continue;
+      grounds(route).then(
+        ({ zones }) => {
+          zonesOf.set(route.waypoints, zones);
+          if (zones.length && store.state.plan === plan) draw(store.state);
+        },
+        () => {}, // the strip stands without them; the profile says what failed
+      );
     }
   }
 
-  store.listen(["plan", "selection"], draw);
-  store.listen(["plan"], () => dock.closest(".side-scroll")?.scrollTo({ top: 0 })); // on a phone the result stands first
-  store.listen(["lookedAt", "chosenRoute"], mark);
+  byId("compare-plans").addEventListener("click", () => store.update({ why: store.state.why?.compare ? null : { compare: true } }));
+  store.listen(["plan", "selection", "why", "lastPlan", "mission"], draw);
+  store.listen(["plan"], (state) => {
+    lookForZones(state);
+    dock.closest(".side-scroll")?.scrollTo({ top: 0 }); // on a phone the result stands first
+  });
+  store.listen(["lookedAt", "chosenRoute", "litTarget"], mark);
+  store.listen(["along"], follow);
   new ResizeObserver(() => {
-    if (store.state.plan && measure() !== width_px) draw(store.state);
-  }).observe(dock);
+    if (store.state.plan && stripRoom(dock) !== width_px) draw(store.state);
+  }).observe(dock.querySelector(".dock-main"));
 }

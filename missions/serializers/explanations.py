@@ -1,0 +1,103 @@
+"""Questions about a plan, and their answers."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from missions.fields import PositionField
+from missions.serializers.inputs import PlanInputSerializer
+
+
+class WhyTargetInputSerializer(PlanInputSerializer):
+    target = serializers.IntegerField(min_value=0, help_text="index of the target")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        attrs = super().validate(attrs)
+        if attrs["target"] >= len(attrs["targets"]):
+            raise serializers.ValidationError({"target": "There is no such target."})
+        return attrs
+
+
+class WhyRouteInputSerializer(PlanInputSerializer):
+    routes = serializers.ListField(
+        child=serializers.ListField(child=serializers.IntegerField(min_value=0)),
+        help_text="for each UAV the indices of its targets in the order of the visits",
+    )
+    uav = serializers.IntegerField(min_value=0, help_text="index of the UAV")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        attrs = super().validate(attrs)
+        visits = [target for route in attrs["routes"] for target in route]
+        if len(attrs["routes"]) != len(attrs["uavs"]) or attrs["uav"] >= len(attrs["uavs"]):
+            raise serializers.ValidationError({"routes": "One list for each UAV is needed."})
+        if len(set(visits)) != len(visits) or any(target >= len(attrs["targets"]) for target in visits):
+            raise serializers.ValidationError({"routes": "Each target can be visited once."})
+        return attrs
+
+
+class ZoneNameSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+
+
+class ReachSerializer(serializers.Serializer):
+    """Whether one UAV could do the target alone."""
+
+    name = serializers.CharField()
+    uav_id = serializers.IntegerField(allow_null=True)
+    is_in_mission = serializers.BooleanField(help_text="false: another UAV of the fleet")
+    is_grounded = serializers.BooleanField(help_text="it stands inside a zone")
+    needed_m = serializers.FloatField(allow_null=True, help_text="the range it needs; null: there is no way")
+    max_range_m = serializers.FloatField(allow_null=True)
+    is_enough = serializers.BooleanField()
+
+
+class TargetExplanationSerializer(serializers.Serializer):
+    target = serializers.IntegerField()
+    reason = serializers.ChoiceField(
+        choices=[
+            "asset_gone", "inside_zone", "above_height_limit", "too_far_from_network", "no_path", "beyond_range", "not_with_the_others",
+        ]
+    )  # fmt: skip
+    zones = ZoneNameSerializer(many=True, help_text="that hold it, or that bar the ways to it")
+    stretches = serializers.ListField(
+        child=serializers.ListField(child=PositionField(), min_length=2, max_length=2),
+        help_text="parts of a line that keep clear of every zone",
+    )
+    network_m = serializers.FloatField(allow_null=True, help_text="to the nearest place of the network")
+    access_limit_m = serializers.FloatField(help_text="how far off the network is flown")
+    height_m = serializers.FloatField(allow_null=True)
+    needed_height_m = serializers.FloatField(allow_null=True, help_text="above ground, to inspect it")
+    height_limit_m = serializers.FloatField()
+    uavs = ReachSerializer(many=True)
+
+
+class ZoneDetourSerializer(ZoneNameSerializer):
+    extra_m = serializers.FloatField(help_text="its part in the detour")
+
+
+class HeaviestSerializer(serializers.Serializer):
+    target = serializers.IntegerField()
+    saves_m = serializers.FloatField(help_text="how much less the route would be without it, in the same order")
+
+
+class AlternativeSerializer(serializers.Serializer):
+    """The nearest thing to another assignment: one target of this route on the route of another UAV."""
+
+    target = serializers.IntegerField()
+    uav = serializers.IntegerField(help_text="index of the other UAV")
+    other_length_m = serializers.FloatField(help_text="what it would fly then")
+    total_change_m = serializers.FloatField(help_text="of both routes together")
+    max_range_m = serializers.FloatField(allow_null=True)
+    is_beyond_range = serializers.BooleanField()
+
+
+class RouteExplanationSerializer(serializers.Serializer):
+    uav = serializers.IntegerField()
+    length_m = serializers.FloatField()
+    straight_m = serializers.FloatField(help_text="from target to target as the crow flies, stretches along the line")
+    on_lines_m = serializers.FloatField(help_text="more, because it keeps to the network")
+    round_zones_m = serializers.FloatField(allow_null=True, help_text="more, because of zones; null: too much to work out")
+    zones = ZoneDetourSerializer(many=True)
+    heaviest = HeaviestSerializer(allow_null=True)
+    alternative = AlternativeSerializer(allow_null=True)

@@ -1,0 +1,226 @@
+"""Why a UAV flies its route: how far it is straight, what keeping to the lines and going round zones costs, and what another would fly."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import shapely
+from django.conf import settings
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.graph.build import build
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.zone_index import ZoneIndex
+from inspection.selectors.ground_data import ground_without_zones
+from missions.flight_plan.flyable_graph import flyable_graph
+from missions.models import EndAction
+from missions.routing.terminals import Terminal, Ways, ways_between
+from missions.services.places import Place, places_of
+from missions.services.planning import current_scene, end_action, visits_of_places
+from missions.services.refusals import Scene, zone_at
+from missions.services.requests import InvalidRequest, PlanRequest
+
+MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
+BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route
+MOST_BOX_DEG = 1.5  # a wider box would take too long to build without its zones
+LEAST_DETOUR_M = 20.0
+
+
+@dataclass(frozen=True)
+class _Field:
+    """The ways of a plan again: visits as the planner numbers them, and the places that they do."""
+
+    places: list[Place]
+    ways: Ways
+    courses: list[tuple[LonLat, ...]]
+    along_m: list[float]
+    visits_of: dict[int, list[int]]  # by the request's number of the target
+    uav_of: dict[int, int]  # from the request's number of the UAV to that of the ways
+
+
+def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int) -> dict[str, Any]:
+    """routes: for each UAV of the request its targets in order. Raises InvalidRequest or NoGraph."""
+    if not routes[uav]:
+        raise InvalidRequest({"uav": "This UAV flies no route."})
+    scene = current_scene()
+    wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
+    field = _field(request, wanted, scene, scene.graph, scene.zones)
+    order = _best_order(request, field, uav, routes[uav])
+    legs_m = _legs_m(request, field, uav, order)
+    straight_m = _straight_m(request, field, uav, order)
+    along_m = sum(field.along_m[visit] for visit in order)
+    detours = _detours(request, scene, uav, routes[uav], legs_m)
+    round_zones_m = None if detours is None else sum(extra_m for extra_m, _ in detours)
+    length_m = sum(legs_m) + along_m
+    return {
+        "uav": uav,
+        "length_m": length_m,
+        "straight_m": sum(straight_m) + along_m,
+        "on_lines_m": max(0.0, length_m - sum(straight_m) - along_m - (round_zones_m or 0.0)),
+        "round_zones_m": round_zones_m,
+        "zones": _zones_met(detours or []),
+        "heaviest": _heaviest(request, field, uav, order, legs_m),
+        "alternative": _alternative(request, field, routes, uav, order) if len(wanted) == sum(map(len, routes)) else None,
+    }
+
+
+def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: InspectionGraph, zones: ZoneIndex) -> _Field:
+    every_place, _ = places_of(request.targets)
+    places = [place for place in every_place if place.target in wanted]
+    visits, courses = visits_of_places(places)
+    flying = [number for number, asked in enumerate(request.uavs) if zone_at(asked.position, scene) is None]
+    ways = ways_between(
+        graph,
+        zones,
+        starts=[Terminal(request.uavs[number].position) for number in flying],
+        entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
+        exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
+        rules=scene.access,
+    )
+    visits_of: dict[int, list[int]] = {}
+    for number, visit in enumerate(visits):
+        visits_of.setdefault(places[visit.target].target, []).append(number)
+    return _Field(places, ways, courses, [visit.length_m for visit in visits], visits_of, {uav: place for place, uav in enumerate(flying)})
+
+
+def _best_order(request: PlanRequest, field: _Field, uav: int, targets: Sequence[int]) -> list[int]:
+    """The visits that do the targets in this order with the fewest metres: a stretch can be flown from either end."""
+    start = _start(field, uav)
+    if any(target not in field.visits_of for target in targets):
+        raise InvalidRequest({"routes": "A target of this route is no longer in the data. Plan again."})
+    best = {visit: (float(field.ways.from_start_m[start, visit]), [visit]) for visit in field.visits_of[targets[0]]}
+    for target in targets[1:]:
+        best = {
+            visit: min((metres + float(field.ways.between_m[last, visit]), [*order, visit]) for last, (metres, order) in best.items())
+            for visit in field.visits_of[target]
+        }
+    home_m = field.ways.to_start_m[:, start] if _returns(request, uav) else np.zeros(len(field.along_m))
+    return min((metres + float(home_m[last]), order) for last, (metres, order) in best.items())[1]
+
+
+def _start(field: _Field, uav: int) -> int:
+    if uav not in field.uav_of:
+        raise InvalidRequest({"uav": "This UAV stands inside a no-fly zone now. Plan again."})
+    return field.uav_of[uav]
+
+
+def _returns(request: PlanRequest, uav: int) -> bool:
+    return end_action(request, uav) is EndAction.RETURN
+
+
+def _legs_m(request: PlanRequest, field: _Field, uav: int, order: Sequence[int]) -> list[float]:
+    """Metres of each leg without the stretches: to each visit, and home if the UAV returns."""
+    start = _start(field, uav)
+    legs_m = [float(field.ways.from_start_m[start, order[0]])]
+    legs_m += [float(field.ways.between_m[left, right]) for left, right in pairwise(order)]
+    return [*legs_m, float(field.ways.to_start_m[order[-1], start])] if _returns(request, uav) else legs_m
+
+
+def _straight_m(request: PlanRequest, field: _Field, uav: int, order: Sequence[int]) -> list[float]:
+    home = request.uavs[uav].position
+    froms = [home, *(field.courses[visit][-1] for visit in order)]
+    tos = [*(field.courses[visit][0] for visit in order), home]
+    legs_m: list[float] = distance_m(np.array(froms), np.array(tos)).tolist()
+    return legs_m if _returns(request, uav) else legs_m[:-1]
+
+
+def _detours(
+    request: PlanRequest, scene: Scene, uav: int, targets: Sequence[int], legs_m: Sequence[float]
+) -> list[tuple[float, list[tuple[int, str]]]] | None:
+    """For each leg the metres that zones cost it, and the zones that bar its shorter way; None where that is too much to work out."""
+    positions = [
+        request.uavs[uav].position,
+        *(at for place in places_of(request.targets)[0] if place.target in targets for at in place.course),
+    ]
+    (west, south), (east, north) = np.min(positions, axis=0) - BOX_MARGIN_DEG, np.max(positions, axis=0) + BOX_MARGIN_DEG
+    near = [polygon for polygon in scene.zones.polygons if shapely.box(west, south, east, north).intersects(polygon)]
+    if not near:
+        return [(0.0, []) for _ in legs_m]
+    if max(east - west, north - south) > MOST_BOX_DEG:
+        return None
+    graph = flyable_graph(build(ground_without_zones((west, south, east, north)), settings.GRAPH_RULES).graph, scene.flight)
+    own = PlanRequest((request.uavs[uav],), request.targets, request.objective, request.return_to_start)
+    field = _field(own, set(targets), scene, graph, ZoneIndex([], [], []))
+    order = _best_order(own, field, 0, targets)
+    free_m = _legs_m(own, field, 0, order)
+    froms = [request.uavs[uav].position, *(field.courses[visit][-1] for visit in order)]
+    tos = [*(field.courses[visit][0] for visit in order), request.uavs[uav].position]
+    nodes = [field.ways.out(0, order[0]), *(field.ways.onward(left, right) for left, right in pairwise(order))]
+    if len(free_m) > len(nodes):
+        nodes.append(field.ways.home(order[-1], 0))
+    found = []
+    for flown_m, least_m, start, end, passed in zip(legs_m, free_m, froms, tos, nodes, strict=False):
+        extra_m = flown_m - least_m
+        if not (np.isfinite(extra_m) and extra_m >= LEAST_DETOUR_M):
+            found.append((0.0, []))
+            continue
+        line = np.concatenate([np.array([start]), graph.position[passed], np.array([end])])
+        met = scene.zones.meets(line[:-1], line[1:])
+        barring = {scene.zones.first_met(LonLat(*line[leg]), LonLat(*line[leg + 1])) for leg in np.flatnonzero(met).tolist()}
+        found.append((extra_m, sorted(zone for zone in barring if zone is not None)))
+    return found
+
+
+def _zones_met(detours: Sequence[tuple[float, list[tuple[int, str]]]]) -> list[dict[str, Any]]:
+    """Each zone once, with the legs' detours that it has a part in."""
+    extra_m: dict[tuple[int, str], float] = {}
+    for metres, zones in detours:
+        for zone in zones:
+            extra_m[zone] = extra_m.get(zone, 0.0) + metres / len(zones)
+    return [{"id": pk, "name": name, "extra_m": metres} for (pk, name), metres in sorted(extra_m.items(), key=lambda item: -item[1])]
+
+
+def _heaviest(request: PlanRequest, field: _Field, uav: int, order: Sequence[int], legs_m: Sequence[float]) -> dict[str, Any] | None:
+    """The target without which the others, in the same order, are the fewest metres."""
+    if len(order) < 2:
+        return None
+    whole_m = sum(legs_m) + sum(field.along_m[visit] for visit in order)
+    rests_m = []
+    for number in range(len(order)):
+        rest = [*order[:number], *order[number + 1 :]]
+        rests_m.append(sum(_legs_m(request, field, uav, rest)) + sum(field.along_m[visit] for visit in rest))
+    least = int(np.argmin(rests_m))
+    return {"target": _target(field, order[least]), "saves_m": whole_m - rests_m[least]} if np.isfinite(rests_m[least]) else None
+
+
+def _target(field: _Field, visit: int) -> int:
+    return next(target for target, visits in field.visits_of.items() if visit in visits)
+
+
+def _alternative(
+    request: PlanRequest, field: _Field, routes: Sequence[Sequence[int]], uav: int, order: Sequence[int]
+) -> dict[str, Any] | None:
+    """The target of this route and the other UAV for which handing it over would cost the fewest metres in all."""
+    own_m = _route_m(request, field, uav, order)
+    best: dict[str, Any] | None = None
+    for other in field.uav_of:
+        if other == uav:
+            continue
+        theirs = _best_order(request, field, other, routes[other]) if routes[other] else []
+        before_m = own_m + _route_m(request, field, other, theirs)
+        for number, moved in enumerate(order):
+            rest = [*order[:number], *order[number + 1 :]]
+            target = _target(field, moved)
+            with_m = min(
+                _route_m(request, field, other, [*theirs[:place], visit, *theirs[place:]])
+                for place in range(len(theirs) + 1)
+                for visit in field.visits_of[target]
+            )
+            change_m = with_m + _route_m(request, field, uav, rest) - before_m
+            if np.isfinite(change_m) and (best is None or change_m < best["total_change_m"]):
+                limit_m = request.uavs[other].max_range_m
+                best = {
+                    "target": target,
+                    "uav": other,
+                    "other_length_m": with_m,
+                    "total_change_m": change_m,
+                    "max_range_m": limit_m,
+                    "is_beyond_range": limit_m is not None and with_m > limit_m,
+                }
+    return best
+
+
+def _route_m(request: PlanRequest, field: _Field, uav: int, order: Sequence[int]) -> float:
+    return sum(_legs_m(request, field, uav, order)) + sum(field.along_m[visit] for visit in order) if order else 0.0

@@ -1,0 +1,161 @@
+"""Why no route visits a target: the zone, the distance or the range behind it, and which UAV could fly there."""
+
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry import LineString
+from shapely.ops import nearest_points
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.graph.access import node_locator
+from inspection.graph.nearness import on_unit_sphere
+from inspection.graph.zone_index import widen
+from missions.fleet_selectors import uavs_of_organisation
+from missions.flight_plan.heights import is_above_limit
+from missions.models import EndAction, UavState
+from missions.routing.problem import Objective, Problem, UavStart
+from missions.routing.reach import needed_range_m
+from missions.routing.terminals import Terminal, Ways, ways_between
+from missions.services.places import Place, places_of
+from missions.services.planning import current_scene, end_action, visits_of_places
+from missions.services.refusals import Scene, grounded_reason, place_height_m
+from missions.services.requests import PlanRequest, UavRequest
+from workspace.models import Organisation
+
+MOST_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
+LEAST_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not worth a flight
+
+
+def explain_unreached_target(*, request: PlanRequest, target: int, organisation: Organisation) -> dict[str, Any]:
+    """target is its place in the request. Raises InvalidRequest or NoGraph."""
+    scene = current_scene()
+    found, _ = places_of([request.targets[target]])
+    said: dict[str, Any] = {
+        "target": target,
+        "reason": "asset_gone",
+        "zones": [],
+        "stretches": [],
+        "network_m": None,
+        "access_limit_m": scene.access.access_leg_m,
+        "height_m": None,
+        "needed_height_m": None,
+        "height_limit_m": scene.flight.max_agl_m,
+        "uavs": [],
+    }
+    if not found:
+        return said
+    (place,) = found
+    height_m = place_height_m(place, scene)
+    said |= {"height_m": height_m, "needed_height_m": height_m + scene.flight.clearance_m, "network_m": _network_m(place, scene)}
+    zones = _zones_at(place, scene)
+    if zones:
+        return said | {"reason": "inside_zone", "zones": zones, "stretches": _stretches_outside(place, scene)}
+    if is_above_limit(height_m, scene.flight):
+        return said | {"reason": "above_height_limit"}
+    asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
+    grounded = [grounded_reason(uav, scene) is not None for uav in asked]
+    ways, needed_m = _needs(request, asked, place, scene)
+    uavs = [
+        {
+            "name": uav.name,
+            "uav_id": uav.uav,
+            "is_in_mission": number < len(request.uavs),
+            "is_grounded": grounded[number],
+            "needed_m": float(needed_m[number]) if np.isfinite(needed_m[number]) and not grounded[number] else None,
+            "max_range_m": uav.max_range_m,
+            "is_enough": bool(np.isfinite(needed_m[number]) and not grounded[number] and needed_m[number] <= (uav.max_range_m or np.inf)),
+        }
+        for number, uav in enumerate(asked)
+    ]
+    reason, barring = _reason(place, [uav for uav in uavs if uav["is_in_mission"]], ways, scene)
+    return said | {"reason": reason, "zones": barring, "uavs": uavs}
+
+
+def _reason(place: Place, uavs: list[dict[str, Any]], ways: Ways, scene: Scene) -> tuple[str, list[dict[str, Any]]]:
+    if any(uav["is_enough"] for uav in uavs):
+        return "not_with_the_others", []
+    if any(uav["needed_m"] is not None for uav in uavs):
+        return "beyond_range", []
+    if not any(ways.entry_legs) and _network_m(place, scene) > scene.access.access_leg_m:
+        return "too_far_from_network", []
+    return "no_path", _zones_around(place, scene)
+
+
+def _network_m(place: Place, scene: Scene) -> float:
+    """Metres to the nearest node of the network from the nearer end."""
+    tree = node_locator(scene.graph).tree
+    if tree is None:
+        return float("inf")
+    ends = np.array([place.course[0], place.course[-1]])
+    _, nearest = tree.query(on_unit_sphere(ends))
+    return float(distance_m(ends, scene.graph.position[nearest]).min())
+
+
+def _zones_at(place: Place, scene: Scene) -> list[dict[str, Any]]:
+    """Zones that hold the place, or that its course meets, the clearance included."""
+    shape = shapely.Point(place.course[0]) if len(place.course) == 1 else LineString(place.course)
+    polygons = scene.zones.polygons
+    if not len(polygons):
+        return []
+    near = shapely.intersects(widen(polygons, scene.access.zone_clearance_m), shape)
+    return [{"id": int(scene.zones.ids[zone]), "name": scene.zones.names[zone]} for zone in np.flatnonzero(near).tolist()]
+
+
+def _zones_around(place: Place, scene: Scene) -> list[dict[str, Any]]:
+    """Zones within reach of the place, the nearest first: what bars the straight ways to it."""
+    polygons = scene.zones.polygons
+    here = np.array([place.course[0]])
+    found = []
+    for zone in range(len(polygons)):
+        nearest, _ = nearest_points(polygons[zone], shapely.Point(place.course[0]))
+        away_m = float(distance_m(here, np.array([[nearest.x, nearest.y]]))[0])
+        if away_m <= scene.access.access_leg_m:
+            found.append((away_m, zone))
+    return [{"id": int(scene.zones.ids[zone]), "name": scene.zones.names[zone]} for _, zone in sorted(found)[:3]]
+
+
+def _stretches_outside(place: Place, scene: Scene) -> list[list[list[float]]]:
+    """The parts of a line's course that keep clear of every zone, as pairs of ends."""
+    if not place.is_stretch or place.asset is None:
+        return []
+    barred = shapely.union_all(widen(scene.zones.polygons, 1.5 * scene.access.zone_clearance_m + 1.0))
+    parts = shapely.get_parts(shapely.difference(LineString(place.course), barred))
+    ends = [np.array(part.coords) for part in parts if part.geom_type == "LineString"]
+    return [[line[0].tolist(), line[-1].tolist()] for line in ends if path_length_m(line) >= LEAST_STRETCH_M]
+
+
+def _spare_uavs(request: PlanRequest, place: Place, organisation: Organisation) -> list[UavRequest]:
+    """UAVs of the fleet that are fit to fly, are not in the request and have the range at least straight, the nearest first."""
+    taken = {uav.uav for uav in request.uavs}
+    found = []
+    for uav in uavs_of_organisation(organisation).filter(state=UavState.ACTIVE).exclude(pk__in=taken - {None}):
+        at = LonLat(*uav.location.coords)
+        away_m = float(distance_m(np.array([at]), np.array([place.course[0]]))[0])
+        if uav.range_m is None or away_m <= uav.range_m:
+            found.append((away_m, UavRequest(uav.name, at, uav.range_m, uav.speed_mps, EndAction(uav.end_action), uav.pk)))
+    return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MOST_SPARE]]
+
+
+def _needs(request: PlanRequest, asked: list[UavRequest], place: Place, scene: Scene) -> tuple[Ways, np.ndarray]:
+    """The least range with which each UAV could do the place alone; inf where there is no way."""
+    visits, courses = visits_of_places([place])
+    ways = ways_between(
+        scene.graph,
+        scene.zones,
+        starts=[Terminal(uav.position) for uav in asked],
+        entries=[Terminal(course[0], place.asset) for course in courses],
+        exits=[Terminal(course[-1], place.asset) for course in courses],
+        rules=scene.access,
+    )
+    fleet = PlanRequest(tuple(asked), request.targets, request.objective, request.return_to_start)
+    problem = Problem(
+        uavs=tuple(UavStart(uav.max_range_m, end_action(fleet, number) is EndAction.RETURN) for number, uav in enumerate(asked)),
+        visits=tuple(visits),
+        target_count=1,
+        from_start_m=ways.from_start_m,
+        between_m=ways.between_m,
+        to_start_m=ways.to_start_m,
+        objective=Objective.TOTAL,
+    )
+    return ways, needed_range_m(problem).min(axis=1)

@@ -1,0 +1,76 @@
+/** Two plans of one mission against each other: what each UAV flies more or less, and which targets changed hands. */
+
+import { keyOf } from "./selection.js";
+import { profileOf } from "./span_strip.js";
+
+/** A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer. */
+export function summaryOfPlan({ result, targets }) {
+  return {
+    planned_at: null,
+    objective: result.objective,
+    return_to_start: result.return_to_start,
+    total_length_m: result.total_length_m,
+    duration_s: Math.max(0, ...result.routes.map((route) => route.duration_s)),
+    routes: result.routes.map((route) => {
+      const profile = profileOf(route.waypoints, route.length_m);
+      return {
+        uav: route.uav,
+        uav_id: route.uav_id,
+        length_m: route.length_m,
+        duration_s: route.duration_s,
+        stops: profile.targets.filter(({ target }) => targets[target]).map(({ target, at }) => ({ ...pickOf(targets[target]), at_m: at })),
+        off_network: profile.legs.filter((leg) => leg.offNetwork).map(({ from, to }) => [from, to]),
+      };
+    }),
+    unassigned: result.unassigned.filter(({ target }) => targets[target]).map(({ target }) => pickOf(targets[target])),
+  };
+}
+
+const pickOf = ({ asset, position, stretch, label }) => ({ asset, position: position ?? null, stretch: stretch ?? null, label });
+
+const isSameUav = (a, b) => (a.uav_id !== null && b.uav_id !== null ? a.uav_id === b.uav_id : a.uav === b.uav);
+
+/** Whether two plans fly the same: planning again what has not changed is not another plan. */
+export function isSamePlan(a, b) {
+  const essence = ({ routes }) => JSON.stringify(routes.map(({ uav, length_m, stops }) => [uav, Math.round(length_m), stopsOf(stops).map(keyOf)]));
+  return essence(a) === essence(b);
+}
+
+/** A stretch has several waypoints of one target: the first of them is the stop. */
+function stopsOf(stops) {
+  return stops.filter((stop, index) => index === 0 || keyOf(stop) !== keyOf(stops[index - 1]));
+}
+
+/** Where each target is in a short plan: key → { route, number, label }; without a route: not reached. */
+function placesIn(plan) {
+  const places = new Map();
+  plan.unassigned.forEach((target) => places.set(keyOf(target), { route: null, number: 0, label: target.label }));
+  plan.routes.forEach((route) => stopsOf(route.stops).forEach((stop, index) => places.set(keyOf(stop), { route, number: index + 1, label: stop.label })));
+  return places;
+}
+
+/** before and now are plans in short. [{ key, label, from, to }]: from and to are routes, null where it is not reached; undefined where it is not in that plan. */
+export function movesBetween(before, now) {
+  const [old, fresh] = [placesIn(before), placesIn(now)];
+  const moves = [];
+  for (const [key, { route, label }] of fresh) {
+    const was = old.get(key);
+    const isSame = was && (was.route === route || (was.route && route && isSameUav(was.route, route)));
+    if (!isSame) moves.push({ key, label, from: was?.route, to: route });
+  }
+  for (const [key, { route, label }] of old) if (!fresh.has(key)) moves.push({ key, label, from: route, to: undefined });
+  return moves;
+}
+
+/** The route of the same UAV in another plan, or null. */
+export function counterpart(route, plan) {
+  return plan?.routes.find((other) => isSameUav(other, route)) ?? null;
+}
+
+/** A route in short, as the drawing of a strip takes it. */
+export function profileOfSummary({ length_m, stops, off_network }) {
+  const cuts = [...new Set([0, length_m, ...off_network.flat()])].filter((at) => at >= 0 && at <= length_m).sort((a, b) => a - b);
+  const isOff = (at) => off_network.some(([from, to]) => at >= from && at < to);
+  const legs = cuts.slice(1).map((to, index) => ({ from: cuts[index], to, offNetwork: isOff(cuts[index]) }));
+  return { places: [0, length_m], legs, targets: stopsOf(stops).map((stop) => ({ target: keyOf(stop), at: stop.at_m })), ticks: [] };
+}

@@ -1,0 +1,101 @@
+/** Under the strips: the flight of the route that is looked at from the side, with the figures at the pointer. */
+
+import { byId, h } from "../../dom.js";
+import { routeNumber } from "../../map/palette.js";
+import { t } from "../../text.js";
+import { heightText, lengthText } from "../../units.js";
+import { isPlanCurrent, lastPlanOf, shownRoute } from "../plan_view.js";
+import { drawProfile, flightOf, profileTable, readingAt } from "../profile.js";
+import { stripRoom } from "./routes.js";
+
+export function mountProfile(store, { grounds }) {
+  const dock = byId("dock");
+  const place = byId("route-profile");
+  let drawn = null; // { route, flight, chart, width_px, longest_m }
+
+  const longestOf = ({ plan, why, ...state }) => Math.max(plan.result.longest_route_m, ...(why?.compare ? (lastPlanOf(state)?.routes ?? []) : []).map((route) => route.length_m));
+
+  async function draw(state) {
+    const route = state.plan ? shownRoute(state) : null;
+    place.hidden = !route;
+    if (!route) {
+      drawn = null;
+      place.replaceChildren();
+      return;
+    }
+    const [width_px, longest_m] = [stripRoom(dock), longestOf(state)];
+    if (drawn?.route.waypoints === route.waypoints && drawn.width_px === width_px && drawn.longest_m === longest_m) return;
+    let ground = null;
+    let fault = "";
+    try {
+      ground = await grounds(route);
+    } catch {
+      fault = t("The ground could not be read.");
+    }
+    if (store.state.plan && shownRoute(store.state)?.waypoints === route.waypoints) put(route, ground, fault, width_px, longest_m);
+  }
+
+  function put(route, ground, fault, width_px, longest_m) {
+    const flight = flightOf(route, ground);
+    const { targets } = store.state.plan;
+    const chart = drawProfile({
+      route,
+      flight,
+      longest_m,
+      width_px,
+      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
+      onTask: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
+    });
+    drawn = { route, flight, chart, width_px, longest_m, fault };
+    place.className = `route-profile route-${routeNumber(route.sequence)}`;
+    place.replaceChildren(
+      h("div", { class: "profile-said" }, h("span", { class: "letter" }, route.letter), h("p", { id: "profile-words" })),
+      h("div", { class: "profile-place" }, chart.element, h("div", {}, profileTable(route, flight, targets))),
+    );
+    follow(store.state);
+    light(store.state);
+  }
+
+  /** Figures at the pointer, else what the whole flight is like. */
+  function follow({ along }) {
+    if (!drawn) return;
+    const { route, flight, chart, fault } = drawn;
+    const isHere = along?.sequence === route.sequence;
+    chart.point(isHere ? along.at_m : null);
+    byId("profile-words").replaceChildren(...(isHere ? readingWords(readingAt(flight, along.at_m), flight) : wholeWords(route, flight, fault)));
+  }
+
+  function light(state) {
+    if (!drawn) return;
+    const target = state.litTarget && state.plan && isPlanCurrent(state) ? state.plan.targets.findIndex(({ key }) => key === state.litTarget) : -1;
+    drawn.chart.light(target < 0 ? null : target);
+  }
+
+  store.listen(["plan", "lookedAt", "chosenRoute", "why", "lastPlan"], draw);
+  store.listen(["along"], follow);
+  store.listen(["litTarget"], light);
+  new ResizeObserver(() => {
+    if (drawn && stripRoom(dock) !== drawn.width_px) draw(store.state);
+  }).observe(dock.querySelector(".dock-main"));
+}
+
+const line = (words, isStrong = false) => h(isStrong ? "strong" : "span", {}, words);
+
+function readingWords({ at_m, height_m, ground_m, above_m }, { isFlat }) {
+  const height = heightText(height_m);
+  return [
+    line(t("at {distance}", { distance: lengthText(at_m) }), true),
+    line(isFlat ? t("{height} above take-off", { height }) : t("{height} above sea level", { height })),
+    line(isFlat ? t("flat ground assumed") : ground_m === null ? t("ground not known") : t("{height} above ground", { height: heightText(above_m) })),
+  ];
+}
+
+function wholeWords(route, flight, fault) {
+  const heights = flight.path.map(({ height_m }) => height_m);
+  const height = heightText(Math.max(...heights));
+  const lines = [line(route.name, true), line(flight.isFlat ? t("up to {height} above take-off", { height }) : t("up to {height} above sea level", { height }))];
+  if (fault) return [...lines, line(fault)];
+  if (flight.isFlat) return [...lines, line(t("flat ground assumed"))];
+  const above = route.waypoints.map(({ altitude_agl_m }) => altitude_agl_m).filter((metres) => metres > 0);
+  return [...lines, line(t("{low} to {high} above ground", { low: heightText(Math.min(...above)), high: heightText(Math.max(...above)) }))];
+}

@@ -1,0 +1,99 @@
+/** Beside the strips: why a UAV flies its route, why a target is not reached, or what differs from the last plan. */
+
+import { post } from "../../api.js";
+import { byId, h, icon } from "../../dom.js";
+import { routeLetter, routeNumber } from "../../map/palette.js";
+import { t } from "../../text.js";
+import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
+import { requestOf } from "../selection.js";
+import { comparison } from "./why_compared.js";
+import { routeExplanation } from "./why_route.js";
+import { targetExplanation } from "./why_target.js";
+
+/** What the server is asked: the plan as it was made, whatever has been picked since. */
+function questionOf({ result, targets, uavs }) {
+  return {
+    ...requestOf({ targets, uavs, objective: result.objective, return_to_start: result.return_to_start }),
+    routes: result.routes.map((route) => route.targets),
+  };
+}
+
+export function mountWhy(store, actions, { canPlan }) {
+  const panel = byId("why");
+  const answers = new WeakMap(); // result of a plan → Map of question → promise
+  let opener = null;
+
+  function ask(plan, path, more) {
+    if (!answers.has(plan.result)) answers.set(plan.result, new Map());
+    const known = answers.get(plan.result);
+    const key = JSON.stringify([path, more]);
+    if (!known.has(key)) {
+      const asked = post(path, { ...questionOf(plan), ...more }).then(({ data }) => data);
+      asked.catch(() => known.delete(key));
+      known.set(key, asked);
+    }
+    return known.get(key);
+  }
+
+  function put(title, ...content) {
+    byId("why-title").textContent = title;
+    byId("why-body").replaceChildren(...content);
+  }
+
+  async function answer(title, asked, show) {
+    put(title, h("div", { class: "stack", role: "status", "aria-label": t("Being worked out") }, [1, 2, 3].map(() => h("div", { class: "skeleton" }))));
+    const { why } = store.state;
+    try {
+      const said = await asked;
+      if (store.state.why === why) put(title, ...show(said));
+    } catch (error) {
+      if (store.state.why === why) put(title, h("p", { role: "alert" }, error.message), h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")));
+    }
+  }
+
+  function draw(state) {
+    const { why, plan } = state;
+    const wasHidden = panel.hidden;
+    panel.hidden = !why || !plan;
+    byId("dock").classList.toggle("with-why", !panel.hidden);
+    if (panel.hidden) {
+      if (!wasHidden) giveBack();
+      return;
+    }
+    if (wasHidden) opener = document.activeElement;
+    if (why.compare) {
+      const last = lastPlanOf(state);
+      if (last) put(t("Against the last plan"), ...comparison(plan, last));
+      else store.update({ why: null });
+    } else if (why.target) {
+      const index = plan.targets.findIndex(({ key }) => key === why.target);
+      const entry = plan.result.unassigned.find(({ target }) => target === index);
+      if (!entry) store.update({ why: null });
+      else answer(t("Why {target} is not reached", { target: plan.targets[index].label }), ask(plan, "/plans/why-target", { target: index }), (said) => targetExplanation(said, { plan, entry, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
+    } else {
+      const route = plan.result.routes[why.route];
+      if (!route?.geometry) store.update({ why: null });
+      else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
+    }
+    panel.className = why.route === undefined ? "why" : `why route-${routeNumber(why.route)}`;
+    byId("why-letter").hidden = why.route === undefined;
+    byId("why-letter").textContent = why.route === undefined ? "" : routeLetter(why.route);
+    if (wasHidden || document.activeElement === document.body) byId("why-title").focus();
+  }
+
+  /** Focus goes back to what opened it; a row may have been drawn anew. */
+  function giveBack() {
+    if (opener?.isConnected) opener.focus();
+    else if (!document.activeElement || document.activeElement === document.body) byId("compare-plans").focus();
+    opener = null;
+  }
+
+  byId("close-why").append(icon("x"));
+  byId("close-why").addEventListener("click", () => store.update({ why: null }));
+  panel.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    event.stopPropagation();
+    store.update({ why: null });
+  });
+  store.listen(["why", "plan", "lastPlan"], draw);
+}

@@ -1,0 +1,92 @@
+/** Where a route's kilometres come from, what another UAV would fly, what limits the plan, and what is worth trying. */
+
+import { h } from "../../dom.js";
+import { t } from "../../text.js";
+import { durationText, lengthText } from "../../units.js";
+import { longestDuration_s, otherObjective, OBJECTIVES, routesOf } from "../plan_view.js";
+import { basisOf } from "../selection.js";
+
+const LEAST_M = 20; // less is the rounding of positions
+
+/** said: see RouteExplanationSerializer. */
+export function routeExplanation(said, { plan, store, actions, canPlan }) {
+  const route = routesOf(plan)[said.uav];
+  return [bar(said), parts(said), instead(said, plan), limit(plan, route), heaviest(said, { plan, route, actions, canPlan }), otherWay({ plan, store, actions, canPlan })].filter(Boolean);
+}
+
+/** [{ name, words, length_m }]: straight, kept to the lines, round zones. */
+export function partsOf(said) {
+  const zones = said.zones.map(({ name }) => name);
+  const list = [
+    { name: "straight", words: t("Straight from target to target"), length_m: said.straight_m },
+    { name: "lines", words: t("Kept to the lines"), length_m: said.on_lines_m },
+    { name: "zones", words: zones.length ? t("Round {zones}", { zones: zones.join(", ") }) : t("Round no-fly zones"), length_m: said.round_zones_m },
+  ];
+  return list.filter(({ name, length_m }) => name === "straight" || (length_m !== null && length_m >= LEAST_M));
+}
+
+function bar(said) {
+  const pieces = partsOf(said).map(({ name, length_m }) => {
+    const piece = h("i", { class: name });
+    piece.style.flexGrow = Math.max(1, length_m);
+    return piece;
+  });
+  return h("div", { class: "why-bar", "aria-hidden": "true" }, pieces);
+}
+
+function parts(said) {
+  const rows = partsOf(said).map(({ name, words, length_m }) => h("div", {}, h("dt", {}, h("i", { class: name, "aria-hidden": "true" }), words), h("dd", {}, `${name === "straight" ? "" : "+"}${lengthText(length_m)}`)));
+  return h("dl", { class: "why-parts" }, rows);
+}
+
+function instead(said, plan) {
+  const { alternative } = said;
+  if (!alternative) return null;
+  const [own, other] = [plan.result.routes[said.uav], plan.result.routes[alternative.uav]];
+  const values = {
+    own: own.uav,
+    other: other.uav,
+    target: plan.targets[alternative.target]?.label ?? "",
+    length: lengthText(alternative.other_length_m),
+    range: alternative.max_range_m === null ? "" : lengthText(alternative.max_range_m),
+    change: lengthText(Math.abs(alternative.total_change_m)),
+  };
+  const words = alternative.is_beyond_range
+    ? t("With {target} as well, {other} would fly {length}; its range is {range}.", values)
+    : alternative.total_change_m >= 0
+      ? t("With {target} as well, {other} would fly {length}, and all together {change} more.", values)
+      : t("With {target} as well, {other} would fly {length}, and all together {change} less.", values);
+  return h("p", {}, h("strong", {}, t("{own}, not {other}.", values)), " ", words);
+}
+
+function limit(plan, route) {
+  const flown = plan.result.routes.filter(({ geometry }) => geometry);
+  if (flown.length < 2) return null;
+  const last = flown.reduce((a, b) => (b.duration_s > a.duration_s ? b : a));
+  const time = durationText(last.duration_s);
+  const words = last.uav === route.uav ? t("{name} is the last to be done, after {time}.", { name: last.uav, time }) : t("Not this route: {name} is the last to be done, after {time}.", { name: last.uav, time });
+  return h("p", {}, h("strong", {}, t("What limits the plan.")), " ", words);
+}
+
+function heaviest({ heaviest: found }, { plan, route, actions, canPlan }) {
+  const target = found && plan.targets[found.target];
+  if (!target || found.saves_m < LEAST_M || route.targets.length < 2) return null;
+  const words = t("Without {target} {name} flies {length} less.", { target: target.label, name: route.name, length: lengthText(found.saves_m) });
+  return h("p", {}, h("strong", {}, t("What costs most.")), " ", words, " ", canPlan && h("button", { type: "button", class: "text-button", onclick: () => actions.removeTargets([target.key]) }, t("Remove it")));
+}
+
+/** The other objective, where it is planned: what it wins and what it costs. */
+function otherWay({ plan, store, actions, canPlan }) {
+  const objective = otherObjective(plan.result.objective);
+  const other = store.state.figures[basisOf({ ...store.state.selection, objective })];
+  if (!other || !canPlan) return null;
+  const time = longestDuration_s(other) - longestDuration_s(plan.result);
+  const length = other.total_length_m - plan.result.total_length_m;
+  if (Math.abs(time) < 30 && Math.abs(length) < 50) return null;
+  const name = OBJECTIVES.find(({ value }) => value === objective).words;
+  const clauses = [
+    Math.abs(time) >= 30 && (time < 0 ? t("{time} sooner", { time: durationText(-time) }) : t("{time} later", { time: durationText(time) })),
+    Math.abs(length) >= 50 && (length < 0 ? t("{length} less in total", { length: lengthText(-length) }) : t("{length} more in total", { length: lengthText(length) })),
+  ];
+  return h("p", {}, h("strong", {}, t("Worth trying.")), " ", `${name}: ${clauses.filter(Boolean).join(", ")}.`, " ", h("button", { type: "button", class: "text-button", onclick: () => actions.setOption("objective", objective) }, t("Try it")));
+}

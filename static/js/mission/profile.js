@@ -1,0 +1,207 @@
+/** The flight of one UAV from the side: ground, zones beside it, flight height and task points, on the axis of the strips. */
+
+import { post } from "../api.js";
+import { h, svg } from "../dom.js";
+import { t } from "../text.js";
+import { heightText, lengthText } from "../units.js";
+import { rulesOf } from "../terrain/profile_chart.js";
+import { profileOf, scaleOf } from "./span_strip.js";
+
+export const PROFILE_HEIGHT_PX = 96;
+const TOP_PX = 14;
+const FLOOR_PX = PROFILE_HEIGHT_PX - 4;
+const LEAST_SPAN_M = 60; // a plain must not look like mountains
+const NEAR_ZONE_M = 300;
+const MOST_VERTICES = 1_900; // of the 2,000 that the server takes
+const MOST_STEPS = 600;
+
+/** Every k-th of the positions where there are more than the server takes; both ends stay. */
+export function thinned(positions, most = MOST_VERTICES) {
+  const step = Math.ceil((positions.length - 1) / (most - 1));
+  if (step <= 1) return positions;
+  return positions.filter((_, index) => index % step === 0 || index === positions.length - 1);
+}
+
+/** The ground under a route, asked once for each route: [{ at_m, ground_m or null }], and zones near it. */
+export function createGrounds() {
+  const known = new WeakMap(); // route of a plan → promise
+  return (route) => {
+    const { waypoints, length_m } = route;
+    if (!known.has(waypoints)) {
+      const line = thinned(waypoints.map(({ position }) => position));
+      const asked = post("/terrain/profile", { line, step_m: Math.max(5, length_m / MOST_STEPS), near_m: NEAR_ZONE_M }).then(({ data }) => groundOf(data, length_m));
+      asked.catch(() => known.delete(waypoints)); // asked again the next time
+      known.set(waypoints, asked);
+    }
+    return known.get(waypoints);
+  };
+}
+
+/** The server's profile, its distances stretched to the route's own length. */
+export function groundOf(profile, length_m) {
+  const scale = profile.length_m > 0 ? length_m / profile.length_m : 1;
+  return {
+    samples: profile.distance_m.map((distance, index) => ({ at_m: distance * scale, ground_m: profile.ground_amsl_m[index] })),
+    zones: profile.zones.map((zone) => ({ ...zone, from_m: zone.from_m * scale, to_m: zone.to_m * scale })),
+  };
+}
+
+/** Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat. */
+export function flightOf(route, ground) {
+  const { places, targets } = profileOf(route.waypoints, route.length_m);
+  const isFlat = route.waypoints.some(({ altitude_amsl_m }) => altitude_amsl_m === null);
+  const heightOf = (waypoint) => (isFlat ? waypoint.altitude_relative_m : waypoint.altitude_amsl_m);
+  const path = route.waypoints.map((waypoint, index) => ({ at_m: places[index], height_m: heightOf(waypoint) }));
+  const under = isFlat ? [{ at_m: 0, ground_m: 0 }, { at_m: route.length_m, ground_m: 0 }] : (ground?.samples ?? []);
+  const tasks = targets.map(({ target, at }) => ({ target, at_m: at, height_m: heightAt(path, at, "height_m") }));
+  return { isFlat, path, under, tasks, zones: ground?.zones ?? [] };
+}
+
+/** The value of a name at a distance, straight between neighbours; null where one of them is unknown. */
+export function heightAt(points, at_m, name) {
+  if (!points.length) return null;
+  const next = points.findIndex((point) => point.at_m >= at_m);
+  if (next === 0) return points[0][name];
+  if (next < 0) return points.at(-1)[name];
+  const [before, after] = [points[next - 1], points[next]];
+  if (before[name] === null || after[name] === null) return null;
+  const share = after.at_m > before.at_m ? (at_m - before.at_m) / (after.at_m - before.at_m) : 1;
+  return before[name] + (after[name] - before[name]) * share;
+}
+
+/** What is said at a distance: { at_m, height_m, ground_m, above_m }; unknown is null. */
+export function readingAt(flight, at_m) {
+  const height_m = heightAt(flight.path, at_m, "height_m");
+  const ground_m = heightAt(flight.under, at_m, "ground_m");
+  return { at_m, height_m, ground_m, above_m: height_m === null || ground_m === null ? null : height_m - ground_m };
+}
+
+/** Lowest and highest of what is drawn; a zone without a ceiling does not count. */
+export function spanOf({ path, under }) {
+  const known = [...path.map(({ height_m }) => height_m), ...under.map(({ ground_m }) => ground_m)].filter((height) => height !== null);
+  const low = known.reduce((a, b) => Math.min(a, b), Infinity);
+  const high = known.reduce((a, b) => Math.max(a, b), -Infinity);
+  const room = Math.max(0, LEAST_SPAN_M - (high - low));
+  return { low, high: high + room + (high - low) * 0.08 };
+}
+
+/** From where to where a zone reaches at a place, in the heights of the drawing. What it does not state goes to the edge. */
+export function bandOf(zone, flight, span) {
+  const ground = heightAt(flight.under, (zone.from_m + zone.to_m) / 2, "ground_m") ?? span.low;
+  const height = (limit, otherwise) => {
+    if (!limit) return otherwise;
+    if (limit.reference === "AMSL" || limit.reference === "WGS84") return flight.isFlat ? otherwise : limit.value_m;
+    return ground + limit.value_m;
+  };
+  const clip = (value) => Math.min(Math.max(value, span.low), span.high);
+  return { from: clip(height(zone.lower_limit, ground)), to: clip(height(zone.upper_limit, span.high)) };
+}
+
+/** The whole in a sentence, for those who do not see the drawing. */
+export function profileSentence(route, flight) {
+  const heights = flight.path.map(({ height_m }) => height_m);
+  const [low, high] = [Math.min(...heights), Math.max(...heights)].map(heightText);
+  const words = flight.isFlat
+    ? t("{name} flies {low} to {high} above its take-off; flat ground is assumed.", { name: route.name, low, high })
+    : t("{name} flies {low} to {high} above sea level.", { name: route.name, low, high });
+  const names = [...new Set(flight.zones.map(({ name }) => name))];
+  return names.length ? `${words} ${t("It passes near {zones}.", { zones: names.join(", ") })}` : words;
+}
+
+/** Draws it. onAlong(at_m or null), onTask(target or null). Returns { element, point(at_m or null), light(target or null) }. */
+export function drawProfile({ route, flight, longest_m, width_px, onAlong, onTask }) {
+  const { x, distanceAt } = scaleOf(longest_m, width_px);
+  const span = spanOf(flight);
+  const y = (height) => TOP_PX + ((span.high - height) / (span.high - span.low)) * (FLOOR_PX - TOP_PX);
+  const end = x(route.length_m);
+  const element = svg("svg", { class: "route-profile-chart", role: "img", "aria-label": profileSentence(route, flight), width: width_px, height: PROFILE_HEIGHT_PX, viewBox: `0 0 ${width_px} ${PROFILE_HEIGHT_PX}` });
+  element.append(hatching());
+  for (const rule of rulesOf(span.low, span.high)) {
+    element.append(svg("line", { class: "rule", x1: x(0), x2: width_px, y1: y(rule), y2: y(rule) }));
+  }
+  for (const piece of knownPieces(flight.under)) {
+    const line = piece.map(({ at_m, ground_m }) => `${x(at_m).toFixed(1)},${y(ground_m).toFixed(1)}`);
+    element.append(
+      svg("polygon", { class: "ground", points: [...line, `${x(piece.at(-1).at_m).toFixed(1)},${FLOOR_PX}`, `${x(piece[0].at_m).toFixed(1)},${FLOOR_PX}`].join(" ") }),
+      svg("polyline", { class: "ground-edge", points: line.join(" ") }),
+    );
+  }
+  for (const zone of flight.zones) {
+    const { from, to } = bandOf(zone, flight, span);
+    const [left, right] = [x(zone.from_m), Math.max(x(zone.to_m), x(zone.from_m) + 3)];
+    element.append(
+      svg("rect", { class: "zone-band", x: left, width: right - left, y: y(to), height: Math.max(1, y(from) - y(to)), fill: "url(#zone-hatch)" }, svg("title", {}, zone.name)),
+    );
+  }
+  element.append(svg("polyline", { class: "flight", points: flight.path.map(({ at_m, height_m }) => `${x(at_m).toFixed(1)},${y(height_m).toFixed(1)}`).join(" ") }));
+  for (const rule of rulesOf(span.low, span.high)) element.append(svg("text", { class: "tick", x: x(0) + 2, y: y(rule) - 3 }, heightText(rule)));
+  const dots = new Map();
+  for (const task of flight.tasks) {
+    const dot = svg("circle", { class: "task", cx: x(task.at_m), cy: y(task.height_m), r: 4.5, onpointerenter: () => onTask?.(task.target), onpointerleave: () => onTask?.(null) });
+    if (!dots.has(task.target)) dots.set(task.target, []);
+    dots.get(task.target).push(dot);
+    element.append(dot);
+  }
+  const line = svg("line", { class: "strip-cursor", y1: 0, y2: FLOOR_PX, visibility: "hidden" });
+  const dot = svg("circle", { class: "cursor-dot", r: 3.5, visibility: "hidden" });
+  element.append(line, dot);
+
+  element.addEventListener("pointermove", (event) => {
+    const at = Math.min(end, Math.max(x(0), event.clientX - element.getBoundingClientRect().left));
+    onAlong?.(distanceAt(at));
+  });
+  element.addEventListener("pointerleave", () => onAlong?.(null));
+  return {
+    element,
+    point(at_m) {
+      const height = at_m === null ? null : heightAt(flight.path, at_m, "height_m");
+      for (const part of [line, dot]) part.setAttribute("visibility", height === null ? "hidden" : "visible");
+      if (height === null) return;
+      line.setAttribute("x1", x(at_m));
+      line.setAttribute("x2", x(at_m));
+      dot.setAttribute("cx", x(at_m));
+      dot.setAttribute("cy", y(height));
+    },
+    light(target) {
+      for (const [key, circles] of dots) for (const circle of circles) circle.classList.toggle("lit", key === target);
+    },
+  };
+}
+
+function hatching() {
+  return svg(
+    "defs",
+    {},
+    svg("pattern", { id: "zone-hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, svg("line", { class: "hatch-line", x1: 0, x2: 0, y1: 0, y2: 6 })),
+  );
+}
+
+/** Runs of samples whose ground is known, two at least. */
+function knownPieces(samples) {
+  const pieces = [[]];
+  for (const sample of samples) {
+    if (sample.ground_m === null) pieces.push([]);
+    else pieces.at(-1).push(sample);
+  }
+  return pieces.filter((piece) => piece.length > 1);
+}
+
+/** The profile as a table: each task point with distance, ground and height. */
+export function profileTable(route, flight, targets) {
+  const said = (height) => (height === null ? t("not known") : heightText(height));
+  const height = flight.isFlat ? t("Height above take-off") : t("Height above sea level");
+  return h(
+    "table",
+    { class: "unseen" },
+    h("caption", {}, t("Heights of {name}", { name: route.name })),
+    h("thead", {}, h("tr", {}, [t("Target"), t("Distance flown"), t("Ground"), height].map((words) => h("th", { scope: "col" }, words)))),
+    h(
+      "tbody",
+      {},
+      flight.tasks.map(({ target, at_m }) => {
+        const at = readingAt(flight, at_m);
+        return h("tr", {}, [targets[target]?.label ?? t("Target"), lengthText(at_m), said(at.ground_m), said(at.height_m)].map((words) => h("td", {}, words)));
+      }),
+    ),
+  );
+}

@@ -1,0 +1,163 @@
+"""Why a target is not reached, and where the kilometres of a route come from."""
+
+from typing import Any
+
+import pytest
+from django.test import Client
+
+from missions.models import Uav
+from tests.inspection import ground
+from tests.missions.api import TERN, plan_body, post
+from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
+from tests.workspace.people import client_of, somebody
+from workspace.models import Role
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def here() -> World:
+    return world()
+
+
+@pytest.fixture
+def client() -> Client:
+    return client_of(somebody(Role.OPERATOR))
+
+
+def why_target(client: Client, body: dict[str, Any], target: int = 0) -> dict[str, Any]:
+    response = post(client, "plans/why-target", body | {"target": target})
+    assert response.status_code == 200, response.content
+    return response.json()
+
+
+def why_route(client: Client, body: dict[str, Any], uav: int = 0) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The answer, and the plan that was asked about."""
+    plan = post(client, "plans", body).json()
+    response = post(client, "plans/why-route", body | {"routes": [route["targets"] for route in plan["routes"]], "uav": uav})
+    assert response.status_code == 200, response.content
+    return response.json(), plan
+
+
+def test_a_target_in_a_zone_names_the_zone(here: World, client: Client) -> None:
+    zone = zone_around((10.008, 56.0))
+    said = why_target(client, plan_body(here.towers[2]))
+    assert (said["reason"], said["zones"], said["stretches"]) == ("inside_zone", [{"id": zone.pk, "name": "Airport"}], [])
+
+
+def test_a_line_through_a_zone_says_which_parts_can_be_flown_and_these_can(here: World, client: Client) -> None:
+    zone_around((10.010, 56.0))
+    said = why_target(client, plan_body(here.line))
+    assert said["reason"] == "inside_zone"
+    west, east = said["stretches"]
+    assert west[0] == [10.0, 56.0]
+    assert west[1][0] < 10.009
+    assert east[0][0] > 10.011
+    assert east[1] == [10.020, 56.0]
+    for stretch in said["stretches"]:
+        assert post(client, "plans", plan_body({"asset": here.line.pk, "stretch": stretch})).json()["unassigned"] == []
+
+
+def test_a_target_out_of_range_says_what_each_uav_needs_and_who_of_the_fleet_could(here: World, client: Client) -> None:
+    spare = post(client, "uavs", {"name": "Kite", "position": list(UAV_AT), "max_range_m": 50_000.0}).json()["id"]
+    post(client, "uavs", {"name": "Wren", "position": list(UAV_AT), "max_range_m": 700.0})
+    body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 900.0}], "return_to_start": True}
+    assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "beyond_range"
+    said = why_target(client, body)
+    assert said["reason"] == "beyond_range"
+    own, *others = said["uavs"]
+    free = post(client, "plans", body | {"uavs": [TERN | {"max_range_m": None}]}).json()
+    assert own["is_in_mission"] and not own["is_enough"]
+    assert own["needed_m"] == pytest.approx(free["total_length_m"], rel=1e-6)
+    assert {uav["name"]: uav["is_enough"] for uav in others} == {"Kite": True}  # Wren's range does not even reach there straight
+    assert others[0]["uav_id"] == spare
+    assert post(client, "plans", body | {"uavs": [TERN | {"max_range_m": 900.0}, {"id": spare}]}).json()["unassigned"] == []
+
+
+def test_a_retired_uav_is_not_offered(here: World, client: Client) -> None:
+    post(client, "uavs", {"name": "Kite", "position": list(UAV_AT)})
+    Uav.objects.update(state="retired")
+    body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 900.0}], "return_to_start": True}
+    assert [uav["name"] for uav in why_target(client, body)["uavs"]] == ["Tern"]
+
+
+def test_a_place_far_from_everything_says_how_far(here: World, client: Client) -> None:
+    said = why_target(client, plan_body({"position": [10.0, 56.3]}))
+    assert said["reason"] == "too_far_from_network"
+    assert said["network_m"] == pytest.approx(32_200, rel=0.01)
+    assert said["access_limit_m"] == 10_000.0
+
+
+def test_a_target_that_is_only_left_out_for_the_others_says_so(here: World, client: Client) -> None:
+    assert why_target(client, plan_body(here.towers[0], here.towers[5]), target=1)["reason"] == "not_with_the_others"
+
+
+def test_a_part_of_the_network_behind_a_zone_names_it(here: World, client: Client) -> None:
+    far, _ = island()
+    zone_around((10.15, 56.0), half_deg=0.14, name="Firing range")
+    body = plan_body(far)
+    assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "no_path"
+    said = why_target(client, body)
+    assert (said["reason"], [zone["name"] for zone in said["zones"]]) == ("no_path", ["Firing range"])
+
+
+def test_the_parts_of_a_route_add_up_to_it(here: World, client: Client) -> None:
+    body = plan_body(here.towers[1], here.towers[4], return_to_start=True)
+    said, plan = why_route(client, body)
+    assert said["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
+    assert said["straight_m"] + said["on_lines_m"] + said["round_zones_m"] == pytest.approx(said["length_m"], rel=1e-9)
+    assert said["round_zones_m"] == 0.0
+    assert said["zones"] == []
+
+
+def test_a_way_round_a_zone_is_counted_and_the_zone_named(here: World, client: Client) -> None:
+    power_line([here.towers[0], ground.tower((10.010, 56.004)), here.towers[5]])
+    rebuild()
+    body = plan_body(here.towers[0], here.towers[5])
+    before, _ = why_route(client, body)
+    zone = zone_around((10.010, 56.0))
+    after, plan = why_route(client, body)
+    assert after["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
+    assert after["round_zones_m"] == pytest.approx(after["length_m"] - before["length_m"], rel=0.05)
+    assert after["round_zones_m"] > 100
+    assert [(named["id"], named["name"]) for named in after["zones"]] == [(zone.pk, "Airport")]
+
+
+def test_another_uav_is_set_against_the_one_that_flies(here: World, client: Client) -> None:
+    uavs = [TERN, TERN | {"name": "Kite", "position": [10.019, 55.995]}]
+    body = plan_body(here.towers[0], here.towers[1], here.towers[5], uavs=uavs, objective="makespan")
+    said, plan = why_route(client, body)
+    assert plan["routes"][1]["targets"] == [2]
+    alternative = said["alternative"]
+    assert (alternative["uav"], alternative["target"]) == (1, 1)  # the nearer of its two
+    assert alternative["other_length_m"] > plan["routes"][1]["length_m"]
+    assert not alternative["is_beyond_range"]
+
+
+def test_the_costliest_target_saves_what_it_says(here: World, client: Client) -> None:
+    said, plan = why_route(client, plan_body(here.towers[0], here.towers[5]))
+    heaviest = said["heaviest"]
+    rest = here.towers[0] if heaviest["target"] == 1 else here.towers[5]
+    without = post(client, "plans", plan_body(rest)).json()
+    assert heaviest["saves_m"] == pytest.approx(plan["total_length_m"] - without["total_length_m"], rel=1e-4)
+
+
+def test_a_viewer_may_ask_why(here: World) -> None:
+    viewer = client_of(somebody(Role.VIEWER))
+    assert why_target(viewer, plan_body(here.towers[0]))["target"] == 0
+
+
+@pytest.mark.parametrize(
+    ("path", "more", "place"),
+    [
+        ("plans/why-target", {"target": 7}, "target"),
+        ("plans/why-route", {"routes": [], "uav": 0}, "routes"),
+        ("plans/why-route", {"routes": [[0, 0]], "uav": 0}, "routes"),
+        ("plans/why-route", {"routes": [[5]], "uav": 0}, "routes"),
+        ("plans/why-route", {"routes": [[]], "uav": 0}, "uav"),
+    ],
+)
+def test_a_question_about_another_plan_is_refused(here: World, client: Client, path: str, more: dict[str, Any], place: str) -> None:
+    response = post(client, path, plan_body(here.towers[0]) | more)
+    assert response.status_code == 400
+    assert place in response.json()["error"]["details"]
