@@ -5,11 +5,11 @@ from typing import Any
 
 from rest_framework import serializers
 
-from inspection.data_gaps.words import sentence, title
 from inspection.models import Asset, AssetKind, DataGap, GapKind, GapState
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.gaps import GapSummary
 from inspection.serializers.features import collection_serializer, feature_serializer
+from inspection.serializers.gap_words import sentence, title
 from inspection.services.repairs import Offer, Repaired
 
 LONGEST_NOTE = 500

@@ -7,8 +7,9 @@ from rest_framework import serializers
 
 from inspection.models import HeightReference, NoFlyZone
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+from inspection.serializers.schedule_words import schedule_sentence
 from inspection.zones.geometry_gate import GeometryFault
-from inspection.zones.schedule import checked_schedule, schedule_sentence
+from inspection.zones.schedule import checked_schedule
 
 
 class LimitSerializer(serializers.Serializer):

@@ -13,11 +13,10 @@ from typing import Any
 from inspection.zones.geometry_gate import GeometryFault
 
 DAYS = ("MON", "TUE", "WED", "THU", "FRI", "SAT", "SUN")
-EVENTS = {"BMCT": "morning civil twilight", "SR": "sunrise", "SS": "sunset", "EECT": "the end of evening civil twilight"}
+EVENTS = ("BMCT", "SR", "SS", "EECT")  # morning civil twilight, sunrise, sunset, end of evening civil twilight
 MAX_PERIODS = 200
 MAX_ENTRIES = 100
 _TIME = re.compile(r"(\d{2}):(\d{2})(?::(\d{2})(?:\.\d{1,9})?)?(Z|[+-]\d{2}:\d{2})?")
-_DAY_WORDS = dict(zip(DAYS, ("Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"), strict=True))
 _MINUTES_A_DAY = 24 * 60
 
 Schedule = list[dict[str, Any]]
@@ -34,13 +33,6 @@ def checked_schedule(value: Any, place: str) -> Schedule | None:
     periods = [_period(period, f"{place}[{index}]") for index, period in enumerate(value)]
     always: dict[str, Any] = {"startDateTime": None, "endDateTime": None, "schedule": []}
     return None if always in periods else periods
-
-
-def schedule_sentence(schedule: Schedule | None) -> str:
-    """Words for people: "Mon to Fri 08:00 to 18:00 UTC, until 31 Dec 2026"."""
-    if schedule is None:
-        return "Always"
-    return "; ".join(_period_words(period) for period in schedule)
 
 
 def _period(period: Any, place: str) -> dict[str, Any]:
@@ -118,44 +110,3 @@ def _time_of_day(value: Any, place: str) -> str | None:
     if not 0 <= utc < _MINUTES_A_DAY:
         raise GeometryFault(place, f"{value} is on another day in UTC; write the days and times in UTC")
     return f"{utc // 60:02}:{utc % 60:02}:{second:02}Z"
-
-
-def _period_words(period: dict[str, Any]) -> str:
-    times = ", ".join(_entry_words(entry) for entry in period["schedule"]) or "all the time"
-    start, end = (_date_words(period[name]) for name in ("startDateTime", "endDateTime"))
-    if start and end:
-        return f"{times}, from {start} to {end}"
-    return f"{times}, from {start}" if start else f"{times}, until {end}" if end else times
-
-
-def _entry_words(entry: dict[str, Any]) -> str:
-    days = _days_words(entry["day"])
-    start = _side_words(entry, "start")
-    end = _side_words(entry, "end")
-    if not start and not end:
-        return f"{days} all day"
-    times = f"{start or 'the day begins'} to {end or 'the day ends'}"
-    return f"{days} {times} UTC" if entry["startTime"] or entry["endTime"] else f"{days} {times}"
-
-
-def _side_words(entry: dict[str, Any], side: str) -> str:
-    if event := entry[f"{side}Event"]:
-        return EVENTS[event]
-    return (entry[f"{side}Time"] or "")[:5]
-
-
-def _days_words(days: list[str]) -> str:
-    if days == ["ANY"]:
-        return "daily"
-    numbers = [DAYS.index(day) for day in days]
-    if len(numbers) > 2 and numbers == list(range(numbers[0], numbers[-1] + 1)):
-        return f"{_DAY_WORDS[days[0]]} to {_DAY_WORDS[days[-1]]}"
-    return ", ".join(_DAY_WORDS[day] for day in days)
-
-
-def _date_words(moment: str | None) -> str:
-    if moment is None:
-        return ""
-    when = datetime.fromisoformat(moment.replace("Z", "+00:00"))
-    clock = "" if (when.hour, when.minute) in {(0, 0), (23, 59)} else f" {when:%H:%M} UTC"
-    return f"{when.day} {when:%b %Y}{clock}"

@@ -4,8 +4,9 @@ from typing import Any
 
 import pytest
 
+from inspection.serializers.schedule_words import schedule_sentence
 from inspection.zones.geometry_gate import GeometryFault
-from inspection.zones.schedule import checked_schedule, schedule_sentence
+from inspection.zones.schedule import checked_schedule
 
 
 def entry(*days: str, **sides: str | None) -> dict[str, Any]:
