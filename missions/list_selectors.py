@@ -10,7 +10,7 @@ from uuid import UUID
 from django.contrib.gis.db.models import GeometryField
 from django.contrib.gis.geos import GEOSGeometry, Polygon
 from django.core.cache import cache
-from django.db.models import Count, Exists, F, FloatField, Func, IntegerField, Max, OuterRef, Q, QuerySet, Subquery, Value
+from django.db.models import CharField, Count, Exists, F, FloatField, Func, IntegerField, Max, OuterRef, Q, QuerySet, Subquery, Value
 from django.db.models.functions import Coalesce, Lower
 
 from inspection.models import Asset, AssetKind
@@ -25,7 +25,7 @@ LEAST_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
 MOST_LINES = 60
 MOST_PLACES = 60
 KEPT_S = 7 * 24 * 3600
-METRES_OR_NONE = -1.0  # what was not planned stands below what was
+NOT_PLANNED = -1.0  # what was not planned stands below what was
 
 LAST_CHANGED_FIRST = "-changed"
 # the list's columns by their names in the API → the annotations below
@@ -95,11 +95,12 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[Mission]:
             unassigned_count=_count_of(InspectionTarget.objects.exclude(unassigned_reason="")),
             uav_count=_count_of(MissionUav.objects.all()),
             duration_s=Subquery(longest, output_field=FloatField()),
-            sort_name=Lower("name"),
-            sort_author=Lower(Coalesce(F("author__username"), Value(""))),
-            sort_state=Lower("state"),
-            sort_length_m=Coalesce(F("total_length_m"), Value(METRES_OR_NONE)),
-            sort_duration_s=Coalesce(Subquery(longest, output_field=FloatField()), Value(METRES_OR_NONE)),
+            # with fields of their own: a page's cursor reads these values, not those of the columns they are made from
+            sort_name=Lower("name", output_field=CharField()),
+            sort_author=Lower(Coalesce(F("author__username"), Value("")), output_field=CharField()),
+            sort_state=Lower("state", output_field=CharField()),
+            sort_length_m=Coalesce(F("total_length_m"), Value(NOT_PLANNED), output_field=FloatField()),
+            sort_duration_s=Coalesce(Subquery(longest, output_field=FloatField()), Value(NOT_PLANNED), output_field=FloatField()),
         )
         .prefetch_related("routes")
     )

@@ -23,9 +23,9 @@ def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, del
     )
 
 
-def revision_of_mission(organisation: Organisation, mission_id: UUID) -> int | None:
+def revision_of_mission(organisation_id: int, mission_id: UUID) -> int | None:
     """The number behind the ETag, by one column of one row; None for a mission that is not there."""
-    return Mission.objects.filter(organisation=organisation, deleted_at=None, pk=mission_id).values_list("revision", flat=True).first()
+    return Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("revision", flat=True).first()
 
 
 def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:

@@ -100,7 +100,7 @@ class MissionPresence(APIView):
     )
     def post(self, request: Request, mission_id: UUID) -> Response:
         user = request.user
-        if selectors.revision_of_mission(user.organisation, mission_id) is None:
+        if selectors.revision_of_mission(user.organisation_id, mission_id) is None:
             raise Http404
         serializer = inputs.PresenceInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)

@@ -150,7 +150,7 @@ class MissionDetail(_PlansWhenAsked):
     def get(self, request: Request, mission_id: UUID) -> Response:
         known = request.headers.get("If-None-Match")
         if known is not None:
-            revision = selectors.revision_of_mission(request.user.organisation, mission_id)
+            revision = selectors.revision_of_mission(request.user.organisation_id, mission_id)
             if revision is not None and f'"{revision}"' in [tag.strip().removeprefix("W/") for tag in known.split(",")]:
                 return Response(status=304, headers={"ETag": f'"{revision}"'})
         return answer_mission(request.user, mission_id)
