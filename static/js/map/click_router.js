@@ -1,5 +1,6 @@
 /** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
 
+import { drawLassos } from "./lasso.js";
 import { PICKABLE, TILES } from "./style.js";
 
 const REACH_PX = { fine: 6, coarse: 16 };
@@ -42,7 +43,7 @@ export function piecesOf(map, thing) {
   return pieces.length ? pieces : [thing.geometry];
 }
 
-/** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), tool(), kinds(): those that count now, or null } */
+/** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), lasso?(ring), tool(), kinds(): those that count now, or null } */
 export function routeClicks(map, on) {
   const canvas = map.getCanvasContainer();
   const reach = matchMedia("(pointer: coarse)").matches ? REACH_PX.coarse : REACH_PX.fine;
@@ -68,6 +69,7 @@ export function routeClicks(map, on) {
   });
 
   dragBoxes(map, canvas, on);
+  if (on.lasso) drawLassos(map, canvas, on);
 }
 
 /** Shift and drag, or the box tool and drag: a box in lon lat. */

@@ -1,45 +1,71 @@
-/** Search for assets by what people call them; empty, it lists what is in view. The list does all that the map does. */
+/** Search for assets by what people call them, and for places; empty, it lists what is in view. The list does all that the map does. */
 
 import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
+import { placesFound } from "../../map/places_found.js";
+import { t, tn } from "../../text.js";
+import { MOST_TARGETS } from "../picking.js";
 import { detailOf } from "../selection.js";
 
 const WAIT_MS = 180;
 const MOST = 12;
+const KINDS = [
+  { kind: "tower", words: () => t("Towers") },
+  { kind: "line", words: () => t("Lines") },
+  { kind: "railway", words: () => t("Railways") },
+  { kind: "bridge", words: () => t("Bridges") },
+];
 
-export function mountFinder({ box, show, add, canPlan }) {
+/** page: { box(), show(feature), add(feature), addAll(features), goTo(place), things(), canPlan } */
+export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
   const input = byId("find");
   const list = byId("found");
+  const panel = byId("found-panel");
+  const head = byId("found-head");
+  const foot = byId("found-foot");
   const frame = byId("finder");
+  const filters = { inView: false, kinds: new Set() };
   let timer = 0;
   let asking = null;
-  let features = [];
+  let results = []; // { words, detail, icon, end, act }
   let active = -1;
 
   const close = () => {
     asking?.abort();
     clearTimeout(timer);
-    list.hidden = true;
+    panel.hidden = true;
     input.setAttribute("aria-expanded", "false");
     input.removeAttribute("aria-activedescendant");
     frame.classList.remove("open");
   };
 
-  function draw(head, lines) {
-    list.replaceChildren(...(head ? [h("p", { class: "found-head" }, head)] : []), ...lines);
-    list.hidden = false;
-    input.setAttribute("aria-expanded", "true");
-  }
-
-  function option(feature, index) {
-    const { kind, label } = feature.properties;
+  function option(result, index) {
     return h(
       "div",
       { role: "option", id: `found-${index}`, "aria-selected": String(index === active), onpointerdown: (event) => event.preventDefault(), onclick: () => take(index), onpointerenter: () => activate(index, false) },
-      icon(kind),
-      h("span", { class: "what" }, label, " ", h("span", {}, detailOf(kind, feature.properties))),
-      h("span", { class: "end" }, canPlan ? "Add" : "Show"),
+      icon(result.icon),
+      h("span", { class: "what" }, result.words, " ", h("span", {}, result.detail)),
+      h("span", { class: "end" }, result.end),
     );
+  }
+
+  function draw(words, total) {
+    head.textContent = words;
+    head.hidden = !words;
+    list.replaceChildren(...results.map(option));
+    list.hidden = results.length === 0;
+    panel.hidden = false;
+    input.setAttribute("aria-expanded", "true");
+    drawFoot(total);
+  }
+
+  function drawFoot(total) {
+    foot.hidden = !canPlan || total < 2;
+    if (foot.hidden) return;
+    const isTooMany = total > MOST_TARGETS;
+    const words = isTooMany ? t("{count} match; a mission takes {most}. Narrow the search to add all.", { count: total, most: MOST_TARGETS }) : "";
+    const button = h("button", { type: "button", class: "button", onpointerdown: (event) => event.preventDefault(), onclick: takeAll }, icon("list-plus", "small"), tn(total, "Add all {count}", "Add all {count}"));
+    foot.replaceChildren(isTooMany ? h("p", {}, words) : button);
   }
 
   function activate(index, scroll = true) {
@@ -51,12 +77,31 @@ export function mountFinder({ box, show, add, canPlan }) {
   }
 
   function take(index) {
-    const feature = features[index];
-    if (!feature) return;
-    show(feature);
-    if (canPlan) add(feature);
+    const result = results[index];
+    if (!result) return;
+    result.act();
     input.value = "";
     close();
+  }
+
+  const assetResult = (feature) => {
+    const { kind, label } = feature.properties;
+    const act = () => {
+      show(feature);
+      if (canPlan) add(feature);
+    };
+    return { icon: kind, words: label, detail: detailOf(kind, feature.properties), end: canPlan ? t("Add") : t("Show"), act };
+  };
+  const placeResult = (place) => ({ icon: place.icon, words: place.label, detail: place.detail ?? "", end: t("Go there"), act: () => goTo(place) });
+
+  /** What is asked of /assets: the text, and what is in view where that is meant. */
+  function question() {
+    const text = input.value.trim();
+    const parts = new URLSearchParams();
+    if (text) parts.set("text", text);
+    if (filters.inView || !text) parts.set("bbox", box().map((degrees) => degrees.toFixed(6)).join(","));
+    if (filters.kinds.size) parts.set("kind", [...filters.kinds].join(","));
+    return parts;
   }
 
   async function search() {
@@ -64,40 +109,86 @@ export function mountFinder({ box, show, add, canPlan }) {
     asking?.abort();
     asking = new AbortController();
     const { signal } = asking;
-    const query = text ? `text=${encodeURIComponent(text)}` : `bbox=${box().map((degrees) => degrees.toFixed(6)).join(",")}`;
+    const asked = question();
     try {
-      const { data } = await get(`/assets?${query}&limit=${MOST}`, { signal });
-      features = data.features;
+      const [{ data }, places] = await Promise.all([
+        get(`/assets?${asked}&limit=${MOST}&total=true`, { signal }),
+        text && !filters.kinds.size ? placesFound(text, { signal, things: things() }) : [],
+      ]);
+      results = [...places.map(placeResult), ...data.features.map(assetResult)];
       active = -1;
-      const head = text ? "" : features.length ? "In view" : "";
-      const none = text ? `No asset matches “${text}”.` : "Nothing is in view. Type a reference, a name, an operator or a voltage.";
-      draw(head, features.length ? features.map(option) : [h("p", {}, none)]);
-      if (features.length && text) activate(0);
+      draw(results.length ? headOf(asked, data.total) : emptyWords(text), data.total);
+      if (results.length && text) activate(0);
     } catch (error) {
       if (error.name === "AbortError") return;
-      features = [];
-      draw("", [h("p", {}, error instanceof ApiError ? error.message : "The search failed.")]);
+      results = [];
+      draw(error instanceof ApiError ? error.message : t("The search failed. Try again."), 0);
     }
   }
 
+  function headOf(asked, total) {
+    const count = tn(total, "{count} asset", "{count} assets");
+    return asked.has("bbox") ? t("{count} in view", { count }) : total > MOST ? count : "";
+  }
+
+  function emptyWords(text) {
+    const isFiltered = filters.kinds.size > 0 || filters.inView;
+    if (text && isFiltered) return t("No asset matches “{text}” with these filters.", { text });
+    if (text) return t("No asset matches “{text}”.", { text });
+    return t("Nothing is in view. Type a reference, a name, an operator or a voltage.");
+  }
+
+  async function takeAll() {
+    const asked = question();
+    asked.set("flyable", "true");
+    asked.set("limit", String(MOST_TARGETS));
+    try {
+      const { data } = await get(`/assets?${asked}`);
+      addAll(data.features);
+      input.value = "";
+      close();
+    } catch (error) {
+      results = [];
+      draw(error instanceof ApiError ? error.message : t("The search failed. Try again."), 0);
+    }
+  }
+
+  function filter(words, change) {
+    const button = h("button", { type: "button", class: "filter-chip", "aria-pressed": "false", onpointerdown: (event) => event.preventDefault() }, words);
+    button.addEventListener("click", () => {
+      button.setAttribute("aria-pressed", String(change()));
+      search();
+    });
+    return button;
+  }
+
+  byId("found-filters").append(
+    filter(t("In view"), () => (filters.inView = !filters.inView)),
+    ...KINDS.map(({ kind, words }) => filter(words(), () => !filters.kinds.delete(kind) && Boolean(filters.kinds.add(kind)))),
+  );
   input.addEventListener("input", () => {
     clearTimeout(timer);
     timer = setTimeout(search, WAIT_MS);
   });
   input.addEventListener("focus", search);
-  input.addEventListener("blur", close);
+  frame.addEventListener("focusout", (event) => {
+    if (!frame.contains(event.relatedTarget)) close();
+  });
+  frame.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    event.preventDefault();
+    input.value = "";
+    close();
+    document.activeElement?.blur();
+  });
   input.addEventListener("keydown", (event) => {
     if (event.key === "ArrowDown" || event.key === "ArrowUp") {
       event.preventDefault();
       const step = event.key === "ArrowDown" ? 1 : -1;
-      if (features.length) activate((active + step + features.length) % features.length);
+      if (results.length) activate((active + step + results.length) % results.length);
     } else if (event.key === "Enter") {
       event.preventDefault();
       take(Math.max(active, 0));
-    } else if (event.key === "Escape") {
-      event.preventDefault();
-      input.value = "";
-      input.blur();
     }
   });
   const focus = () => {

@@ -1,105 +1,206 @@
-/** The list of targets: pill, kind, name, second fact, remove. */
+/** The list of targets: pill, kind, name, second fact, task, remove; and what is done with several of them at once. */
 
 import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
+import { toggleMenu } from "../../page/chrome.js";
+import { t, tn } from "../../text.js";
 import { inPlanOrder, isPlanCurrent, placesOf, unreachedOf } from "../plan_view.js";
-import { nameOf } from "../selection.js";
+import { isUsualTask, isWhole, nameOf, taskOf } from "../selection.js";
+import { targetMenu, taskIcon, taskText } from "../target_menu.js";
+import { mountChosenBar } from "./chosen_bar.js";
 
 const SHOWN_FIRST = 40;
 const ICONS = { tower: "tower", line: "line", railway: "railway", bridge: "bridge", place: "map-pin" };
 
 export function mountTargets(store, actions, canPlan, showOnMap) {
   let showAll = false;
+  let isChoosing = false;
+  let anchor = null; // where a range with Shift begins
+  let shown = { places: new Map(), missed: new Set(), order: [] };
   const list = byId("target-list");
-  const draw = keyedList(
-    list,
-    (target) => target.key,
-    (target) => {
-      const row = h(
-        "li",
-        {
-          class: "target",
-          onpointerenter: () => store.update({ litTarget: target.key }),
-          onpointerleave: () => store.update({ litTarget: null }),
-          onfocusin: () => store.update({ litTarget: target.key }),
-          onfocusout: () => store.update({ litTarget: null }),
-        },
-        h("span", { class: "pill" }),
-        icon(ICONS[target.kind] ?? "map-pin"),
-        h("button", { type: "button", class: "what", onclick: () => choose(target) }, h("span", {}, target.label), h("small", {})),
-        canPlan &&
-          h(
-            "button",
-            { type: "button", class: "icon-button tight", "aria-label": `Remove ${target.label}`, title: "Remove (Del)", onclick: () => actions.removeTargets([target.key]) },
-            icon("x", "small"),
-          ),
-      );
-      row.addEventListener("keydown", (event) => {
-        if (event.key === "Delete" && canPlan) {
-          event.preventDefault();
-          event.stopPropagation();
-          actions.removeTargets([target.key]);
-        } else if ((event.key === "ArrowDown" || event.key === "ArrowUp") && event.target.classList.contains("what")) {
-          const next = event.key === "ArrowDown" ? row.nextElementSibling : row.previousElementSibling;
-          if (next) event.preventDefault();
-          next?.querySelector(".what").focus();
-        }
-      });
-      return row;
-    },
-    (row, target, index) => {
-      const { places, missed, chosenTarget } = shown;
-      const place = places.get(target.key);
-      const pill = row.querySelector(".pill");
-      pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : missed.has(target.key) ? "missed" : "waiting"}`;
-      pill.textContent = place ? `${place.letter}${place.number}` : missed.has(target.key) ? "×" : `${index + 1}`;
-      pill.setAttribute("aria-label", place ? `Target ${place.number} of UAV ${place.letter}` : missed.has(target.key) ? "Not reached" : "Not planned yet");
-      row.querySelector("small").textContent = target.detail;
-      row.querySelector(".what").title = nameOf(target);
-      row.classList.toggle("chosen", chosenTarget === target.key);
-    },
-  );
+  const isChosen = (target) => store.state.chosenTargets.includes(target.key);
 
-  let shown = { places: new Map(), missed: new Set(), chosenTarget: null };
-
-  function choose(target) {
-    store.update({ chosenTarget: target.key });
-    showOnMap(target);
+  function setChosen(keys) {
+    if (canPlan && keys.length > 1) isChoosing = true;
+    store.update({ chosenTargets: keys, chosenTarget: keys.at(-1) ?? null });
   }
 
+  function toggle(target) {
+    anchor = target.key;
+    const { chosenTargets } = store.state;
+    setChosen(isChosen(target) ? chosenTargets.filter((key) => key !== target.key) : [...chosenTargets, target.key]);
+  }
+
+  function chooseUpTo(target) {
+    const from = Math.max(0, shown.order.indexOf(anchor ?? target.key));
+    const to = shown.order.indexOf(target.key);
+    const range = shown.order.slice(Math.min(from, to), Math.max(from, to) + 1);
+    setChosen(from <= to ? range : range.reverse());
+  }
+
+  function press(event, target) {
+    if (canPlan && event.shiftKey) chooseUpTo(target);
+    else if (canPlan && (event.ctrlKey || event.metaKey || isChoosing)) toggle(target);
+    else {
+      anchor = target.key;
+      setChosen([target.key]);
+      showOnMap(target);
+    }
+  }
+
+  /** What Delete means in a row: all that are chosen with it. */
+  function removeFrom(target) {
+    actions.removeTargets(isChosen(target) ? store.state.chosenTargets : [target.key]);
+  }
+
+  function more(target) {
+    if (!isWhole(target) || target.asset === null) return [];
+    if (target.kind === "line") return [{ icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(target.asset) }];
+    return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(target.asset) }];
+  }
+
+  function openTask(opener, key) {
+    const target = store.state.selection.targets.find((candidate) => candidate.key === key);
+    toggleMenu(opener, () => targetMenu([target], actions, more(target)));
+  }
+
+  function make(target) {
+    const check = canPlan && h("input", { type: "checkbox", class: "check", "aria-label": t("Choose {name}", { name: target.label }) });
+    const row = h(
+      "li",
+      {
+        class: "target",
+        onpointerenter: () => store.update({ litTarget: target.key }),
+        onpointerleave: () => store.update({ litTarget: null }),
+        onfocusin: () => store.update({ litTarget: target.key }),
+        onfocusout: () => store.update({ litTarget: null }),
+      },
+      check,
+      h("span", { class: "pill" }),
+      icon(ICONS[target.kind] ?? "map-pin"),
+      h("button", { type: "button", class: "what", onclick: (event) => press(event, target) }, h("span", {}, target.label), h("small", {})),
+      canPlan && h("button", { type: "button", class: "icon-button tight task", "aria-haspopup": "true", "aria-expanded": "false", onclick: (event) => openTask(event.currentTarget, target.key) }),
+      canPlan &&
+        h(
+          "button",
+          { type: "button", class: "icon-button tight", "aria-label": t("Remove {name}", { name: target.label }), title: t("Remove (Del)"), onclick: () => actions.removeTargets([target.key]) },
+          icon("x", "small"),
+        ),
+    );
+    if (check) {
+      check.addEventListener("click", (event) => {
+        if (!event.shiftKey) return;
+        event.preventDefault();
+        chooseUpTo(target);
+      });
+      check.addEventListener("change", () => toggle(target));
+    }
+    row.addEventListener("keydown", (event) => pressKey(event, row, target));
+    return row;
+  }
+
+  function pressKey(event, row, target) {
+    if (event.key === "Delete" && canPlan) {
+      event.preventDefault();
+      event.stopPropagation();
+      removeFrom(target);
+      return;
+    }
+    const isArrow = event.key === "ArrowDown" || event.key === "ArrowUp";
+    const part = [".what", ".check"].find((name) => event.target.matches(name));
+    if (!isArrow || event.altKey || !part) return;
+    const next = event.key === "ArrowDown" ? row.nextElementSibling : row.previousElementSibling;
+    if (!next) return;
+    event.preventDefault();
+    next.querySelector(part).focus();
+    const key = shown.order[[...list.children].indexOf(next)];
+    const reached = store.state.selection.targets.find((candidate) => candidate.key === key);
+    if (event.shiftKey && canPlan && reached) {
+      anchor ??= target.key;
+      chooseUpTo(reached);
+    }
+  }
+
+  function refreshRow(row, target, index) {
+    const place = shown.places.get(target.key);
+    const isMissed = shown.missed.has(target.key);
+    const pill = row.querySelector(".pill");
+    pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : isMissed ? "missed" : "waiting"}`;
+    pill.textContent = place ? `${place.letter}${place.number}` : isMissed ? "×" : `${index + 1}`;
+    pill.setAttribute("aria-label", place ? t("Target {number} of UAV {letter}", { number: place.number, letter: place.letter }) : isMissed ? t("Not reached") : t("Not planned yet"));
+    row.querySelector("small").textContent = target.detail;
+    row.querySelector(".what").title = nameOf(target);
+    row.classList.toggle("chosen", isChosen(target));
+    if (!canPlan) return;
+    row.querySelector(".check").checked = isChosen(target);
+    refreshTask(row.querySelector(".task"), target);
+  }
+
+  function refreshTask(button, target) {
+    const task = taskOf(target);
+    const words = taskText(task);
+    if (button.title === words) return;
+    button.replaceChildren(icon(taskIcon(task), "small"));
+    button.title = words;
+    button.setAttribute("aria-label", t("Task of {name}: {task}", { name: target.label, task: words }));
+    button.classList.toggle("own", !isUsualTask(target));
+  }
+
+  const draw = keyedList(list, (target) => target.key, make, refreshRow);
+
   function refresh(state) {
+    const { targets } = state.selection;
     const isCurrent = isPlanCurrent(state);
-    shown = {
-      places: isCurrent ? placesOf(state.plan) : new Map(),
-      missed: new Set(isCurrent ? unreachedOf(state.plan).map(({ target }) => target.key) : []),
-      chosenTarget: state.chosenTarget,
-    };
-    const all = inPlanOrder(state.selection.targets, shown.places);
+    const places = isCurrent ? placesOf(state.plan) : new Map();
+    const all = inPlanOrder(targets, places);
+    shown = { places, missed: new Set(isCurrent ? unreachedOf(state.plan).map(({ target }) => target.key) : []), order: all.map((target) => target.key) };
+    isChoosing &&= targets.length > 1;
+    list.classList.toggle("choosing", isChoosing);
     const visible = showAll ? all : all.slice(0, SHOWN_FIRST);
     draw(visible);
     const rest = all.length - visible.length;
     byId("show-more").hidden = rest === 0;
-    byId("show-more").textContent = `Show ${rest} more`;
+    byId("show-more").textContent = tn(rest, "Show {count} more", "Show {count} more");
     byId("target-count").textContent = all.length || "";
     byId("targets-empty").hidden = all.length > 0;
-    byId("clear-targets").hidden = all.length < 2 || !canPlan;
+    if (!canPlan) return;
+    byId("choose-targets").hidden = byId("clear-targets").hidden = all.length < 2;
+    byId("choose-targets").setAttribute("aria-pressed", String(isChoosing));
     byId("undo").disabled = !state.canUndo;
     byId("redo").disabled = !state.canRedo;
+    bar?.refresh(isChoosing);
   }
 
+  let bar = null;
   byId("show-more").addEventListener("click", () => {
     showAll = true;
     refresh(store.state);
   });
-  byId("clear-targets").addEventListener("click", () => actions.removeTargets(store.state.selection.targets.map((target) => target.key)));
-  byId("undo").addEventListener("click", actions.undo);
-  byId("redo").addEventListener("click", actions.redo);
-  document.getElementById("pick-line")?.addEventListener("click", () => store.update({ tool: "line" }));
-  document.getElementById("tools")?.addEventListener("change", (event) => store.update({ tool: event.target.value }));
+  if (canPlan) {
+    const stopChoosing = () => {
+      isChoosing = false;
+      setChosen([]);
+      refresh(store.state);
+    };
+    bar = mountChosenBar(store, actions, { chooseAll: () => setChosen(shown.order), done: stopChoosing });
+    byId("choose-targets").addEventListener("click", () => {
+      if (isChoosing) return stopChoosing();
+      isChoosing = true;
+      refresh(store.state);
+      return list.querySelector(".check")?.focus();
+    });
+    byId("clear-targets").addEventListener("click", () => actions.removeTargets(store.state.selection.targets.map((target) => target.key)));
+    byId("undo").addEventListener("click", actions.undo);
+    byId("redo").addEventListener("click", actions.redo);
+  }
 
-  store.listen(["tool"], ({ tool }) => {
-    const radio = document.querySelector(`#tools [value="${tool}"]`);
-    if (radio) radio.checked = true;
+  // What is chosen elsewhere, such as by a pill on the map, is chosen alone; what is no longer picked is not chosen.
+  store.listen(["chosenTarget", "selection"], ({ chosenTarget, chosenTargets, selection }) => {
+    const known = new Set(selection.targets.map((target) => target.key));
+    const kept = chosenTargets.filter((key) => known.has(key));
+    if (chosenTarget !== null && known.has(chosenTarget) && !kept.includes(chosenTarget)) store.update({ chosenTargets: [chosenTarget] });
+    else if (chosenTarget === null && kept.length) store.update({ chosenTargets: [] });
+    else if (kept.length !== chosenTargets.length) store.update({ chosenTargets: kept, chosenTarget: kept.at(-1) ?? null });
   });
-  store.listen(["selection", "plan", "chosenTarget", "canUndo", "canRedo"], refresh);
+  store.listen(["selection", "plan", "chosenTargets", "canUndo", "canRedo"], refresh);
 }

@@ -1,0 +1,64 @@
+/** A line drawn by hand round what is meant: the ring in lon lat, or nothing where it encloses too little. */
+
+import { svg } from "../dom.js";
+
+const STEP_PX = 4; // between kept points
+const LEAST_PX = 24; // a smaller drawing was a click
+
+/** on: { tool(), lasso([[lon, lat], …]) } */
+export function drawLassos(map, canvas, on) {
+  let points = null; // on the screen
+  let drawing = null;
+  let line = null;
+
+  const placeOf = (event) => {
+    const box = canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  };
+
+  function stop() {
+    if (!points) return null;
+    const drawn = points;
+    points = null;
+    drawing.remove();
+    map.dragPan.enable();
+    return drawn;
+  }
+
+  canvas.addEventListener(
+    "pointerdown",
+    (event) => {
+      if (event.button !== 0 || on.tool() !== "lasso" || event.shiftKey || !event.isPrimary) return;
+      event.stopPropagation();
+      event.preventDefault();
+      map.dragPan.disable();
+      points = [placeOf(event)];
+      line = svg("polygon", {});
+      drawing = svg("svg", { class: "lasso-frame", "aria-hidden": "true" }, line);
+      canvas.append(drawing);
+      canvas.setPointerCapture(event.pointerId);
+    },
+    true,
+  );
+  canvas.addEventListener("pointermove", (event) => {
+    if (!points) return;
+    const [x, y] = placeOf(event);
+    const [lastX, lastY] = points.at(-1);
+    if (Math.hypot(x - lastX, y - lastY) < STEP_PX) return;
+    points.push([x, y]);
+    line.setAttribute("points", points.map((point) => point.join(",")).join(" "));
+  });
+  canvas.addEventListener("pointerup", () => {
+    const drawn = stop();
+    if (!drawn || !isWide(drawn)) return;
+    on.lasso(drawn.map((point) => map.unproject(point)).map(({ lng, lat }) => [lng, lat]));
+  });
+  canvas.addEventListener("pointercancel", stop);
+  return { stop };
+}
+
+/** Whether a drawing is meant to go round something. */
+export function isWide(points) {
+  const spanOf = (values) => Math.max(...values) - Math.min(...values);
+  return points.length > 2 && spanOf(points.map(([x]) => x)) + spanOf(points.map(([, y]) => y)) > LEAST_PX;
+}
