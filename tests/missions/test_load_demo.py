@@ -7,7 +7,7 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.core.management import CommandError, call_command
 
-from missions.models import Uav
+from missions.models import Base, Uav, UavType
 from workspace.models import Role, User
 
 pytestmark = pytest.mark.django_db
@@ -32,6 +32,15 @@ def test_four_uavs_stand_at_two_bases() -> None:
     load_demo()
     assert Uav.objects.count() == 4
     assert Uav.objects.values("base_name", "location").distinct().count() == 2
+
+
+def test_each_uav_has_a_type_with_its_range_and_sensors_and_a_base() -> None:
+    load_demo()
+    assert (UavType.objects.count(), Base.objects.count()) == (2, 2)
+    kestrel = Uav.objects.get(name="Kestrel 1")
+    assert (kestrel.range_m, kestrel.speed_mps, kestrel.sensors) == (60_000.0, 14.0, ["RGB camera", "Thermal camera"])
+    assert kestrel.base is not None
+    assert kestrel.location == kestrel.base.location
 
 
 def test_loading_again_changes_nothing_not_even_a_uav_that_has_moved() -> None:

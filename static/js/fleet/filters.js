@@ -22,6 +22,7 @@ export function mountFilters(store, { onTab, onChange }) {
   store.listen(["tab"], ({ tab }) => {
     byId("fleet-tabs").querySelector(`input[value=${tab}]`).checked = true;
     byId("of-uavs").hidden = tab !== "uavs";
+    text.placeholder = KINDS[tab].hint;
   });
 
   store.listen(["numbers", "types", "bases"], ({ numbers, types, bases }) => {

@@ -12,6 +12,7 @@ const ROUND_DEG = 0.02; // what is seen round a lone place
 const NEAR_ZOOM = 13;
 const ROW_PX = 22;
 const SQUARE_PX = 26;
+const EDGE_PX = 56;
 
 const around = (box) => box && [box[0] - ROUND_DEG, box[1] - ROUND_DEG, box[2] + ROUND_DEG, box[3] + ROUND_DEG];
 const rounded = ({ lng, lat }) => [Number(lng.toFixed(6)), Number(lat.toFixed(6))];
@@ -75,6 +76,13 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
         const offset = [before.base ? SQUARE_PX / 2 : -14, before.rows * ROW_PX];
         markers.push(new maplibre.Marker({ element: marker(uav, "uavs", isChosen("uavs", uav)), anchor: "left", offset }).setLngLat(uav.position).addTo(map));
       }
+    },
+
+    /** Everything again. */
+    lookAtAll({ uavs, bases }) {
+      const box = around(boxAround([...uavs, ...bases].map((row) => row.position)));
+      map.resize();
+      if (box) map.fitBounds([box.slice(0, 2), box.slice(2)], { padding: EDGE_PX, duration: 0 });
     },
 
     /** Brings a place into view. */

@@ -1,7 +1,7 @@
 /** The three things of the fleet: where each comes from, what its table shows, how it is named and told in full. */
 
 import { h } from "../dom.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { coordinateText, speedText } from "../units.js";
 import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, stateChip, uavsText, wattHours } from "./words.js";
 
@@ -14,6 +14,8 @@ export const KINDS = {
     icon: "uav",
     words: t("UAVs"),
     one: t("New UAV"),
+    count: (count) => tn(count, "{count} UAV", "{count} UAVs"),
+    hint: t("Name, base, type or serial number"),
     path: "/uavs",
     read: flat,
     columns: [
@@ -44,6 +46,8 @@ export const KINDS = {
     icon: "settings",
     words: t("Types"),
     one: t("New type"),
+    count: (count) => tn(count, "{count} type", "{count} types"),
+    hint: t("Name"),
     path: "/uav-types",
     read: (row) => row,
     columns: [
@@ -70,6 +74,8 @@ export const KINDS = {
     icon: "warehouse",
     words: t("Bases"),
     one: t("New base"),
+    count: (count) => tn(count, "{count} base", "{count} bases"),
+    hint: t("Name"),
     path: "/bases",
     read: (row) => row,
     columns: [

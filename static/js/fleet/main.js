@@ -168,7 +168,8 @@ function close() {
   delete byId("fleet-body").dataset.open;
   delete byId("fleet-side").dataset.panel;
   panel.close();
-  store.update({ chosen: null });
+  if (id) store.update({ chosen: null });
+  if (wide.matches && store.state.uavs) map?.lookAtAll(store.state);
   remember();
   if (id) byId("fleet-rows").querySelector(`a[href$="id=${id}"]`)?.focus({ preventScroll: true });
 }

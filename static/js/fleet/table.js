@@ -32,7 +32,7 @@ export function mountTable({ canPlan, onChoose, onNew, onClear }) {
       byId("fleet-table").hidden = !rows?.length;
       byId("fleet-empty").hidden = rows === null || rows.length > 0;
       byId("fleet-more").hidden = !next;
-      byId("fleet-count").textContent = rows?.length ? `${numberText(rows.length)}${next ? "+" : ""} ${kind.words}` : "";
+      byId("fleet-count").textContent = rows?.length ? (next ? t("the first {count}", { count: numberText(rows.length) }) : kind.count(rows.length)) : "";
       if (rows === null) return;
       byId("fleet-caption").textContent = kind.words;
       const focused = byId("fleet-rows").contains(document.activeElement) ? document.activeElement.getAttribute("href") : null;
