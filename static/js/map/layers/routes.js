@@ -27,7 +27,7 @@ export function lookAt(map, palette, sequence) {
 
 /** The distance that the pointer shows in a strip, as a dot on the map; null takes it away. */
 export function showPoint(map, position) {
-  map.getSource("strip-point").setData({
+  map.getSource("strip-point")?.setData({
     type: "FeatureCollection",
     features: position ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: position } }] : [],
   });
