@@ -101,7 +101,7 @@ def texts_of_module(source: str) -> Iterator[Text]:
         if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
             continue
         words = [argument.value for argument in call.args if isinstance(argument, ast.Constant) and isinstance(argument.value, str)]
-        if call.func.id in {"_", "gettext", "gettext_lazy"} and words:
+        if call.func.id in {"_", "gettext", "gettext_lazy", "gettext_noop"} and words:
             yield words[0]
         elif call.func.id in {"ngettext", "ngettext_lazy"} and len(words) > 1:
             yield words[0], words[1]

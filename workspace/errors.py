@@ -8,6 +8,7 @@ from django.core.exceptions import PermissionDenied, RequestDataTooBig, Suspicio
 from django.core.exceptions import ValidationError as DjangoValidationError
 from django.db import DataError, InterfaceError, OperationalError
 from django.http import Http404
+from django.utils.translation import gettext as _
 from rest_framework import exceptions
 from rest_framework.response import Response
 
@@ -34,7 +35,7 @@ def error_body(code: str, message: str, details: Any = None) -> dict[str, Any]:
 
 
 def database_away_problem() -> ApiProblem:
-    return ApiProblem(503, "database_away", "The database cannot be reached. Try again in a moment.", retry_after_s=RETRY_AFTER_S)
+    return ApiProblem(503, "database_away", _("The database cannot be reached. Try again in a moment."), retry_after_s=RETRY_AFTER_S)
 
 
 def error_response(error: Exception, context: dict[str, Any]) -> Response | None:
@@ -66,18 +67,18 @@ def _as_api_exception(error: Exception) -> Exception:
         logger.warning("database away: %s", error)
         return database_away_problem()
     if isinstance(error, Http404):
-        return exceptions.NotFound("There is nothing here, or it belongs to another organisation.")
+        return exceptions.NotFound(_("There is nothing here, or it belongs to another organisation."))
     if isinstance(error, PermissionDenied):
         return exceptions.PermissionDenied(str(error) or None)
     if isinstance(error, DjangoValidationError):
         return exceptions.ValidationError(error.message_dict if hasattr(error, "error_dict") else error.messages)
     if isinstance(error, RequestDataTooBig):
-        return ApiProblem(413, "too_large", "The request is larger than this address takes.")
+        return ApiProblem(413, "too_large", _("The request is larger than this address takes."))
     if isinstance(error, SuspiciousOperation):
-        return ApiProblem(400, "bad_request", "The request cannot be read.")
+        return ApiProblem(400, "bad_request", _("The request cannot be read."))
     if isinstance(error, DataError):
         logger.warning("a value does not fit its column: %s", error)
-        return ApiProblem(400, "invalid", "A value is out of the range that can be stored.")
+        return ApiProblem(400, "invalid", _("A value is out of the range that can be stored."))
     return error
 
 

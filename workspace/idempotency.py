@@ -11,6 +11,7 @@ from functools import wraps
 from typing import Any
 
 from django.db import transaction
+from django.utils.translation import gettext as _
 from rest_framework.renderers import JSONRenderer
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -33,7 +34,9 @@ def idempotent(handler: Handler) -> Handler:
         if key is None:
             return handler(view, request, *args, **kwargs)
         if not (0 < len(key) <= LONGEST_KEY and key.isascii() and key.isprintable()):
-            raise ApiProblem(400, "invalid", f"An Idempotency-Key has 1 to {LONGEST_KEY} printable ASCII characters.")
+            raise ApiProblem(
+                400, "invalid", _("An Idempotency-Key has 1 to %(longest_key)s printable ASCII characters.") % {"longest_key": LONGEST_KEY}
+            )
         digest = _digest(request)
         with transaction.atomic():
             # Waits here while another transaction holds the same key.
@@ -44,7 +47,7 @@ def idempotent(handler: Handler) -> Handler:
                 _keep(kept, response)
                 return response
         if kept.request_sha256 != digest:
-            raise ApiProblem(422, "idempotency_conflict", "This Idempotency-Key was used for another request.")
+            raise ApiProblem(422, "idempotency_conflict", _("This Idempotency-Key was used for another request."))
         return Response(kept.body, status=kept.status, headers={**kept.headers, "Idempotency-Replayed": "true"})
 
     return answer_once

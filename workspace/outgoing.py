@@ -15,6 +15,7 @@ from types import TracebackType
 from urllib.parse import quote, urljoin, urlsplit
 
 from django.conf import settings
+from django.utils.translation import gettext as _
 
 MOST_REDIRECTS = 3
 LONGEST_ADDRESS = 2_000
@@ -93,7 +94,7 @@ def fetch(
     sent = {"User-Agent": USER_AGENT, "Accept-Encoding": "identity", "Connection": "close", **(headers or {})}
     target = _target(address)
     with _Deadline(total_s) as deadline:
-        for _ in range(MOST_REDIRECTS + 1):
+        for _turn in range(MOST_REDIRECTS + 1):
             connection = _Connection(target, timeout_s, deadline)
             try:
                 answer = _ask(connection, target, method, data, sent, deadline)
@@ -105,7 +106,10 @@ def fetch(
                 raise
             finally:
                 connection.close()
-    raise OutgoingFailed(f"{urlsplit(address).hostname} redirects more than {MOST_REDIRECTS} times.")
+    raise OutgoingFailed(
+        _("%(hostname)s redirects more than %(most_redirects)s times.")
+        % {"hostname": urlsplit(address).hostname, "most_redirects": MOST_REDIRECTS}
+    )
 
 
 def check_address(address: str) -> None:
@@ -164,7 +168,7 @@ class _Deadline:
 
     def check(self, host: str) -> None:
         if self.is_over:
-            raise OutgoingFailed(f"{host} did not answer whole within {self._total_s:g} s.")
+            raise OutgoingFailed(_("%(host)s did not answer whole within %(total_s)s s.") % {"host": host, "total_s": f"{self._total_s:g}"})
 
     def _cut(self) -> None:
         if self._socket is not None:
@@ -204,20 +208,20 @@ class _Connection(http.client.HTTPConnection):
 
 def _target(address: str) -> _Target:
     if len(address) > LONGEST_ADDRESS or any(character <= " " or character == "\x7f" or character == "\\" for character in address):
-        raise OutgoingRefused("The address has blanks or signs that no address has, or is too long.")
+        raise OutgoingRefused(_("The address has blanks or signs that no address has, or is too long."))
     try:
         parts = urlsplit(address)
         port = parts.port
         host = (parts.hostname or "").rstrip(".")
         host = host if ":" in host else host.encode("idna").decode("ascii")
     except ValueError as error:  # UnicodeError is one
-        raise OutgoingRefused("This is not an address.") from error
+        raise OutgoingRefused(_("This is not an address.")) from error
     if parts.scheme not in _PORTS:
-        raise OutgoingRefused("Only addresses that begin with https:// or http:// are fetched.")
+        raise OutgoingRefused(_("Only addresses that begin with https:// or http:// are fetched."))
     if parts.username is not None or parts.password is not None:
-        raise OutgoingRefused("An address with a user name or password is not fetched: it would be stored and shown.")
+        raise OutgoingRefused(_("An address with a user name or password is not fetched: it would be stored and shown."))
     if not host or port == 0 or "%" in host:
-        raise OutgoingRefused("The address names no host.")
+        raise OutgoingRefused(_("The address names no host."))
     path = quote(parts.path or "/", safe=_KEPT_SIGNS)
     if parts.query:
         path += f"?{quote(parts.query, safe=_KEPT_SIGNS)}"
@@ -231,8 +235,8 @@ def _check_reachable(target: _Target, addresses: list[str]) -> None:
         return
     if not addresses or not all(is_global(address) for address in addresses):
         raise OutgoingRefused(
-            f"{shown} is not a host of the public internet, so it is not fetched. "
-            f"An administrator can allow it with SPANWISE_OUTGOING_ALLOWED_HOSTS={shown}:{target.port}."
+            _("%(host)s is not a host of the public internet, so it is not fetched. An administrator can allow it with %(setting)s.")
+            % {"host": shown, "setting": f"SPANWISE_OUTGOING_ALLOWED_HOSTS={shown}:{target.port}"}
         )
 
 
@@ -252,11 +256,11 @@ def _receive(
 ) -> Fetched:
     if answer.status not in {200, 304}:
         raise OutgoingFailed(
-            f"{target.host} answers {answer.status} {answer.reason}"[:200].rstrip() + ".",
+            _("%(host)s answers %(answer)s.") % {"host": target.host, "answer": f"{answer.status} {answer.reason}"[:150].rstrip()},
             status=answer.status, retry_after_s=_retry_after_s(answer),
         )  # fmt: skip
     if answer.getheader("Content-Encoding", "identity").strip().lower() not in {"", "identity"}:
-        raise OutgoingFailed(f"{target.host} answers in a packed form that was not asked for.")
+        raise OutgoingFailed(_("%(host)s answers in a packed form that was not asked for.") % {"host": target.host})
     digest, size = hashlib.sha256(), 0
     if answer.status == 200:
         if answer.length is not None and answer.length > max_bytes:
@@ -277,7 +281,7 @@ def _receive(
             raise OutgoingFailed(_sentence(target, error)) from error
         deadline.check(target.host)
         if answer.length:  # bytes that were announced and never came
-            raise OutgoingFailed(f"The connection to {target.host} was cut after {size} bytes.")
+            raise OutgoingFailed(_("The connection to %(host)s was cut after %(size)s bytes.") % {"host": target.host, "size": size})
     return Fetched(
         status=answer.status, content_type=answer.getheader("Content-Type", "")[:200], etag=_header(answer, "ETag", 300),
         last_modified=_header(answer, "Last-Modified", 100), bytes=size, sha256=digest.hexdigest(), address=target.address,
@@ -287,12 +291,12 @@ def _receive(
 def _next_target(target: _Target, answer: http.client.HTTPResponse, data: bytes | None) -> _Target:
     location = answer.getheader("Location", "")
     if not location:
-        raise OutgoingFailed(f"{target.host} redirects to nowhere.", status=answer.status)
+        raise OutgoingFailed(_("%(host)s redirects to nowhere.") % {"host": target.host}, status=answer.status)
     if data is not None and answer.status not in _REPEATED:
-        raise OutgoingFailed(f"{target.host} redirects a question that holds data.", status=answer.status)
+        raise OutgoingFailed(_("%(host)s redirects a question that holds data.") % {"host": target.host}, status=answer.status)
     following = _target(urljoin(target.address, location))
     if target.scheme == "https" and following.scheme != "https":
-        raise OutgoingRefused(f"{target.host} redirects from https to http, which is not followed.")
+        raise OutgoingRefused(_("%(host)s redirects from https to http, which is not followed.") % {"host": target.host})
     return following
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from django.core.exceptions import ValidationError as DjangoValidationError
 from django.db.models import Model, Q, QuerySet
+from django.utils.translation import gettext as _
 from rest_framework.request import Request
 
 from workspace.errors import ApiProblem
@@ -43,7 +44,8 @@ def _limit(request: Request, default_limit: int, max_limit: int) -> int:
     if not text:
         return default_limit
     if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) > 0):
-        raise ApiProblem(400, "invalid", "limit: A whole number from 1 is needed.", details={"limit": ["A whole number from 1 is needed."]})
+        fault = _("A whole number from 1 is needed.")
+        raise ApiProblem(400, "invalid", f"limit: {fault}", details={"limit": [fault]})
     return min(int(text), max_limit)
 
 
@@ -68,7 +70,7 @@ def _rows_after(queryset: QuerySet[Any], order: tuple[str, ...], cursor: str) ->
         texts = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
         values = [_field(queryset, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]
     except (binascii.Error, ValueError, TypeError, OverflowError, RecursionError, DjangoValidationError) as error:
-        raise ApiProblem(400, "invalid_cursor", "The cursor is not one that this address gave.") from error
+        raise ApiProblem(400, "invalid_cursor", _("The cursor is not one that this address gave.")) from error
     after = Q()
     equal = Q()
     for name, value in zip(order, values, strict=True):

@@ -5,6 +5,7 @@ import math
 from typing import IO, Any
 
 from django.conf import settings
+from django.utils.translation import gettext as _
 from rest_framework.exceptions import ParseError
 from rest_framework.parsers import BaseParser
 
@@ -22,15 +23,17 @@ class StrictJSONParser(BaseParser):
         limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
         body = stream.read(limit + 1)
         if len(body) > limit:
-            raise ApiProblem(413, "too_large", f"The request body is larger than {limit // 1024} kB.")
+            raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
         try:
             value = json.loads(body.decode(), parse_constant=_refuse_constant, parse_float=_finite_float)
         except UnicodeDecodeError as error:
-            raise ParseError(f"The body is not UTF-8 at byte {error.start}.") from error
+            raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
         except RecursionError as error:
-            raise ParseError(f"The body is nested deeper than {DEEPEST_NESTING} levels.") from error
+            raise ParseError(
+                _("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING}
+            ) from error
         except ValueError as error:
-            raise ParseError(f"The body is not JSON: {error}") from error
+            raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
         _check(value)
         return value
 
@@ -44,35 +47,35 @@ class OctetParser(BaseParser):
         limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
         body = stream.read(limit + 1)
         if len(body) > limit:
-            raise ApiProblem(413, "too_large", f"The request body is larger than {limit // 1024} kB.")
+            raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
         return body
 
 
 def _refuse_constant(name: str) -> float:
-    raise ValueError(f"{name} is not a number")
+    raise ValueError(_("%(name)s is not a number") % {"name": name})
 
 
 def _finite_float(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"{text[:20]} is too large a number")
+        raise ValueError(_("%(value)s is too large a number") % {"value": text[:20]})
     return value
 
 
 def _check(root: Any) -> None:
     """Walk level by level, so that depth costs no stack."""
     level = [root]
-    for _ in range(DEEPEST_NESTING + 1):
+    for _depth in range(DEEPEST_NESTING + 1):
         holders = []
         for value in level:
             if isinstance(value, dict | list):
                 holders.append(value)
             elif isinstance(value, str) and not _can_be_stored(value):
-                raise ParseError("A text holds a NUL character or half a surrogate pair.")
+                raise ParseError(_("A text holds a NUL character or half a surrogate pair."))
         if not holders:
             return
         level = [inner for holder in holders for inner in ((*holder.keys(), *holder.values()) if isinstance(holder, dict) else holder)]
-    raise ParseError(f"The body is nested deeper than {DEEPEST_NESTING} levels.")
+    raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING})
 
 
 def _can_be_stored(text: str) -> bool:

@@ -1,5 +1,6 @@
 """`If-Match` on what several people edit: nobody overwrites what they have not seen."""
 
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse
 from rest_framework.request import Request
 
@@ -22,7 +23,7 @@ def expected_revision(request: Request) -> int | None:
     """The revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header, 412 for what is no ETag of ours."""
     text = request.headers.get("If-Match")
     if text is None:
-        raise ApiProblem(428, "if_match_missing", "Say with If-Match which revision you have seen: its ETag, or * for any.")
+        raise ApiProblem(428, "if_match_missing", _("Say with If-Match which revision you have seen: its ETag, or * for any."))
     text = text.strip().removeprefix("W/").strip('"')
     if text == "*":
         return None

@@ -5,15 +5,40 @@ import re
 from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.contrib.gis.geos import MultiPolygon, Polygon
 from django.db.models import Q, QuerySet
+from django.utils.translation import gettext as _
+from django.utils.translation import gettext_noop
 
 from inspection.models import Asset, AssetKind, NoFlyZone
 
 COORDINATE_DIGITS = 7  # about a centimetre
-WORDS = {"line": "Line", "minor_line": "Line", "cable": "Cable", "pole": "Pole", "portal": "Portal", "tram": "Tramway", "subway": "Subway"}
+# In English: what is stored and what the tiles say. gettext_noop names them for the catalogues.
+KIND_WORDS = {
+    AssetKind.TOWER: gettext_noop("Tower"),
+    AssetKind.LINE: gettext_noop("Line"),
+    AssetKind.RAILWAY: gettext_noop("Railway"),
+    AssetKind.BRIDGE: gettext_noop("Bridge"),
+}
+WORDS = {
+    "line": gettext_noop("Line"),
+    "minor_line": gettext_noop("Line"),
+    "cable": gettext_noop("Cable"),
+    "pole": gettext_noop("Pole"),
+    "portal": gettext_noop("Portal"),
+    "tram": gettext_noop("Tramway"),
+    "subway": gettext_noop("Subway"),
+}
+CARRIES = {
+    "a road and a railway": gettext_noop("carries a road and a railway"),
+    "a railway": gettext_noop("carries a railway"),
+    "a road": gettext_noop("carries a road"),
+    "a path": gettext_noop("carries a path"),
+    "water": gettext_noop("carries water"),
+    "a pipeline": gettext_noop("carries a pipeline"),
+}
 
 VOLTAGE = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s*kV\b", re.IGNORECASE)
 KILOVOLTS = re.compile(r"\d{1,4}(?:\.\d{1,3})?")  # said alone: a reference, or a voltage
-VOLTAGE_NOT_STATED = "voltage not stated"
+VOLTAGE_NOT_STATED = gettext_noop("voltage not stated")
 # Of the line that is read along with a support.
 UNREAD_OF_A_LINE = {f"line__{name}" for name in ("geometry", "centre", "node_osm_ids", "tags", "parts")}
 OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
@@ -101,10 +126,10 @@ def asset_label(asset: Asset) -> str:
     if asset.kind == AssetKind.LINE and (asset.operator or asset.max_voltage_v):
         return " ".join(part for part in (asset.operator, voltage_text(asset.max_voltage_v)) if part)
     if asset.kind == AssetKind.RAILWAY and asset.operator:
-        return f"{asset.operator} railway"
-    word = WORDS.get(asset.subtype, AssetKind(asset.kind).name.capitalize())
+        return _("%(operator)s railway") % {"operator": asset.operator}
+    word = _(WORDS.get(asset.subtype) or KIND_WORDS[AssetKind(asset.kind)])
     if asset.line_id is not None:
-        return f"{word} {asset.place_on_line} of {asset.places_on_line}"
+        return _("%(kind)s %(place)s of %(places)s") % {"kind": word, "place": asset.place_on_line, "places": asset.places_on_line}
     return f"{word} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{word} {asset.pk}"
 
 
@@ -124,13 +149,13 @@ def asset_detail(asset: Asset) -> str:
         return _voltage_and_owner(", ".join(map(voltage_text, asset.voltages_v)), operator if given else "")
     if asset.kind == AssetKind.RAILWAY and given:
         return ", ".join(fact for fact in (asset.name, operator) if fact and fact != given)
-    return f"carries {asset.carries}" if asset.carries else ""
+    return _(CARRIES[asset.carries]) if asset.carries else ""
 
 
 def _voltage_and_owner(voltage: str, owner: str) -> str:
     if voltage:
         return f"{voltage} {owner}".strip()
-    return f"{owner}, {VOLTAGE_NOT_STATED}" if owner else VOLTAGE_NOT_STATED
+    return f"{owner}, {_(VOLTAGE_NOT_STATED)}" if owner else _(VOLTAGE_NOT_STATED)
 
 
 def voltage_text(voltage_v: int | None) -> str:

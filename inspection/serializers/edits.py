@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from inspection.models import AssetKind, HeightReference
@@ -23,7 +24,7 @@ def geometry_problem(fault: GeometryFault) -> ApiProblem:
 
 def _stated(value: Any, place: str) -> Any:
     if isinstance(value, str) and ("\0" in value or any("\ud800" <= character <= "\udfff" for character in value)):
-        raise serializers.ValidationError({place: ["The text has characters that are none."]})
+        raise serializers.ValidationError({place: [_("The text has characters that are none.")]})
     return value
 
 
@@ -51,7 +52,9 @@ class AssetInputSerializer(serializers.Serializer):
 
     def validate_tags(self, tags: dict[str, str]) -> dict[str, str]:
         if len(tags) > MOST_TAGS or any(len(key) > 255 for key in tags):
-            raise serializers.ValidationError(f"At most {MOST_TAGS} tags, with keys of at most 255 characters.")
+            raise serializers.ValidationError(
+                _("At most %(most_tags)s tags, with keys of at most 255 characters.") % {"most_tags": MOST_TAGS}
+            )
         for key, value in tags.items():
             _stated(key, "tags")
             _stated(value, f"tags.{key}")
@@ -93,7 +96,7 @@ class ZoneInputSerializer(serializers.Serializer):
                 shape, values["circle"] = zone_shape(values.get("geometry"), values.get("circle"))
                 values["geometry"] = stored(shape)
             elif self.instance is None:
-                raise serializers.ValidationError({"geometry": ["A zone needs an area or a circle."]})
+                raise serializers.ValidationError({"geometry": [_("A zone needs an area or a circle.")]})
             else:
                 values.pop("circle", None)
                 values.pop("geometry", None)
@@ -115,7 +118,7 @@ class ZoneInputSerializer(serializers.Serializer):
 
         lower, upper = of("lower_limit_m"), of("upper_limit_m")
         if lower is not None and upper is not None and of("lower_reference") == of("upper_reference") and upper < lower:
-            raise serializers.ValidationError({"upper_limit": ["The upper limit lies below the lower one."]})
+            raise serializers.ValidationError({"upper_limit": [_("The upper limit lies below the lower one.")]})
 
 
 class GeometryCheckSerializer(serializers.Serializer):

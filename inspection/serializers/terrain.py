@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from inspection.selectors.terrain_models import TerrainModel
@@ -26,7 +27,7 @@ class PositionField(serializers.ListField):
     def to_internal_value(self, data: Any) -> list[float]:
         position: list[float] = super().to_internal_value(data)
         if len(position) != 2 or not (-180 <= position[0] <= 180 and -90 <= position[1] <= 90):
-            raise serializers.ValidationError("A position is longitude, then latitude, in degrees.")
+            raise serializers.ValidationError(_("A position is longitude, then latitude, in degrees."))
         return position
 
 
@@ -109,7 +110,7 @@ class HeightsInputSerializer(serializers.Serializer):
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
         if len(values["heights_m"]) != len(values["positions"]):
-            raise serializers.ValidationError({"heights_m": ["One height for each position is needed."]})
+            raise serializers.ValidationError({"heights_m": [_("One height for each position is needed.")]})
         return values
 
 

@@ -1,6 +1,7 @@
 """Bringing back how an asset or a zone was: one change undone, an earlier state, or what the source says."""
 
 from django.db import IntegrityError, transaction
+from django.utils.translation import gettext as _
 
 from inspection.models import Asset, NoFlyZone
 from inspection.services.curation import delete_asset, delete_zone, save_asset, save_zone
@@ -18,7 +19,7 @@ class CannotUndo(ValueError):
 def revert_asset(*, asset: Asset, entry: AuditEntry, actor: User, expected_revision: int | None) -> Asset:
     """Make the asset what it was before the entry's change. Raises CannotUndo, StaleRevision."""
     if entry.before is None:
-        raise CannotUndo("Before this there was nothing: delete the asset instead.")
+        raise CannotUndo(_("Before this there was nothing: delete the asset instead."))
     take_asset_facts(asset, entry.before)
     if not entry.before.get("vanished"):
         asset.vanished_at = None
@@ -27,7 +28,7 @@ def revert_asset(*, asset: Asset, entry: AuditEntry, actor: User, expected_revis
 
 def revert_zone(*, zone: NoFlyZone, entry: AuditEntry, actor: User, expected_revision: int | None) -> NoFlyZone:
     if entry.before is None:
-        raise CannotUndo("Before this there was nothing: delete the zone instead.")
+        raise CannotUndo(_("Before this there was nothing: delete the zone instead."))
     take_zone_facts(zone, entry.before)
     return save_zone(zone=zone, actor=actor, expected_revision=expected_revision, action="reverted")
 
@@ -35,7 +36,7 @@ def revert_zone(*, zone: NoFlyZone, entry: AuditEntry, actor: User, expected_rev
 def follow_source(*, asset: Asset, actor: User, expected_revision: int | None) -> Asset:
     """Forget what was edited by hand: the row says what its source says, and imports keep it so. Raises CannotUndo, StaleRevision."""
     if asset.source_facts is None:
-        raise CannotUndo("This asset has no other source than what was drawn here.")
+        raise CannotUndo(_("This asset has no other source than what was drawn here."))
     take_asset_facts(asset, asset.source_facts)
     asset.vanished_at = None
     return save_asset(asset=asset, actor=actor, expected_revision=expected_revision, action="followed source")
@@ -47,12 +48,12 @@ def undo(*, entry: AuditEntry, actor: User) -> Asset | NoFlyZone | None:
         hold_ground()
         newer = AuditEntry.objects.filter(subject_type=entry.subject_type, subject_id=entry.subject_id, pk__gt=entry.pk)
         if newer.exists():
-            raise CannotUndo("It was changed again after this. Undo the newer change first, or revert to an earlier state.")
+            raise CannotUndo(_("It was changed again after this. Undo the newer change first, or revert to an earlier state."))
         try:
             with transaction.atomic():
                 return _undo_asset(entry, actor) if entry.subject_type == "asset" else _undo_zone(entry, actor)
         except IntegrityError as error:
-            raise CannotUndo("An import has brought it back already.") from error
+            raise CannotUndo(_("An import has brought it back already.")) from error
 
 
 def _undo_asset(entry: AuditEntry, actor: User) -> Asset | None:

@@ -15,6 +15,7 @@ from django.db import connection, transaction
 from django.db.backends.utils import CursorWrapper
 from django.db.models import Count
 from django.utils.dateparse import parse_datetime
+from django.utils.translation import gettext as _
 
 from inspection.models import Asset, DataImport, ImportKind
 from inspection.osm.file_gate import OsmFileError
@@ -136,7 +137,7 @@ def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapp
 
             content = read_osm(path, progress, take)
             if not content.kinds:
-                raise OsmFileError("The file has no power lines, towers, railways or bridges.")
+                raise OsmFileError(_("The file has no power lines, towers, railways or bridges."))
         if content.is_unsorted:
             cursor.execute(osm_merge.KEEP_THE_LAST)
         cursor.execute("ANALYZE osm_staging, inspection_asset")  # right after a first import the planner still takes the table for empty

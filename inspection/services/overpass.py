@@ -8,6 +8,7 @@ from urllib.parse import urlencode
 
 from django.conf import settings
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from inspection.models import ImportKind, Upload
 from inspection.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
@@ -44,7 +45,7 @@ def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress:
         except OutgoingError as error:
             raise FileRefused([Fault("", f"Overpass: {error}")]) from error
         if fault := complaint(_tail(answer)):
-            raise FileRefused([Fault("", f"Overpass did not give all of it: {fault}. Take a smaller area.")])
+            raise FileRefused([Fault("", _("Overpass did not give all of it: %(fault)s. Take a smaller area.") % {"fault": fault})])
         upload = store_upload(file_name="overpass.json", chunks=_blocks(answer), created_by=created_by)
     now = timezone.now().isoformat()
     return upload, {"source_address": settings.OVERPASS_ADDRESS, "attribution": ATTRIBUTION, "licence": "ODbL 1.0", "fetched_at": now}

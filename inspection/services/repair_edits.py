@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from django.contrib.gis.geos import LineString, Point, Polygon
 from django.db.models import QuerySet
+from django.utils.translation import gettext as _
 
 from inspection.data_gaps.lone_towers import course_of_row
 from inspection.data_gaps.mending import (
@@ -56,7 +57,7 @@ def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     if "positions" in parameters:
         given = _positions(parameters["positions"])
         if any(nearest_leg([tuple(start), tuple(end)], place)[2] > REACH_M for place in given):
-            raise CannotRepair(f"A tower along the span stands within {REACH_M:.0f} m of it.")
+            raise CannotRepair(_("A tower along the span stands within %(reach_m)s m of it.") % {"reach_m": f"{REACH_M:.0f}"})
         places = in_order(start, end, given)
     else:
         places = evenly_between(start, end, min(details["missing_towers"], MOST_TOWERS))
@@ -80,11 +81,11 @@ def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     course = list(line.geometry.coords)
     towers = list(Asset.objects.filter(pk__in=gap.details["assets"], vanished_at=None, kind=AssetKind.TOWER))
     if not towers:
-        raise CannotRepair("The tower is gone. The ground is being searched again.")
+        raise CannotRepair(_("The tower is gone. The ground is being searched again."))
     tower = min(towers, key=lambda row: (nearest_leg(course, row.geometry.coords)[2], row.pk))
     place = tower.geometry.coords
     if nearest_leg(course, place)[2] > ATTACH_M:
-        raise CannotRepair("No line is near to the tower any more.")
+        raise CannotRepair(_("No line is near to the tower any more."))
     line.geometry = LineString(through(course, place, _taken_places(line, course)), srid=4326)
     return [Change(line)]
 
@@ -97,7 +98,7 @@ def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     places = np.array([tower.geometry.coords for tower in towers], dtype=np.float64).reshape(-1, 2)
     order = course_of_row(places) if len(towers) > 1 else None
     if order is None or len(towers) != len(gap.details["assets"]):
-        raise CannotRepair("The towers stand in no row any more. The ground is being searched again.")
+        raise CannotRepair(_("The towers stand in no row any more. The ground is being searched again."))
     stated = {tuple(tower.voltages_v) for tower in towers if tower.voltages_v}
     line = Asset(
         kind=AssetKind.LINE,
@@ -114,7 +115,7 @@ def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     keys = gap.details.get("assets", [gap.asset_id])
     rows = list(Asset.objects.filter(pk__in=keys, vanished_at=None, is_flyable=True).order_by("pk"))
     if not rows:
-        raise CannotRepair("It is not part of the graph any more.")
+        raise CannotRepair(_("It is not part of the graph any more."))
     for row in rows:
         row.is_flyable = False
     return [Change(row) for row in rows]
@@ -129,9 +130,9 @@ def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     try:
         target = other.geometry.coords[vertex_at(other.geometry.coords, there)]
     except NoSuchVertex:
-        leg, _, metres = nearest_leg(other.geometry.coords, there)
+        leg, _place, metres = nearest_leg(other.geometry.coords, there)
         if metres > 1.0:
-            raise CannotRepair("The other line runs elsewhere by now. The ground is being searched again.") from None
+            raise CannotRepair(_("The other line runs elsewhere by now. The ground is being searched again.")) from None
         target = there
         other.geometry = LineString(with_vertices(list(other.geometry.coords), leg, [there]), srid=4326)
         changes.append(Change(other))
@@ -151,7 +152,7 @@ def join_to_network(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
 def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     carried = _CARRIED.get(str(parameters.get("way", "")))
     if carried is None:
-        raise CannotRepair(f"Say what it carries: {', '.join(_CARRIED)}.")
+        raise CannotRepair(_("Say what it carries: %(value)s.") % {"value": ", ".join(_CARRIED)})
     bridge = _asset(gap.asset_id)
     bridge.tags = bridge.tags | carried
     return [Change(bridge)]
@@ -160,9 +161,9 @@ def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
 def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     given = parameters.get("voltages_v", gap.details["offered_v"])
     if not isinstance(given, list) or not 1 <= len(given) <= MOST_VALUES:
-        raise CannotRepair(f"Give 1 to {MOST_VALUES} voltages in volts.")
+        raise CannotRepair(_("Give 1 to %(most_values)s voltages in volts.") % {"most_values": MOST_VALUES})
     if any(isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= HIGHEST_V for value in given):
-        raise CannotRepair(f"A voltage is a whole number of volts, at most {HIGHEST_V:,}.")
+        raise CannotRepair(_("A voltage is a whole number of volts, at most %(highest_v)s.") % {"highest_v": f"{HIGHEST_V:,}"})
     asset = _asset(gap.asset_id)
     asset.voltages_v = sorted(set(given), reverse=True)
     return [Change(asset)]
@@ -171,14 +172,14 @@ def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
 def _asset(key: int | None) -> Asset:
     asset = Asset.objects.filter(pk=key, vanished_at=None).first()
     if asset is None:
-        raise CannotRepair("What the gap is about is gone. The ground is being searched again.")
+        raise CannotRepair(_("What the gap is about is gone. The ground is being searched again."))
     return asset
 
 
 def _line(key: int | None) -> Asset:
     line = _asset(key)
     if line.kind != AssetKind.LINE:
-        raise CannotRepair("This is no line any more. The ground is being searched again.")
+        raise CannotRepair(_("This is no line any more. The ground is being searched again."))
     return line
 
 
@@ -186,13 +187,13 @@ def _found(search: Any) -> int:
     try:
         return int(search())
     except NoSuchVertex:
-        raise CannotRepair("The line has changed since the gap was found. The ground is being searched again.") from None
+        raise CannotRepair(_("The line has changed since the gap was found. The ground is being searched again.")) from None
 
 
 def _end(course: list[tuple[float, float]], place: Any) -> int:
     number = _found(lambda: vertex_at(course, place))
     if number not in (0, len(course) - 1):
-        raise CannotRepair("The line does not end there any more. The ground is being searched again.")
+        raise CannotRepair(_("The line does not end there any more. The ground is being searched again."))
     return number
 
 

@@ -4,6 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from django.utils.translation import gettext as _
+from django.utils.translation import ngettext
+
 from inspection.models import AssetKind, DataGap, GapKind, GapState
 from inspection.services.curation import many_edits, save_asset
 from inspection.services.facts import geojson
@@ -52,7 +55,7 @@ def offers_of(gap: DataGap) -> list[Offer]:
 def changes_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> list[Change]:
     """The assets as the repair would leave them, in order; nothing is saved. Raises CannotRepair."""
     if all(offer.action != action for offer in offers_of(gap)):
-        raise CannotRepair("This repair does not fit the gap as it is now.")
+        raise CannotRepair(_("This repair does not fit the gap as it is now."))
     return _BUILDERS[action](gap, parameters)
 
 
@@ -74,7 +77,7 @@ def repair_gap(*, gap: DataGap, action: str, parameters: dict[str, Any], actor: 
     with many_edits():
         kept = DataGap.objects.select_for_update(of=["self"]).get(pk=gap.pk)
         if kept.state != GapState.OPEN:
-            raise CannotRepair("Somebody has decided about this gap already.")
+            raise CannotRepair(_("Somebody has decided about this gap already."))
         changes = changes_of(gap=kept, action=action, parameters=parameters)
         last = AuditEntry.objects.order_by("-pk").values_list("pk", flat=True).first() or 0
         for change in changes:
@@ -91,7 +94,7 @@ def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap
     with many_edits():
         rows = AuditEntry.objects.filter(pk__in=entries, subject_type="asset", organisation=actor.organisation)
         if len(rows) != len(set(entries)) or not rows:
-            raise CannotRepair("These are no changes of a repair.")
+            raise CannotRepair(_("These are no changes of a repair."))
         for entry in sorted(rows, key=lambda row: -row.pk):
             undo(entry=entry, actor=actor)
         return reopen_gap(gap=gap, actor=actor)
@@ -100,49 +103,70 @@ def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap
 def _said(changes: Sequence[Change]) -> str:
     """What was done, for the toast: "9 towers placed, 1 line changed"."""
     parts = []
-    for is_new, done in ((True, "placed"), (False, "changed")):
+    for is_new in (True, False):
         for kind in AssetKind:
             number = sum(change.asset.kind == kind and change.is_new == is_new for change in changes)
             if number:
-                word = kind.value if number == 1 else f"{kind.value}s"
-                parts.append(f"{number:,} {word} {'drawn' if is_new and kind == AssetKind.LINE else done}")
+                parts.append(_done(kind, is_new, number) % {"count": f"{number:,}"})
     return ", ".join(parts) + "."
+
+
+def _done(kind: AssetKind, is_new: bool, number: int) -> str:
+    if is_new:
+        if kind == AssetKind.LINE:
+            return ngettext("%(count)s line drawn", "%(count)s lines drawn", number)
+        return ngettext("%(count)s tower placed", "%(count)s towers placed", number)
+    return {
+        AssetKind.TOWER: ngettext("%(count)s tower changed", "%(count)s towers changed", number),
+        AssetKind.LINE: ngettext("%(count)s line changed", "%(count)s lines changed", number),
+        AssetKind.RAILWAY: ngettext("%(count)s railway changed", "%(count)s railways changed", number),
+        AssetKind.BRIDGE: ngettext("%(count)s bridge changed", "%(count)s bridges changed", number),
+    }[kind]
 
 
 def _offers_of_long_span(details: dict[str, Any]) -> list[Offer]:
     count = details["missing_towers"]
-    return [Offer("place_towers", f"Place {count} towers evenly" if count > 1 else "Place one tower", parameter="positions")]
+    return [
+        Offer("place_towers", ngettext("Place one tower", "Place %(count)s towers evenly", count) % {"count": count}, parameter="positions")
+    ]
 
 
 def _offers_of_missing_supports(details: dict[str, Any]) -> list[Offer]:
     count = details["missing_towers"]
-    return [Offer("make_towers", f"Make {count} towers of the vertices" if count > 1 else "Make a tower of the vertex")]
+    return [Offer("make_towers", ngettext("Make a tower of the vertex", "Make %(count)s towers of the vertices", count) % {"count": count})]
 
 
 def _offers_of_lone_tower(details: dict[str, Any]) -> list[Offer]:
     many = details["towers"] > 1
     offers = []
     if details["towers"] == len(details["assets"]):  # of a long row the details name the first towers alone
-        offers.append(Offer("leave_out", "Leave them out of the graph" if many else "Leave it out of the graph"))
+        offers.append(Offer("leave_out", _("Leave them out of the graph") if many else _("Leave it out of the graph")))
     if details["is_path"]:
-        offers.insert(0, Offer("draw_line", f"Draw a line along the {details['towers']} towers"))
+        offers.insert(0, Offer("draw_line", _("Draw a line along the %(count)s towers") % {"count": details["towers"]}))
     if details["nearest_line_m"] is not None:
-        offers.insert(0, Offer("attach", "Join the nearest tower to the line" if many else "Join it to the nearest line"))
+        offers.insert(0, Offer("attach", _("Join the nearest tower to the line") if many else _("Join it to the nearest line")))
     return offers
 
 
 def _offers_of_dead_end(details: dict[str, Any]) -> list[Offer]:
-    return [Offer("join_to_network", "Lead it on to the network")] if details["nearest"] is not None else []
+    return [Offer("join_to_network", _("Lead it on to the network"))] if details["nearest"] is not None else []
 
 
 def _offers_of_bridge(details: dict[str, Any]) -> list[Offer]:
-    ways = (("road", "A road"), ("railway", "A railway"), ("path", "A path"), ("water", "Water"), ("pipeline", "A pipeline"))
-    return [Offer("carries", "It carries", parameter="way", choices=ways), Offer("leave_out", "Leave it out of the graph")]
+    ways = (
+        ("road", _("A road")),
+        ("railway", _("A railway")),
+        ("path", _("A path")),
+        ("water", _("Water")),
+        ("pipeline", _("A pipeline")),
+    )
+    return [Offer("carries", _("It carries"), parameter="way", choices=ways), Offer("leave_out", _("Leave it out of the graph"))]
 
 
 def _offers_of_voltage(details: dict[str, Any]) -> list[Offer]:
     offered = details["offered_v"]
-    words = f"Correct it to {', '.join(f'{value / 1_000:g} kV' for value in offered)}" if offered else "Correct the voltage"
+    volts = ", ".join(f"{value / 1_000:g} kV" for value in offered or ())
+    words = _("Correct it to %(voltages)s") % {"voltages": volts} if offered else _("Correct the voltage")
     choices = ((offered, words),) if offered else ()
     return [Offer("set_voltages", words, parameter="voltages_v", choices=choices)]
 
@@ -152,11 +176,11 @@ _OFFERS: dict[GapKind, Callable[[dict[str, Any]], list[Offer]]] = {
     GapKind.MISSING_SUPPORT: _offers_of_missing_supports,
     GapKind.LINE_WITHOUT_TOWERS: lambda details: [
         *_offers_of_missing_supports(details),
-        Offer("leave_out", "Leave the line out of the graph"),
+        Offer("leave_out", _("Leave the line out of the graph")),
     ],
     GapKind.TOWER_ON_NO_LINE: _offers_of_lone_tower,
     GapKind.DEAD_END: _offers_of_dead_end,
-    GapKind.ENDS_APART: lambda details: [Offer("join", "Join the ends" if details["is_at_end"] else "Join the end to the line")],
+    GapKind.ENDS_APART: lambda details: [Offer("join", _("Join the ends") if details["is_at_end"] else _("Join the end to the line"))],
     GapKind.BRIDGE_WITHOUT_WAY: _offers_of_bridge,
     GapKind.IMPOSSIBLE_VOLTAGE: _offers_of_voltage,
 }

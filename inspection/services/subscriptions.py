@@ -9,6 +9,7 @@ from urllib.parse import unquote, urlsplit
 from django.conf import settings
 from django.db import IntegrityError, transaction
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from inspection.models import ImportKind, ImportProposal, ProposalOrigin, ProposalState, ZoneSet, ZoneSubscription
 from inspection.selectors.zone_sets import FETCH_TASK, open_fetch_of
@@ -40,11 +41,13 @@ def subscribe(*, set_name: str, actor: User, **values: Any) -> ZoneSubscription:
     """Have a set fetched, which is made if there is none of the name; first at the next look at the clock. Raises AlreadySubscribed."""
     try:
         with transaction.atomic():
-            zone_set, _ = ZoneSet.objects.get_or_create(name=set_name)
+            zone_set, _is_new = ZoneSet.objects.get_or_create(name=set_name)
             subscription = ZoneSubscription.objects.create(zone_set=zone_set, next_fetch_at=timezone.now(), **values)
             _record(actor, subscription, "created", None, _facts(subscription))
     except IntegrityError as error:
-        raise AlreadySubscribed(f"The set {set_name} is fetched already. Change its subscription instead.") from error
+        raise AlreadySubscribed(
+            _("The set %(set_name)s is fetched already. Change its subscription instead.") % {"set_name": set_name}
+        ) from error
     return subscription
 
 
@@ -143,7 +146,7 @@ def _is_news(subscription: ZoneSubscription, fetched: Fetched, path: Path, *, is
 def _says_what_the_set_says(zone_set: ZoneSet, path: Path) -> bool:
     """Also when its bytes differ: many sources write the hour of the request into each answer."""
     try:
-        content, _ = read_zone_file(path)
+        content, _digest = read_zone_file(path)
     except ZoneFileError:
         return False  # the proposal says what is wrong with it
     known = zone_set.data_import

@@ -14,6 +14,7 @@ from django.conf import settings
 from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from inspection.models import ImportProposal, ProposalState, Upload, UploadPart
 from workspace.models import User
@@ -56,23 +57,29 @@ def delete_upload(*, upload: Upload) -> None:
     """Raises UploadInUse."""
     with transaction.atomic():
         if upload.proposals.filter(state__in=_OPEN_STATES).exists():
-            raise UploadInUse("The file is part of an import that is not decided yet. Discard that first.")
+            raise UploadInUse(_("The file is part of an import that is not decided yet. Discard that first."))
         upload.delete()
 
 
 def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
     """Keep the bytes that begin at first_byte; what is there already is not written twice. Raises UploadRefused."""
     if not content or len(content) > PART_BYTES:
-        raise UploadRefused(f"A part has 1 to {PART_BYTES} bytes.")
+        raise UploadRefused(_("A part has 1 to %(part_bytes)s bytes.") % {"part_bytes": PART_BYTES})
     with transaction.atomic():
         held = Upload.objects.select_for_update().get(pk=upload.pk)
         end = first_byte + len(content)
         if end > held.size_bytes:
-            raise UploadRefused(f"The file was announced with {held.size_bytes} bytes; this part would end at {end}.")
+            raise UploadRefused(
+                _("The file was announced with %(size_bytes)s bytes; this part would end at %(end)s.")
+                % {"size_bytes": held.size_bytes, "end": end}
+            )
         if end <= held.received_bytes:
             return held  # sent again because its answer was lost
         if first_byte != held.received_bytes:
-            raise UploadGap(f"The part begins at byte {first_byte}; go on from byte {held.received_bytes}.")
+            raise UploadGap(
+                _("The part begins at byte %(first_byte)s; go on from byte %(received_bytes)s.")
+                % {"first_byte": first_byte, "received_bytes": held.received_bytes}
+            )
         UploadPart.objects.create(upload=held, first_byte=first_byte, content=content)
         held.received_bytes = end
         if held.is_complete:
@@ -101,7 +108,7 @@ def store_upload(*, file_name: str, chunks: Iterable[bytes], created_by: User | 
 def upload_as_file(upload: Upload) -> Iterator[Path]:
     """The upload as a file of its own name that only this user may read, gone afterwards. Raises UploadRefused if it is not whole."""
     if not upload.is_complete:
-        raise UploadRefused("The file has not arrived whole.")
+        raise UploadRefused(_("The file has not arrived whole."))
     with private_folder() as folder:
         path = folder / plain_name(upload.file_name)
         digest = hashlib.sha256()
@@ -110,7 +117,7 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
                 file.write(content)
                 digest.update(content)
         if digest.hexdigest() != upload.sha256:
-            raise UploadRefused("The stored file is damaged. Send it again.")
+            raise UploadRefused(_("The stored file is damaged. Send it again."))
         yield path
 
 
@@ -152,7 +159,7 @@ def forget_old_uploads() -> int:
     states = ImportProposal.objects.filter(upload__isnull=False)
     open_ones = states.filter(state__in=_OPEN_STATES).values("upload")
     is_old = Q(updated_at__lt=timezone.now() - KEPT) | Q(pk__in=states.filter(state__in=_DECIDED_STATES).values("upload"))
-    deleted, _ = Upload.objects.filter(is_old).exclude(pk__in=open_ones).delete()
+    deleted, _by_model = Upload.objects.filter(is_old).exclude(pk__in=open_ones).delete()
     return deleted
 
 
@@ -184,7 +191,8 @@ def _remove_left_folders() -> None:
 def _refuse_more_than(most_bytes: int, size_bytes: int) -> None:
     if size_bytes > most_bytes:
         raise UploadTooLarge(
-            f"The file has {size_bytes / 2**20:,.1f} MiB; at most {most_bytes / 2**20:,.0f} MiB are taken. Cut it into parts."
+            _("The file has %(value)s MiB; at most %(value_2)s MiB are taken. Cut it into parts.")
+            % {"value": f"{size_bytes / 2**20:,.1f}", "value_2": f"{most_bytes / 2**20:,.0f}"}
         )
 
 

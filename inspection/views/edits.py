@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from django.utils.translation import gettext as _
+
 from inspection.selectors.history import NEWEST_FIRST, changes_of
 from inspection.services import StaleRevision, WrongGeometry
 from inspection.services.history import CannotUndo
@@ -19,7 +21,9 @@ def edits(current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
         last = changes_of(error.subject, error.key or 0).order_by(*NEWEST_FIRST).first()
         who = (last.actor.get_full_name() or last.actor.username) if last and last.actor else "an import"
         details = {"current": current(), "changed_by": who, "changed_at": last and last.recorded_at}
-        raise ApiProblem(412, "changed", f"Changed by {who} in the meantime; nothing of yours was stored.", details=details) from error
+        raise ApiProblem(
+            412, "changed", _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}, details=details
+        ) from error
     except WrongGeometry as error:
         raise ApiProblem(400, "invalid_geometry", str(error)) from error
     except CannotUndo as error:

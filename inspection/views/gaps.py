@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from django.http import Http404
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -172,11 +173,11 @@ def _kinds(request: Request) -> list[GapKind]:
     try:
         return [GapKind(kind.strip()) for kind in request.query_params.get("kind", "").split(",") if kind.strip()]
     except ValueError as error:
-        raise invalid("kind", f"Known kinds are {', '.join(GapKind.values)}.") from error
+        raise invalid("kind", _("Known kinds are %(value)s.") % {"value": ", ".join(GapKind.values)}) from error
 
 
 def _state(request: Request) -> GapState | None:
     text = request.query_params.get("state", "")
     if text and text not in GapState.values:
-        raise invalid("state", f"Known states are {', '.join(GapState.values)}.")
+        raise invalid("state", _("Known states are %(value)s.") % {"value": ", ".join(GapState.values)})
     return GapState(text) if text else None

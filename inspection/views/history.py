@@ -3,6 +3,7 @@
 from typing import Any
 
 from django.http import Http404
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -51,7 +52,7 @@ def _entry(subject_type: str, subject_id: int, request: Request) -> AuditEntry:
     body.is_valid(raise_exception=True)
     entry = changes_of(subject_type, subject_id).filter(pk=body.validated_data["entry"]).first()
     if entry is None:
-        raise invalid("entry", "This is no entry of its history.")
+        raise invalid("entry", _("This is no entry of its history."))
     return entry
 
 
@@ -74,10 +75,10 @@ class HistoryList(APIView):
     def get(self, request: Request) -> Response:
         subject_type = request.query_params.get("subject_type", "")
         if subject_type and subject_type not in SUBJECTS:
-            raise invalid("subject_type", f"Known are {', '.join(SUBJECTS)}.")
+            raise invalid("subject_type", _("Known are %(value)s.") % {"value": ", ".join(SUBJECTS)})
         actor = request.query_params.get("actor", "")
         if not actor.isprintable():
-            raise invalid("actor", "A user name is printable.")
+            raise invalid("actor", _("A user name is printable."))
         return Response(_page(request, changes_of_the_ground(subject_type=subject_type, actor=actor)))
 
 

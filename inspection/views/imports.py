@@ -7,6 +7,7 @@ from django.conf import settings
 from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -48,7 +49,7 @@ def _proposal(proposal_id: UUID) -> ImportProposal:
 def _one_of(request: Request, name: str, known: list[str]) -> str:
     value = request.query_params.get(name, "")
     if value and value not in known:
-        raise invalid(name, f"Known are {', '.join(known)}.")
+        raise invalid(name, _("Known are %(value)s.") % {"value": ", ".join(known)})
     return value
 
 
@@ -94,7 +95,7 @@ class ImportList(APIView):
         body.is_valid(raise_exception=True)
         values = body.validated_data
         if values["kind"] not in pipeline.FILE_KINDS:
-            raise invalid("kind", "Files of this kind cannot be read.")
+            raise invalid("kind", _("Files of this kind cannot be read."))
         with transaction.atomic():
             proposal = pipeline.start_proposal(
                 kind=values["kind"], created_by=request.user, parameters=values.get("parameters", {}),
@@ -108,20 +109,24 @@ class ImportList(APIView):
     def _where_from(self, values: dict[str, Any]) -> dict[str, Any]:
         if values["kind"] == ImportKind.OSM and "overpass_bbox" in values.get("parameters", {}):
             if not settings.OVERPASS_ADDRESS:
-                raise invalid("overpass_bbox", "No Overpass server is named in the settings.")
+                raise invalid("overpass_bbox", _("No Overpass server is named in the settings."))
             try:
                 area_of(values["parameters"])
             except WrongArea as error:
                 raise invalid("overpass_bbox", str(error)) from error
             return {"upload": None, "file_name": "overpass.json", "origin": ProposalOrigin.OVERPASS}
         if "upload" not in values:
-            raise invalid("upload", "Send the file first, then name its upload.")
+            raise invalid("upload", _("Send the file first, then name its upload."))
         try:
             upload = upload_of_id(values["upload"])
         except Upload.DoesNotExist as error:
-            raise invalid("upload", "There is no such upload.") from error
+            raise invalid("upload", _("There is no such upload.")) from error
         if not upload.is_complete:
-            raise invalid("upload", f"Only {upload.received_bytes} of {upload.size_bytes} bytes have arrived.")
+            raise invalid(
+                "upload",
+                _("Only %(received_bytes)s of %(size_bytes)s bytes have arrived.")
+                % {"received_bytes": upload.received_bytes, "size_bytes": upload.size_bytes},
+            )
         try:
             check_size_for(values["kind"], upload.size_bytes)
         except UploadTooLarge as error:

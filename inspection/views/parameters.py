@@ -2,6 +2,7 @@
 
 from math import isfinite
 
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
 
@@ -24,11 +25,11 @@ def box_of(request: Request) -> Box | None:
     try:
         west, south, east, north = (float(part) for part in text.split(","))
     except ValueError as error:
-        raise invalid("bbox", "Four numbers are needed: west,south,east,north.") from error
+        raise invalid("bbox", _("Four numbers are needed: west,south,east,north.")) from error
     if not all(map(isfinite, (west, south, east, north))):
-        raise invalid("bbox", "Four finite numbers are needed.")
+        raise invalid("bbox", _("Four finite numbers are needed."))
     if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south <= north <= 90):
-        raise invalid("bbox", "Longitudes go from -180 to 180, latitudes from -90 to 90, and south is not above north.")
+        raise invalid("bbox", _("Longitudes go from -180 to 180, latitudes from -90 to 90, and south is not above north."))
     return west, south, east, north
 
 
@@ -36,11 +37,11 @@ def kinds_of(request: Request) -> list[AssetKind]:
     try:
         return [AssetKind(kind.strip()) for kind in request.query_params.get("kind", "").split(",") if kind.strip()]
     except ValueError as error:
-        raise invalid("kind", f"Known kinds are {', '.join(AssetKind.values)}.") from error
+        raise invalid("kind", _("Known kinds are %(value)s.") % {"value": ", ".join(AssetKind.values)}) from error
 
 
 def text_of(request: Request) -> str:
     text = request.query_params.get("text", "").strip()
     if len(text) > LONGEST_TEXT or not text.isprintable():
-        raise invalid("text", f"At most {LONGEST_TEXT} printable characters.")
+        raise invalid("text", _("At most %(longest_text)s printable characters.") % {"longest_text": LONGEST_TEXT})
     return text

@@ -94,7 +94,10 @@ class AssetsWithin(APIView):
         ring = [position[:2] for position in body.validated_data["polygon"]["coordinates"][0]]
         if not all(-540.0 <= longitude <= 540.0 and -90.0 <= latitude <= 90.0 for longitude, latitude in ring):
             raise invalid("polygon", _("A position is not on the globe."))
-        area = picking.area_drawn(ring)
+        try:
+            area = picking.area_drawn(ring)
+        except picking.TooTangled as error:
+            raise invalid("polygon", _("It crosses itself too often.")) from error
         if area is None:
             raise invalid("polygon", _("It encloses nothing."))
         kinds = body.validated_data.get("kinds") or [AssetKind.TOWER, AssetKind.BRIDGE]

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.request import Request
@@ -26,11 +27,11 @@ class RegionInputSerializer(serializers.Serializer):
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
         if sum(name in values for name in ("bbox", "import_id", "set")) != 1:
-            raise serializers.ValidationError("Say one of bbox, import_id and set.")
+            raise serializers.ValidationError(_("Say one of bbox, import_id and set."))
         if "bbox" in values:
             west, south, east, north = values["bbox"]
             if not (-180 <= west <= 180 and -180 <= east <= 180 and -90 <= south < north <= 90):
-                raise serializers.ValidationError({"bbox": ["West, south, east, north in degrees, south below north."]})
+                raise serializers.ValidationError({"bbox": [_("West, south, east, north in degrees, south below north.")]})
         return values
 
 
@@ -62,9 +63,9 @@ class RegionDelete(APIView):
         if "import_id" in values:
             row = DataImport.objects.filter(pk=values["import_id"]).first()
             if row is None:
-                raise invalid("import_id", "There is no such import.")
+                raise invalid("import_id", _("There is no such import."))
             return Region(data_import=row)
         found = AssetSet.objects.filter(name=values["set"]).first()
         if found is None:
-            raise invalid("set", "There is no such set.")
+            raise invalid("set", _("There is no such set."))
         return Region(asset_set=found)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 from django.http import Http404
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -64,9 +65,9 @@ class GroundHeight(APIView):
         try:
             lon, lat = (float(part) for part in request.query_params.get("position", "").split(","))
         except ValueError as error:
-            raise invalid("position", "Two numbers are needed: lon,lat.") from error
+            raise invalid("position", _("Two numbers are needed: lon,lat.")) from error
         if not (-180 <= lon <= 180 and -90 <= lat <= 90):
-            raise invalid("position", "Longitude comes first, from -180 to 180, then latitude, from -90 to 90.")
+            raise invalid("position", _("Longitude comes first, from -180 to 180, then latitude, from -90 to 90."))
         truth = ground_truth(np.array([[lon, lat]]))
         model = model_of(int(truth.imports[0]))
         return Response(

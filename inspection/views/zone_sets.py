@@ -3,6 +3,7 @@
 from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -113,7 +114,7 @@ class ZoneSetRollBack(APIView):
         zone_set = _zone_set(set_id)
         version = zone_set.versions.select_related("zone_set").defer("content").filter(number=body.validated_data["version"]).first()
         if version is None:
-            raise invalid("version", "The set has no such version.")
+            raise invalid("version", _("The set has no such version."))
         with transaction.atomic():
             proposal = start_proposal(
                 kind=ImportKind.ZONES, origin=ProposalOrigin.ROLL_BACK, upload=None, file_name=roll_back_name(version),

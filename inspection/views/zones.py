@@ -2,6 +2,7 @@
 
 from django.http import Http404
 from django.urls import reverse
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -105,5 +106,5 @@ class ZoneDetail(APIView):
 def _set_of(request: Request) -> int | None:
     text = request.query_params.get("zone_set", "")
     if text and not (text.isascii() and text.isdigit() and len(text) < 10):
-        raise invalid("zone_set", "The id of a set is a whole number.")
+        raise invalid("zone_set", _("The id of a set is a whole number."))
     return int(text) if text else None

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import PositionField
@@ -14,7 +15,7 @@ class WhyTargetInputSerializer(PlanInputSerializer):
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         attrs = super().validate(attrs)
         if attrs["target"] >= len(attrs["targets"]):
-            raise serializers.ValidationError({"target": "There is no such target."})
+            raise serializers.ValidationError({"target": _("There is no such target.")})
         return attrs
 
 
@@ -29,9 +30,9 @@ class WhyRouteInputSerializer(PlanInputSerializer):
         attrs = super().validate(attrs)
         visits = [target for route in attrs["routes"] for target in route]
         if len(attrs["routes"]) != len(attrs["uavs"]) or attrs["uav"] >= len(attrs["uavs"]):
-            raise serializers.ValidationError({"routes": "One list for each UAV is needed."})
+            raise serializers.ValidationError({"routes": _("One list for each UAV is needed.")})
         if len(set(visits)) != len(visits) or any(target >= len(attrs["targets"]) for target in visits):
-            raise serializers.ValidationError({"routes": "Each target can be visited once."})
+            raise serializers.ValidationError({"routes": _("Each target can be visited once.")})
         return attrs
 
 

@@ -3,6 +3,7 @@
 from typing import Any
 
 from django.conf import settings
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import FiniteFloatField, PositionField
@@ -46,13 +47,13 @@ class UavInputSerializer(serializers.Serializer):
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         missing = [field for field in ("name", "position") if field not in attrs]
         if attrs.get("id") is None and missing:
-            raise serializers.ValidationError(dict.fromkeys(missing, "This field is required for a UAV without an id."))
+            raise serializers.ValidationError(dict.fromkeys(missing, _("This field is required for a UAV without an id.")))
         return attrs
 
 
 def above_zero(value: float | None) -> float | None:
     if value is not None and value <= 0:
-        raise serializers.ValidationError("This must be above 0.")
+        raise serializers.ValidationError(_("This must be above 0."))
     return value
 
 
@@ -66,9 +67,9 @@ class TargetInputSerializer(serializers.Serializer):
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if attrs.get("asset") is None and attrs.get("position") is None:
-            raise serializers.ValidationError({"asset": "A target needs an asset or a position."})
+            raise serializers.ValidationError({"asset": _("A target needs an asset or a position.")})
         if attrs.get("stretch") and (attrs.get("asset") is None or attrs.get("position") is not None):
-            raise serializers.ValidationError({"stretch": "A stretch needs an asset and no position."})
+            raise serializers.ValidationError({"stretch": _("A stretch needs an asset and no position.")})
         return attrs
 
 
@@ -111,7 +112,9 @@ class OptionsSerializer(serializers.Serializer):
 
 def _no_more_than(limit: int, value: list[dict[str, Any]], what: str) -> list[dict[str, Any]]:
     if len(value) > limit:
-        raise serializers.ValidationError(f"At most {limit} {what}; these are {len(value)}.")
+        raise serializers.ValidationError(
+            _("At most %(limit)s %(what)s; these are %(count)s.") % {"limit": limit, "what": what, "count": len(value)}
+        )
     return value
 
 

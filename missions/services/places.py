@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point
+from django.utils.translation import gettext as _
+from django.utils.translation import override
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, AssetKind
@@ -66,9 +68,11 @@ def position_label(position: LonLat) -> str:
 
 def _place_on(asset: Asset, index: int, target: TargetRequest) -> Place:
     course = _course(asset, index, target)
+    with override("en"):  # it is stored, for readers of any language
+        label = asset_label(asset)
     return Place(
         target=index,
-        label=asset_label(asset),
+        label=label,
         course=course,
         task=_task(target, asset.kind, is_path=len(course) > 1),
         height_m=asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v),
@@ -85,7 +89,7 @@ def _course(asset: Asset, index: int, target: TargetRequest) -> tuple[LonLat, ..
     if asset.kind in LINEAR:
         return _course_on_line(asset, index, target)
     if target.stretch is not None:
-        raise InvalidRequest({f"targets.{index}.stretch": "Only a line or a railway has stretches."})
+        raise InvalidRequest({f"targets.{index}.stretch": _("Only a line or a railway has stretches.")})
     centre = LonLat(*asset.centre.coords)
     if target.position is None:
         return (centre,)
@@ -109,13 +113,13 @@ def _course_on_line(asset: Asset, index: int, target: TargetRequest) -> tuple[Lo
         _refuse_far(f"targets.{index}.stretch.{number}", ends[-1].distance_m)
     course = stretch_between(line, *ends)
     if len(course) < 2:
-        raise InvalidRequest({f"targets.{index}.stretch": "Both ends are the same point of the line."})
+        raise InvalidRequest({f"targets.{index}.stretch": _("Both ends are the same point of the line.")})
     return course
 
 
 def _line(asset: Asset, index: int) -> FloatArray:
     if not isinstance(asset.geometry, LineString):
-        raise InvalidRequest({f"targets.{index}.asset": "This asset is not drawn as one line, so it cannot be flown along."})
+        raise InvalidRequest({f"targets.{index}.asset": _("This asset is not drawn as one line, so it cannot be flown along.")})
     return np.array(asset.geometry.coords, dtype=np.float64)[:, :2]
 
 
@@ -138,5 +142,8 @@ def _on_area(geometry: GEOSGeometry, index: int, position: LonLat) -> LonLat:
 def _refuse_far(where: str, metres: float) -> None:
     if metres > NEAR_ASSET_M:
         raise InvalidRequest(
-            {where: f"This point is {metres:,.0f} m from the asset; up to {NEAR_ASSET_M:.0f} m is taken as a point on it."}
+            {
+                where: _("This point is %(metres)s m from the asset; up to %(near_asset_m)s m is taken as a point on it.")
+                % {"metres": f"{metres:,.0f}", "near_asset_m": f"{NEAR_ASSET_M:.0f}"}
+            }
         )

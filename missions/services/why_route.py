@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import shapely
 from django.conf import settings
+from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.build import build
@@ -43,7 +44,7 @@ class _Field:
 def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int) -> dict[str, Any]:
     """routes: for each UAV of the request its targets in order. Raises InvalidRequest or NoGraph."""
     if not routes[uav]:
-        raise InvalidRequest({"uav": "This UAV flies no route."})
+        raise InvalidRequest({"uav": _("This UAV flies no route.")})
     scene = current_scene()
     wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
     field = _field(request, wanted, scene, scene.graph, scene.zones)
@@ -67,7 +68,7 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
 
 
 def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: InspectionGraph, zones: ZoneIndex) -> _Field:
-    every_place, _ = places_of(request.targets)
+    every_place, _gone = places_of(request.targets)
     places = [place for place in every_place if place.target in wanted]
     visits, courses = visits_of_places(places)
     flying = [number for number, asked in enumerate(request.uavs) if zone_at(asked.position, scene) is None]
@@ -89,7 +90,7 @@ def _best_order(request: PlanRequest, field: _Field, uav: int, targets: Sequence
     """The visits that do the targets in this order with the fewest metres: a stretch can be flown from either end."""
     start = _start(field, uav)
     if any(target not in field.visits_of for target in targets):
-        raise InvalidRequest({"routes": "A target of this route is no longer in the data. Plan again."})
+        raise InvalidRequest({"routes": _("A target of this route is no longer in the data. Plan again.")})
     best = {visit: (float(field.ways.from_start_m[start, visit]), [visit]) for visit in field.visits_of[targets[0]]}
     for target in targets[1:]:
         best = {
@@ -102,7 +103,7 @@ def _best_order(request: PlanRequest, field: _Field, uav: int, targets: Sequence
 
 def _start(field: _Field, uav: int) -> int:
     if uav not in field.uav_of:
-        raise InvalidRequest({"uav": "This UAV stands inside a no-fly zone now. Plan again."})
+        raise InvalidRequest({"uav": _("This UAV stands inside a no-fly zone now. Plan again.")})
     return field.uav_of[uav]
 
 

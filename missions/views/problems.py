@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from django.utils.translation import gettext as _
+
 from inspection.selectors import NoGraph
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
 from workspace.errors import ApiProblem
@@ -20,7 +22,7 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
         details = {where: [what] for where, what in error.faults.items()}
         raise ApiProblem(400, "invalid", f"{place}: {fault}", details=details) from error
     except NothingToPlan as error:
-        raise ApiProblem(400, "nothing_to_plan", "A mission needs at least one UAV and one target to be planned.") from error
+        raise ApiProblem(400, "nothing_to_plan", _("A mission needs at least one UAV and one target to be planned.")) from error
     except NoGraph as error:
         message = "There is no network to plan on yet: import infrastructure first, or wait until it has been linked."
         raise ApiProblem(503, "no_graph", message, retry_after_s=RETRY_AFTER_S) from error
@@ -30,4 +32,4 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
         message = "The mission was changed in the meantime. Load it again."
         raise ApiProblem(412 if has_precondition else 409, "mission_changed", message) from error
     except MissionFrozen as error:
-        raise ApiProblem(409, "mission_frozen", "Only drafts and planned missions can be changed.") from error
+        raise ApiProblem(409, "mission_frozen", _("Only drafts and planned missions can be changed.")) from error
