@@ -11,7 +11,7 @@ from django.contrib.gis.geos import GEOSGeometry
 from django.contrib.postgres.fields import ArrayField
 from django.db import connection
 from django.db.models import F, Func, Q, QuerySet, TextField, Value
-from django.db.models.functions import Upper
+from django.db.models.functions import Lower
 
 from inspection.graph.stretch import Stretch, StretchPart, stretch_between, supports_in_order
 from inspection.models import Asset, AssetKind
@@ -25,6 +25,8 @@ LIST_OF_REFS = r"\s*;\s*"  # OpenStreetMap writes several references of one thin
 # How far beyond two supports a way between them is looked for, in degrees: first near, then wide.
 REACHES_DEG = (0.05, 0.5)
 SECTION_GAP_DEG = 0.002  # some 200 m: sections of one railway may be cut by a bridge or a switch that has another name
+MOST_CROSSINGS = 500  # of a drawn line with itself: sorting out what it encloses takes as long as their square
+SIDES_AT_ONCE = 256
 BESIDE_DEG = 1e-5  # about a metre: a bridge's outline may end where the section begins
 CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways say nothing of what it carries
 
@@ -33,13 +35,17 @@ class NotOnTheLine(Exception):
     """The support is none of the line's."""
 
 
+class TooTangled(Exception):
+    """A drawn line crosses itself so often that nobody can mean an area by it."""
+
+
 class NoWayAlongLines(Exception):
     """No line leads from one support to the other."""
 
 
 def plain_ref(text: str) -> str:
     """References that differ in case or spaces alone are the same."""
-    return " ".join(text.split()).upper()
+    return "".join(character.lower() for character in " ".join(text.split()))  # one by one, as PostgreSQL does it
 
 
 def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> dict[str, list[int]]:
@@ -49,7 +55,7 @@ def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> di
     """
     wanted = {plain_ref(ref) for ref in refs}
     osm = {ref: (match[1][0].lower(), int(match[2])) for ref in wanted if (match := OSM_KEY.fullmatch(ref))}
-    parts = Func(Upper("ref"), Value(LIST_OF_REFS), function="regexp_split_to_array", output_field=ArrayField(TextField()))
+    parts = Func(Lower("ref"), Value(LIST_OF_REFS), function="regexp_split_to_array", output_field=ArrayField(TextField()))
     assets = Asset.objects.filter(vanished_at=None, is_flyable=True)
     if kinds:
         assets = assets.filter(kind__in=kinds)
@@ -79,9 +85,9 @@ def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> di
     return {ref: [pk for pk, rank in found.items() if rank == min(found.values())] for ref, found in ranked.items()}
 
 
-def _plain(column: str) -> Upper:
+def _plain(column: str) -> Lower:
     squeezed = Func(F(column), Value(r"\s+"), Value(" "), Value("g"), function="regexp_replace", output_field=TextField())
-    return Upper(Func(squeezed, function="btrim", output_field=TextField()))
+    return Lower(Func(squeezed, function="btrim", output_field=TextField()))
 
 
 def assets_in_area(area: GEOSGeometry, kinds: Sequence[AssetKind]) -> QuerySet[Asset]:
@@ -92,8 +98,9 @@ def assets_in_area(area: GEOSGeometry, kinds: Sequence[AssetKind]) -> QuerySet[A
 def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
     """The area that a hand has drawn round, also where its line crosses itself; None where it encloses nothing.
 
-    Longitudes may pass 180 degrees: a map that has been panned round counts on.
+    Longitudes may pass 180 degrees: a map that has been panned round counts on. Raises TooTangled.
     """
+    _refuse_a_tangle(ring)
     drawn = shapely.make_valid(shapely.Polygon(ring))
     world = shapely.box(-180.0, -90.0, 180.0, 90.0)
     turns = [shapely.transform(drawn, lambda points, turn=turn: np.add(points, (turn, 0.0))) for turn in (-360.0, 0.0, 360.0)]
@@ -101,6 +108,19 @@ def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
     parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     parts += [inner for part in shapely.get_parts(area) if part.geom_type == "MultiPolygon" for inner in part.geoms]
     return GEOSGeometry(memoryview(shapely.to_wkb(shapely.MultiPolygon(parts))), srid=4326) if parts else None
+
+
+def _refuse_a_tangle(ring: Sequence[Sequence[float]]) -> None:
+    corners = np.array(ring, dtype=float)
+    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]  # a corner said twice is one
+    sides = shapely.linestrings(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
+    tree, crossings = shapely.STRtree(sides), 0
+    for first in range(0, len(sides), SIDES_AT_ONCE):
+        side, other = tree.query(sides[first : first + SIDES_AT_ONCE], predicate="intersects")
+        apart = other - side - first
+        crossings += int(((apart > 1) & (apart < len(sides) - 1)).sum())  # neighbours meet at their corner
+        if crossings > MOST_CROSSINGS:
+            raise TooTangled
 
 
 @dataclass(frozen=True)
@@ -200,6 +220,7 @@ __all__ = [
     "NotOnTheLine",
     "RailwayBridges",
     "StretchPart",
+    "TooTangled",
     "area_drawn",
     "assets_called",
     "assets_in_area",

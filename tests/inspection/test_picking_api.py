@@ -69,6 +69,11 @@ def test_an_own_reference_comes_before_one_of_several_and_before_a_name(client: 
     assert lookup(client, "7", "8") == {"7": ("found", [own.pk]), "8": ("found", [shared.pk])}
 
 
+def test_letters_that_change_their_number_in_capitals_do_not_hide_a_name(client: Client) -> None:
+    mast = tower(name="Weißenthurm Süd")
+    assert lookup(client, "weißenthurm SÜD") == {"weißenthurm SÜD": ("found", [mast.pk])}
+
+
 def test_a_list_may_be_of_one_kind(client: Client) -> None:
     mast, way = tower(ref="A"), line(ref="A")
     assert lookup(client, "A") == {"A": ("several", [mast.pk, way.pk])}
@@ -105,6 +110,18 @@ def test_an_area_holds_the_towers_and_bridges_that_stand_in_it(client: Client) -
     answer = within(client, triangle).json()
     assert (answer["count"], ids(answer["assets"])) == (2, [inside.pk, over.pk])
     assert ids(within(client, triangle, kinds=["line"]).json()["assets"]) == [way.pk]
+
+
+def test_a_line_that_crosses_itself_hundreds_of_times_is_refused_before_it_is_sorted_out(client: Client) -> None:
+    tangle = [[10.0 + 0.001 * (corner * 7_919 % 1_000), 56.0 + 0.001 * (corner * 104_729 % 997)] for corner in range(1_000)]
+    answer = within(client, tangle)
+    assert (answer.status_code, answer.json()["error"]["details"]) == (400, {"polygon": ["It crosses itself too often."]})
+
+
+def test_a_line_that_stands_still_at_a_corner_does_not_cross_itself(client: Client) -> None:
+    mast = tower()
+    corners = [[9.9, 55.9], [10.1, 55.9], [10.1, 56.1], [9.9, 56.1]]
+    assert ids(within(client, [corner for corner in corners for _ in range(400)]).json()["assets"]) == [mast.pk]
 
 
 def test_an_area_whose_line_crosses_itself_holds_both_loops(client: Client) -> None:
