@@ -22,7 +22,7 @@ export function distance_m([lon1, lat1], [lon2, lat2]) {
 
 /** Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown. */
 export function profileOf(waypoints, length_m) {
-  const along = [0];
+  const along = waypoints.length ? [0] : [];
   for (let index = 1; index < waypoints.length; index += 1) along.push(along[index - 1] + distance_m(waypoints[index - 1].position, waypoints[index].position));
   const scale = along.at(-1) > 0 ? length_m / along.at(-1) : 1; // the server's geodesic length is the true one
   const places = along.map((distance) => distance * scale);

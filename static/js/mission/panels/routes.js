@@ -32,6 +32,7 @@ export function mountRoutes(store, { grounds, showPoint }) {
   const strips = new Map(); // sequence → what spanStrip gives
   const zonesOf = new WeakMap(); // waypoints of a route → stretches beside zones
   let width_px = 0;
+  let isPointed = false; // a place of a strip is shown on the map
 
   function row(route, state, before) {
     const isUsed = Boolean(route.geometry);
@@ -116,7 +117,9 @@ export function mountRoutes(store, { grounds, showPoint }) {
 
   function follow({ along }) {
     for (const [sequence, drawn] of strips) drawn.point(along?.sequence === sequence ? along.at_m : null);
-    showPoint(along && strips.has(along.sequence) ? strips.get(along.sequence).positionAt(along.at_m) : null);
+    const position = along && strips.has(along.sequence) ? strips.get(along.sequence).positionAt(along.at_m) : null;
+    if (position || isPointed) showPoint(position);
+    isPointed = position !== null;
   }
 
   /** Where routes go round zones, once the server has said so. */
