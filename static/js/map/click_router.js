@@ -1,5 +1,6 @@
 /** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
 
+import { inWords } from "./asset_names.js";
 import { drawLassos } from "./lasso.js";
 import { PICKABLE, TILES } from "./style.js";
 
@@ -13,7 +14,7 @@ export function firstInOrder(features, kinds = null) {
   const isWanted = (feature) => PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
   const best = features.filter(isWanted).sort((a, b) => rank(a) - rank(b))[0];
   if (!best) return null;
-  return { kind: KINDS[best.sourceLayer], layer: best.sourceLayer, id: best.properties.id, properties: best.properties, geometry: best.geometry };
+  return { kind: KINDS[best.sourceLayer], layer: best.sourceLayer, id: best.properties.id, properties: inWords(best.properties), geometry: best.geometry };
 }
 
 /** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */

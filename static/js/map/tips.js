@@ -14,10 +14,17 @@ const KIND_WORDS = () => ({
   minor_line: t("Minor power line"), cable: t("Cable"), tram: t("Tramway"), subway: t("Subway"),
 });
 
+/** What the codes of ED-269 and ED-318 mean. */
+const CODES = () => ({
+  PROHIBITED: t("prohibited"), REQ_AUTHORISATION: t("authorisation required"), CONDITIONAL: t("conditional"), NO_RESTRICTION: t("no restriction"),
+  AIR_TRAFFIC: t("air traffic"), SENSITIVE: t("sensitive site"), PRIVACY: t("privacy"), POPULATION: t("population"), NATURE: t("nature"), NOISE: t("noise"),
+  FOREIGN_TERRITORY: t("foreign territory"), EMERGENCY: t("emergency"), OTHER: t("other"),
+});
+
 /** The words of a zone file's code: "AIR_TRAFFIC, NATURE" becomes "Air traffic, nature". Other texts stay as they are. */
 export function plainWords(text) {
   if (!/^[A-Z][A-Z_]+(, ?[A-Z][A-Z_]+)*$/.test(text)) return text;
-  const words = text.toLowerCase().replaceAll("_", " ");
+  const words = text.split(/, ?/).map((code) => CODES()[code] ?? code.toLowerCase().replaceAll("_", " ")).join(", ");
   return words[0].toUpperCase() + words.slice(1);
 }
 
