@@ -1,0 +1,238 @@
+"""The page of the fleet: types, bases and UAVs are added, placed, edited by two people, retired, deleted and brought back."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks
+
+pytestmark = pytest.mark.browser
+
+Picture = Callable[[Page, str], None]
+YARD = [-82.99, 39.96]
+
+
+def fleet(page: Page, query: str = "") -> Page:
+    page.goto(f"/uavs{query}")
+    page.locator("html[data-loaded]").wait_for(state="attached")
+    return page
+
+
+def writes(page: Page, method: str, path: str, body: Any = None) -> Any:
+    """What another operator, or the same one in another window, does meanwhile."""
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    headers = {"X-CSRFToken": token, "If-Match": "*"}
+    answer = page.request.fetch(f"/api/v1{path}", method=method, data=body or {}, headers=headers)
+    assert answer.ok, f"{path}: {answer.status} {answer.text()}"
+    return answer.json() if answer.status != 204 else None
+
+
+def is_saved(page: Page) -> None:
+    expect(page.get_by_text("Saved.")).to_be_visible(timeout=20_000)
+
+
+def forgives(visitor: Visitor, *words: str) -> None:
+    """What the browser says itself of an answer that the test provoked."""
+    visitor.complaints[:] = [said for said in visitor.complaints if not any(word in said for word in words)]
+
+
+def tab(page: Page, name: str) -> None:
+    page.get_by_role("radio", name=name).check()
+
+
+def adds(page: Page, button: str, fields: dict[str, str]) -> None:
+    page.get_by_role("button", name=button, exact=True).first.click()
+    for label, value in fields.items():
+        page.get_by_label(label, exact=True).fill(value)
+    page.get_by_role("button", name="Save", exact=True).click()
+    is_saved(page)
+
+
+def details(page: Page) -> Any:
+    return page.get_by_role("region", name="Details")
+
+
+def place_on_map(page: Page, position: list[float]) -> dict[str, float]:
+    return page.evaluate(
+        """(position) => {
+            const map = document.getElementById("fleet-map");
+            const box = map.getBoundingClientRect();
+            const { x, y } = map.project(position);
+            return { x: box.left + x, y: box.top + y };
+        }""",
+        position,
+    )
+
+
+def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor: Visitor, picture: Picture) -> None:
+    page = fleet(visitor.signs_in("opal"))
+    tab(page, "Types")
+    adds(page, "New type", {"Name": "Harrier", "Range": "55", "Speed": "16", "Sensors": "RGB camera, Lidar"})
+    tab(page, "Bases")
+    adds(page, "New base", {"Name": "East yard", "Latitude": f"{YARD[1]}", "Longitude": f"{YARD[0]}", "Note": "Gate code at the office"})
+    tab(page, "UAVs")
+    page.get_by_role("button", name="New UAV", exact=True).first.click()
+    page.get_by_label("Name", exact=True).fill("Harrier 1")
+    page.get_by_label("Type", exact=True).last.select_option("Harrier")
+    page.get_by_label("Base", exact=True).last.select_option("East yard")
+    expect(page.get_by_text("Empty: 55.0 km and 16 m/s, as its type.")).to_be_visible()
+    page.get_by_role("button", name="Save", exact=True).click()
+    for words in ("55.0 km, as its type", "16 m/s, as its type", "RGB camera, Lidar", "No mission uses it yet."):
+        expect(details(page).get_by_text(words)).to_be_visible()
+    expect(page.get_by_role("row", name="Harrier 1").get_by_text("East yard")).to_be_visible()
+    uav = asks(page, "/uavs?text=Harrier 1")["features"][0]
+    assert uav["geometry"]["coordinates"] == YARD
+    assert uav["properties"]["from_type"] == ["max_range_m", "cruise_speed_mps"]
+    picture(page, "uavs-light")
+
+
+def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    uav = writes(page, "POST", "/uavs", {"name": "Plover", "position": YARD})["id"]
+    fleet(page, f"?id={uav}")
+    page.get_by_role("button", name="Edit").click()
+    page.locator("#fleet-map[data-idle]").wait_for(state="attached")
+    clicked = [YARD[0] + 0.01, YARD[1] + 0.004]
+    page.mouse.click(**place_on_map(page, clicked))
+    expect(page.get_by_label("Longitude")).not_to_have_value(f"{YARD[0]}")
+    assert abs(float(page.get_by_label("Longitude").input_value()) - clicked[0]) < 0.001
+    pin = page.get_by_role("button", name="Place, drag it").bounding_box()
+    assert pin
+    page.mouse.move(pin["x"] + pin["width"] / 2, pin["y"] + pin["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(pin["x"] - 60, pin["y"] + 30, steps=5)
+    page.mouse.up()
+    typed = [float(page.get_by_label(name).input_value()) for name in ("Longitude", "Latitude")]
+    assert typed[0] < clicked[0] - 0.002
+    page.get_by_role("button", name="Save", exact=True).click()
+    is_saved(page)
+    assert asks(page, f"/uavs/{uav}")["geometry"]["coordinates"] == pytest.approx(typed, abs=1e-6)
+
+
+def test_a_uav_is_retired_with_a_way_back_and_is_not_offered_for_missions(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    uav = writes(page, "POST", "/uavs", {"name": "Dotterel", "position": YARD})["id"]
+    fleet(page, f"?id={uav}")
+    details(page).get_by_role("button", name="Retire").click()
+    expect(page.get_by_text("Dotterel is retired.")).to_be_visible()
+    expect(details(page).get_by_text("It is not offered for new missions and does not connect.")).to_be_visible()
+    page.goto("/missions/new")
+    page.locator("html[data-loaded]").wait_for(state="attached")
+    expect(page.get_by_text("Dotterel")).to_have_count(0)
+    fleet(page)
+    expect(page.get_by_role("link", name="Dotterel")).to_have_count(0)
+    page.get_by_label("State", exact=True).select_option("retired")
+    page.get_by_role("link", name="Dotterel").click()
+    details(page).get_by_role("button", name="Bring back").click()
+    expect(page.get_by_text("Dotterel is in service.")).to_be_visible()
+    page.get_by_role("button", name="Undo").click()
+    expect(details(page).get_by_role("button", name="Bring back")).to_be_visible()
+
+
+def test_a_deleted_base_comes_back_and_one_in_use_stays(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    used = writes(page, "POST", "/bases", {"name": "Used yard", "position": YARD})["id"]
+    spare = writes(page, "POST", "/bases", {"name": "Spare yard", "position": YARD})["id"]
+    writes(page, "POST", "/uavs", {"name": "Whimbrel", "base": used})
+    fleet(page, f"?tab=bases&id={used}")
+    details(page).get_by_role("button", name="Delete Used yard").click()
+    expect(page.get_by_text("A UAV has this base. Give it another one first.")).to_be_visible()
+    fleet(page, f"?tab=bases&id={spare}")
+    details(page).get_by_role("button", name="Delete Spare yard").click()
+    expect(page.get_by_role("link", name="Spare yard")).to_have_count(0)
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_role("link", name="Spare yard")).to_be_visible()
+    assert asks(page, f"/bases/{spare}")["position"] == YARD
+    forgives(visitor, "409")
+
+
+def test_a_token_is_shown_once_replaced_and_revoked(visitor: Visitor, picture: Picture) -> None:
+    page = visitor.signs_in("opal", theme="dark")
+    uav = writes(page, "POST", "/uavs", {"name": "Turnstone", "position": YARD})["id"]
+    fleet(page, f"?id={uav}")
+    details(page).get_by_role("button", name="Make: Token of the HTTP link").click()
+    secret = details(page).locator("code")
+    expect(secret).to_have_text(re.compile(r"^spu_[\w-]{43}$"))
+    picture(page, "uav-token-dark")
+    first = secret.text_content()
+    details(page).get_by_role("button", name="Replace: Token of the HTTP link").click()
+    expect(secret).not_to_have_text(first or "")
+    page.reload()
+    expect(details(page).get_by_text("not used yet")).to_be_visible()
+    expect(secret).to_have_count(0)
+    details(page).get_by_role("button", name="Revoke: Token of the HTTP link").click()
+    details(page).get_by_role("button", name="Revoke it").click()
+    expect(details(page).get_by_text("None: it cannot connect this way.")).to_have_count(2)
+    assert asks(page, f"/uavs/{uav}")["properties"]["credentials"] == []
+
+
+def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    uav = writes(page, "POST", "/uavs", {"name": "Godwit", "position": YARD})["id"]
+    fleet(page, f"?id={uav}")
+    details(page).get_by_role("button", name="Edit").click()
+    page.get_by_label("Serial number").fill("SN-1")
+    writes(visitor.signs_in("rory"), "PATCH", f"/uavs/{uav}", {"battery_percent": 40})
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(details(page).get_by_text("Changed by rory in the meantime.")).to_be_visible()
+    expect(details(page).get_by_text("→ 40")).to_be_visible()
+    page.get_by_role("button", name="Store mine over it").click()
+    is_saved(page)
+    facts = asks(page, f"/uavs/{uav}")["properties"]
+    assert (facts["serial_number"], facts["battery_percent"]) == ("SN-1", 40.0)
+    forgives(visitor, "412")
+
+
+def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_was_left(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    uav = writes(page, "POST", "/uavs", {"name": "Curlew", "position": YARD})["id"]
+    fleet(page, f"?id={uav}")
+    details(page).get_by_role("button", name="Edit").click()
+    page.get_by_label("Serial number").fill("SN-2")
+    page.context.set_offline(True)
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(details(page).get_by_text("The server cannot be reached. What you typed stays here.")).to_be_visible()
+    page.context.set_offline(False)
+    page.get_by_role("button", name="Cancel", exact=True).click()
+    page.get_by_role("button", name="Undo").click()
+    expect(page.get_by_label("Serial number")).to_have_value("SN-2")
+    page.get_by_role("button", name="Save", exact=True).click()
+    is_saved(page)
+    assert asks(page, f"/uavs/{uav}")["properties"]["serial_number"] == "SN-2"
+    forgives(visitor, "ERR_INTERNET_DISCONNECTED")
+
+
+def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
+    page = fleet(visitor.signs_in("opal"))
+    page.keyboard.press("c")
+    expect(page.get_by_label("Name", exact=True)).to_be_focused()
+    page.keyboard.type("Lapwing")
+    page.keyboard.press("Control+s")
+    expect(page.get_by_role("link", name="Lapwing")).to_be_visible()
+    page.keyboard.press("e")
+    expect(page.get_by_label("Name", exact=True)).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(details(page).get_by_role("heading", name="Lapwing")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("link", name="Lapwing")).to_be_focused()
+    page.keyboard.press("/")
+    page.keyboard.type("no such bird")
+    expect(page.get_by_text("Nothing matches “no such bird”")).to_be_visible()
+    page.get_by_role("button", name="Clear the filter").press("Enter")
+    expect(page.get_by_role("link", name="Lapwing")).to_be_visible()
+
+
+def test_a_viewer_looks_and_changes_nothing_on_a_phone(visitor: Visitor, picture: Picture) -> None:
+    writes(visitor.signs_in("opal"), "POST", "/uavs", {"name": "Ruff", "position": YARD, "battery_percent": 22})
+    page = fleet(visitor.signs_in("vera", size=(390, 844), touch=True))
+    picture(page, "uavs-phone")
+    page.get_by_role("link", name="Ruff").tap()
+    expect(details(page).get_by_text("22")).to_be_visible()
+    for name in ("Edit", "Retire", "Delete Ruff", "Make: Token of the HTTP link", "New UAV"):
+        expect(page.get_by_role("button", name=name)).to_have_count(0)
+    page.get_by_role("button", name="All of them").tap()
+    expect(page.get_by_role("link", name="Ruff")).to_be_visible()
