@@ -12,7 +12,18 @@ from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, IdempotencyKey, Job, JobState, Organisation, Role, User
+from workspace.models import (
+    DEFAULT_ORGANISATION_ID,
+    ApiToken,
+    AuditEntry,
+    IdempotencyKey,
+    Invitation,
+    Job,
+    JobState,
+    Organisation,
+    Role,
+    User,
+)
 
 LEASE_S = 60  # a worker that says nothing for so long is taken for dead
 QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
@@ -194,6 +205,8 @@ def save_person(*, user: User, actor: User) -> User:
         before = User.objects.filter(pk=user.pk).first()
         user.save()
         _refuse_without_administrator(before)
+        if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
+            _withdraw_invitations(user, actor)
         _record_person(actor, user.pk, before and person_facts(before), person_facts(user))
     return user
 
@@ -215,7 +228,8 @@ def delete_person(*, user: User, actor: User) -> None:
     """What they did stays in the history, without their name. Raises NoAdministratorLeft."""
     with transaction.atomic():
         before, key = person_facts(user), user.pk
-        held = User(role=user.role, is_active=user.is_active)
+        held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id)
+        _withdraw_invitations(user, actor)
         user.delete()
         _refuse_without_administrator(held)
         _record_person(actor if actor.pk != key else None, key, before, None)
@@ -229,12 +243,32 @@ def person_facts(user: User) -> dict[str, Any]:
 
 def _refuse_without_administrator(before: User | None) -> None:
     """After a change, in its transaction. Two that are made at once wait for each other here."""
-    if before is None or before.role != Role.ADMINISTRATOR or not before.is_active:
+    if before is None or not _administrates(before):
         return
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_advisory_xact_lock(%s)", [ADMINISTRATORS_LOCK])
-    if not User.objects.filter(role=Role.ADMINISTRATOR, is_active=True).exists():
+    left = User.objects.filter(is_active=True)
+    administrators = left.filter(role=Role.ADMINISTRATOR)
+    own = before.organisation_id
+    if not administrators.exists() or (left.filter(organisation=own).exists() and not administrators.filter(organisation=own).exists()):
         raise NoAdministratorLeft
+
+
+def _administrates(user: User) -> bool:
+    return user.role == Role.ADMINISTRATOR and user.is_active
+
+
+def _withdraw_invitations(user: User, actor: User) -> None:
+    """Whoever loses the role, or access, has no link at hand that gives it back."""
+    now = timezone.now()
+    still_open = Invitation.objects.filter(invited_by=user, accepted_at=None, revoked_at=None, expires_at__gt=now)
+    for invitation in still_open.select_for_update():
+        invitation.revoked_at = now
+        invitation.save(update_fields=["revoked_at"])
+        record_change(
+            organisation=invitation.organisation, actor=actor, action="revoked", subject_type="invitation", subject_id=invitation.pk,
+            before={"role": invitation.role, "email": invitation.email},
+        )  # fmt: skip
 
 
 def _record_person(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
