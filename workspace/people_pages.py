@@ -14,23 +14,17 @@ from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
 
 from workspace.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
-from workspace.models import Language, Role, Theme, Units, User
+from workspace.models import User
 from workspace.pages import SignedInPage
+from workspace.preferences import TIME_ZONES
 from workspace.sign_in_pages import welcome
 
 BACKEND = "workspace.authentication.RoleBackend"
 
 
-def choices_of(kind: Any) -> list[dict[str, str]]:
-    return [{"value": value, "label": str(label)} for value, label in kind.choices]
-
-
 class AccountPage(SignedInPage):
     template_name = "account.html"
-    extra_context = {"section": "account"}
-
-    def page(self, **kwargs: Any) -> dict[str, Any]:
-        return {"themes": choices_of(Theme), "units": choices_of(Units), "languages": choices_of(Language)}
+    extra_context = {"section": "account", "time_zones": sorted(zone for zone in TIME_ZONES if "/" in zone or zone == "UTC")}
 
 
 class AdministrationPage(UserPassesTestMixin, SignedInPage):
@@ -43,7 +37,7 @@ class AdministrationPage(UserPassesTestMixin, SignedInPage):
         return bool(self.request.user.is_authenticated and self.request.user.is_superuser)
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        return {"roles": choices_of(Role), "mailLeavesHere": mail_leaves_here()}
+        return {"mailLeavesHere": mail_leaves_here()}
 
 
 class NewAccountForm(UserCreationForm):

@@ -3,6 +3,7 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
+from django.utils.translation import gettext_lazy
 from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 
@@ -12,6 +13,18 @@ PLANNERS = frozenset({Role.OPERATOR, Role.ADMINISTRATOR})
 CURATORS = frozenset({Role.CURATOR, Role.ADMINISTRATOR})
 ADMINISTRATORS = frozenset({Role.ADMINISTRATOR})
 EVERYBODY = frozenset(Role)
+SEVERAL = {
+    Role.VIEWER: gettext_lazy("Viewers"),
+    Role.OPERATOR: gettext_lazy("Operators"),
+    Role.CURATOR: gettext_lazy("Curators"),
+    Role.ADMINISTRATOR: gettext_lazy("Administrators"),
+}
+ONE = {
+    Role.VIEWER: gettext_lazy("viewer"),
+    Role.OPERATOR: gettext_lazy("operator"),
+    Role.CURATOR: gettext_lazy("curator"),
+    Role.ADMINISTRATOR: gettext_lazy("administrator"),
+}
 
 
 class RolePermission(BasePermission):
@@ -21,6 +34,14 @@ class RolePermission(BasePermission):
         user = request.user
         if not user.is_authenticated:
             return False
+        write_roles = getattr(view, "write_roles", PLANNERS)
+        if request.method in SAFE_METHODS or user.role in write_roles:
+            return True
+        wanted = [role for role in Role if role in write_roles and role != Role.ADMINISTRATOR] or [Role.ADMINISTRATOR]
+        self.message = _("{people} cannot do this. Ask an administrator for the {wanted} role.").format(
+            people=SEVERAL[Role(user.role)], wanted=_(" or ").join(str(ONE[role]) for role in wanted)
+        )
+        return False
         write_roles = getattr(view, "write_roles", PLANNERS)
         if request.method in SAFE_METHODS or user.role in write_roles:
             return True

@@ -1,7 +1,13 @@
-/* Runs before the first paint: the theme that was chosen in this browser, so that nothing flashes. */
+/* Runs before the first paint, so that nothing flashes: the account's theme, which the server wrote into the page, else what this browser had last. */
 try {
-  const chosen = localStorage.getItem("spanwise.theme");
-  if (chosen === "light" || chosen === "dark") document.documentElement.dataset.theme = chosen;
+  const { dataset } = document.documentElement;
+  if (dataset.themeOf === "account") {
+    if (dataset.theme) localStorage.setItem("spanwise.theme", dataset.theme);
+    else localStorage.removeItem("spanwise.theme");
+  } else {
+    const chosen = localStorage.getItem("spanwise.theme");
+    if (chosen === "light" || chosen === "dark") dataset.theme = chosen;
+  }
 } catch {
-  /* storage is closed: the system's theme stands */
+  /* storage is closed: the account's theme or the system's stands */
 }

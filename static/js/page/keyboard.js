@@ -19,6 +19,15 @@ export function keyName(event) {
   return [...parts, key].join("+");
 }
 
+/** Whether a single character, or several one after the other, is all it takes: what WCAG 2.1.4 wants to be switched off. */
+export function isSingleKey(keys) {
+  return keys.split(" ").every((key) => /^(shift\+)?.$/.test(key));
+}
+
+function singleKeysAreOff() {
+  return document.documentElement.dataset.singleKeys === "off";
+}
+
 /** bindings: [{ keys: ["p"], words: "Plan", act, whileTyping? }]. An act that returns false leaves the key to the browser. */
 export function listenToKeys(bindings) {
   let prefix = "";
@@ -27,6 +36,7 @@ export function listenToKeys(bindings) {
     if (event.defaultPrevented || event.isComposing) return;
     if (document.querySelector("dialog[open]")) return;
     const name = keyName(event);
+    if (isSingleKey(name) && singleKeysAreOff()) return;
     const isChord = prefix && Date.now() - prefixAt < 1200;
     const whole = isChord ? `${prefix} ${name}` : name;
     prefix = "";
@@ -52,8 +62,8 @@ export function showKeys(bindings) {
     "dialog",
     { class: "keys", "aria-labelledby": "keys-title" },
     h("h2", { id: "keys-title" }, t("Keyboard")),
-    h("p", { class: "caption" }, t("Single keys rest while you type.")),
-    h("dl", { class: "key-list" }, bindings.filter((binding) => binding.words).map((binding) => h("div", {}, h("dt", {}, caps(binding.keys[0])), h("dd", {}, binding.words)))),
+    h("p", { class: "caption" }, singleKeysAreOff() ? t("Single keys are switched off in your account.") : t("Single keys rest while you type.")),
+    h("dl", { class: "key-list" }, bindings.filter((binding) => binding.words && !(singleKeysAreOff() && binding.keys.every(isSingleKey))).map((binding) => h("div", {}, h("dt", {}, caps(binding.keys[0])), h("dd", {}, binding.words)))),
     h("form", { method: "dialog", class: "acts" }, h("button", { class: "button" }, t("Close"))),
   );
   open(dialog);

@@ -1,9 +1,12 @@
-/** Light, dark or the system's: kept in this browser. */
+/** Light, dark or the system's: kept in the account of whoever is signed in, and in this browser for the pages before that. */
+
+import { patch } from "../api.js";
 
 const KEY = "spanwise.theme";
 const ORDER = ["system", "light", "dark"];
 export const THEME_ICONS = { system: "monitor", light: "sun", dark: "moon" };
 const listeners = new Set();
+let kept = Promise.resolve();
 
 export function chosenTheme() {
   return document.documentElement.dataset.theme ?? "system";
@@ -17,6 +20,9 @@ export function chooseTheme(theme) {
     else localStorage.setItem(KEY, theme);
   } catch {
     /* storage is closed: the choice lasts as long as the page */
+  }
+  if (document.documentElement.dataset.themeOf === "account") {
+    kept = kept.then(() => patch("/account", { theme })).catch(() => {}); // away: the choice lasts as long as the page
   }
   listeners.forEach((tell) => tell());
 }

@@ -1,0 +1,80 @@
+/** A list behind filters: asked for again when one changes, continued by "Show more", with words for when nothing is found. */
+
+import { get } from "../api.js";
+import { byId, h, icon } from "../dom.js";
+import { t } from "../text.js";
+
+const TYPING_ENDS_MS = 250;
+
+/** filters: names of the query's parameters, each with a control #<list>-<name>. */
+export function filteredList({ list, path, filters, row, countWords, none, tell, titleOfFault }) {
+  const controls = filters.map((name) => [name, byId(`${list}-${name}`)]);
+  const rows = byId(`${list}-rows`);
+  const more = byId(`${list}-more`);
+  let next = null;
+  let asked = 0;
+  let timer = 0;
+
+  function query() {
+    const wanted = controls.map(([name, control]) => [name, control.value.trim()]).filter(([, value]) => value);
+    return new URLSearchParams([...wanted, ["limit", "50"]]);
+  }
+
+  const isFiltered = () => controls.some(([, control]) => control.value.trim());
+
+  async function ask(address) {
+    const turn = ++asked;
+    try {
+      const { data } = await get(address);
+      return turn === asked ? data : null;
+    } catch (error) {
+      tell(titleOfFault, error);
+      return null;
+    }
+  }
+
+  async function load() {
+    const data = await ask(`${path}?${query()}`);
+    if (!data) return;
+    rows.replaceChildren(...data.results.map(row));
+    shown(data.next);
+  }
+
+  async function loadMore() {
+    const data = await ask(next);
+    if (!data) return;
+    const added = data.results.map(row);
+    rows.append(...added);
+    shown(data.next);
+    added[0]?.querySelector("button, select, a")?.focus();
+  }
+
+  function shown(following) {
+    next = following;
+    more.hidden = next === null;
+    const count = rows.children.length;
+    rows.closest("table").hidden = count === 0;
+    byId(`${list}-count`).textContent = count === 0 ? "" : next === null ? countWords(count) : t("The first {what}", { what: countWords(count) });
+    const empty = byId(`${list}-none`);
+    empty.hidden = count > 0;
+    if (count) return;
+    if (isFiltered()) empty.replaceChildren(icon("search", "large"), h("strong", {}, t("Nothing matches")), h("button", { type: "button", class: "button", onclick: clear }, t("Clear the filters")));
+    else empty.replaceChildren(icon(none.icon, "large"), h("strong", {}, none.title), h("span", {}, none.words));
+  }
+
+  function clear() {
+    for (const [, control] of controls) control.value = "";
+    controls[0][1].focus();
+    load();
+  }
+
+  more.addEventListener("click", loadMore);
+  for (const [, control] of controls) {
+    const isTyped = control.tagName === "INPUT";
+    control.addEventListener(isTyped ? "input" : "change", () => {
+      clearTimeout(timer);
+      timer = setTimeout(load, isTyped ? TYPING_ENDS_MS : 0);
+    });
+  }
+  return { load };
+}

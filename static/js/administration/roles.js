@@ -1,0 +1,18 @@
+/** Roles by name, and as a choice. */
+
+import { h } from "../dom.js";
+import { t } from "../text.js";
+
+export const ROLES = { viewer: t("Viewer"), operator: t("Operator"), curator: t("Curator"), administrator: t("Administrator") };
+
+/** What each may do, in a few words. */
+export const MAY = {
+  viewer: t("sees everything, changes nothing"),
+  operator: t("plans and flies missions"),
+  curator: t("keeps assets, zones and terrain"),
+  administrator: t("does everything, and lets people in"),
+};
+
+export function roleOptions(chosen) {
+  return Object.entries(ROLES).map(([value, words]) => h("option", { value, selected: value === chosen }, words));
+}
