@@ -19,10 +19,11 @@ COPIED = (
 
 def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Mission:
     """A copy of its own: targets are pending again, and a mission that was on its way is merely planned."""
-    values = {field: getattr(mission, field) for field in COPIED}
-    if values["state"] != MissionState.DRAFT:
-        values["state"] = MissionState.PLANNED
     with transaction.atomic():
+        mission = Mission.objects.select_for_update().get(pk=mission.pk)  # as it is now: never half of one plan and half of the next
+        values = {field: getattr(mission, field) for field in COPIED}
+        if values["state"] != MissionState.DRAFT:
+            values["state"] = MissionState.PLANNED
         copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:LONGEST_NAME], **values)
         uavs = _copied(MissionUav, mission.mission_uavs.all(), mission=copy)
         targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, state=TargetState.PENDING)

@@ -53,7 +53,8 @@ def mission_or_404(user: User, mission_id: UUID, *, deleted: bool = False) -> Mi
 
 def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Response:
     mission = mission_or_404(user, mission_id)
-    headers = {"ETag": f'"{mission.revision}"'}
+    # A browser that kept the answer would ask with the ETag by itself, and show what the ground was then: only pages may ask so.
+    headers = {"ETag": f'"{mission.revision}"', "Cache-Control": "no-store"}
     if status == 201:
         headers["Location"] = reverse("api-mission", args=[mission.pk])
     return Response(mission_json(mission), status=status, headers=headers)

@@ -9,6 +9,8 @@ from django.test import Client
 
 from inspection.services import mark_ground_changed
 from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
+from missions.selectors import mission_of_organisation
+from missions.services import duplicate_mission
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world, zone_around
 from tests.workspace.people import client_of, somebody
@@ -173,6 +175,14 @@ def test_a_copy_of_a_mission_that_was_flown_is_planned_and_pending(here: World, 
     assert (copy["state"], copy["targets"][0]["state"]) == ("planned", "pending")
 
 
+def test_a_copy_is_of_the_mission_as_it_is_when_it_is_copied(here: World, client: Client, opal: User) -> None:
+    mission = created(client, here, "North", here.towers[2])
+    read_before = mission_of_organisation(opal.organisation, mission["id"])
+    changed = patch(client, f"missions/{mission['id']}", {"uavs": [TERN, TERN | {"name": "Gull"}], "plan": True}).json()
+    copy = duplicate_mission(mission=read_before, author=opal)
+    assert client.get(f"/api/v1/missions/{copy.pk}").json()["plan"] == changed["plan"]
+
+
 def test_several_are_deleted_at_once_and_brought_back(here: World, client: Client) -> None:
     one, two, frozen = [created(client, here, name, plan=False)["id"] for name in ("One", "Two", "Frozen")]
     Mission.objects.filter(pk=frozen).update(state=MissionState.ACTIVE, planned_at="2026-01-01T00:00Z", graph_version=1)
@@ -205,6 +215,11 @@ def test_a_mission_that_is_as_it_was_is_not_sent_again(here: World, client: Clie
     assert (changed.status_code, changed.json()["name"]) == (200, "Changed")
     client.delete(path)
     assert client.get(path, headers={"If-None-Match": changed["ETag"]}).status_code == 404
+
+
+def test_no_browser_keeps_a_mission_to_take_its_old_ground_for_the_new_one(here: World, client: Client) -> None:
+    answer = client.get(f"/api/v1/missions/{created(client, here, 'Watched')['id']}")
+    assert answer["Cache-Control"] == "no-store"
 
 
 def test_pages_hear_of_each_other_until_they_leave(here: World, client: Client, opal: User) -> None:
