@@ -43,7 +43,7 @@ export function mountMap(store, actions, page, { askForUav }) {
 
   // clicks
 
-  const picking = createMapPicking({ frame, store, actions });
+  const picking = createMapPicking({ frame, store, actions, opened: () => tip(null) });
   map.on("movestart", () => {
     picking.close();
     tip(null);
@@ -80,7 +80,7 @@ export function mountMap(store, actions, page, { askForUav }) {
       const target = point && targets.at(point);
       if (target !== (store.state.litTarget ?? null) && (target || litHere)) store.update({ litTarget: target });
       litHere = Boolean(target);
-      if (controls.isMeasuring() || target) thing = null;
+      if (controls.isMeasuring() || target || picking.isOpen()) thing = null;
       tip(thing ? `${thing.kind} ${thing.id}` : null, point, (refresh) => tipOf({ ...thing, place }, refresh));
       const next = thing && thing.kind !== "zone" && !picking.isOpen() ? thing : null;
       if (next?.id === pointed?.id && next?.kind === pointed?.kind) return;

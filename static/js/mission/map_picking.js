@@ -9,14 +9,18 @@ import { extentOf, nameOf, targetOf } from "./selection.js";
 
 const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 
-/** A choice of a few acts at a place of the map. */
-function createChoice(frame) {
+/** A choice of a few acts at a place of the map; opened() is told when one opens. */
+function createChoice(frame, opened) {
   let box = null;
   let opener = null;
   const close = () => {
     const was = box;
     box = null;
-    if (was?.contains(document.activeElement)) opener?.focus();
+    if (was?.contains(document.activeElement)) {
+      const map = opener?.closest("#map");
+      if (map) map.dataset.pointed = "true"; // it came by a click: no focus ring round the map
+      opener?.focus();
+    }
     was?.remove();
     return was !== null;
   };
@@ -26,6 +30,7 @@ function createChoice(frame) {
     /** items: [{ icon, words, act }] */
     open(title, items, point) {
       close();
+      opened();
       opener = document.activeElement instanceof HTMLElement ? document.activeElement : null;
       box = h(
         "div",
@@ -41,8 +46,8 @@ function createChoice(frame) {
   };
 }
 
-export function createMapPicking({ frame, store, actions }) {
-  const choice = createChoice(frame);
+export function createMapPicking({ frame, store, actions, opened }) {
+  const choice = createChoice(frame, opened);
 
   /** A line can be flown end to end, looked at in one place, or be left to its towers: the operator says which. */
   function chooseOnLine(thing, place, point) {

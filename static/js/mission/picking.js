@@ -108,7 +108,7 @@ export function createPicking({ store, history, selection, change, problem, fail
       const { data } = await get(`/assets/${railway}/bridges?sections=${allSections ? "all" : "own"}`);
       const sections = tn(data.sections, "{count} section", "{count} sections");
       if (data.bridges.length) addMany(rowsToTargets(data.bridges), (added) => t("{added}: every bridge of {sections} of the railway.", { added, sections }));
-      else toast(t("No bridge carries {sections} of this railway.", { sections }));
+      else toast(tn(data.sections, "No bridge carries this section of the railway.", "No bridge carries one of the {count} sections of this railway."));
     } catch (error) {
       failed(t("The bridges could not be read."), error);
     }

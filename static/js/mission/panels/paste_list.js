@@ -77,7 +77,7 @@ export function askForList(actions) {
     }
 
     const sentence = [
-      tn(foundCount, "{count} found", "{count} found"),
+      foundCount > 0 && tn(foundCount, "{count} found", "{count} found"),
       several.length && tn(several.length, "{count} means several things", "{count} mean several things"),
       none.length && tn(none.length, "{count} is not known", "{count} are not known"),
     ].filter(Boolean).join(", ");

@@ -3,7 +3,6 @@
 import { ApiError, get, patch, post, remove } from "../../api.js";
 import { h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
-import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { dayText } from "../../units.js";
 import { requestOf, storedTarget } from "../selection.js";
@@ -24,31 +23,37 @@ export function showSelections(store, actions) {
   const dialog = h("dialog", { class: "selections", "aria-labelledby": "selections-title" });
   const list = h("ul", { class: "selection-list", "aria-label": t("Saved selections") });
   const wrong = h("p", { class: "field-error", role: "alert" });
+  const done = h("p", { class: "selection-done", role: "status" });
   const name = h("input", { class: "input", id: "selection-name", maxlength: "100", required: true, autocomplete: "off" });
   const picked = () => store.state.selection;
   const targetsNow = () => requestOf(picked()).targets;
-  let rows = null;
+  const close = h("button", { class: "button" }, t("Close"));
+  let rows = [];
+
+  /** Said in the dialog: what lies behind it cannot be reached. */
+  const tell = (words, act = null) => done.replaceChildren(words, act ? h("button", { type: "button", class: "text-button", onclick: act }, t("Undo")) : "");
 
   const told = (work) => async (...values) => {
     wrong.textContent = "";
+    done.replaceChildren();
     try {
       await work(...values);
     } catch (error) {
       wrong.textContent = wordsOf(error);
-      if (error.status === 412 || error.status === 404) await refresh();
+      if (error.status === 412 || error.status === 404) await refresh().catch(() => {}); // what went wrong is said already
     }
   };
 
-  const refresh = told(async () => {
+  async function refresh() {
     rows = await allSelections();
     draw();
-  });
+  }
 
   const keep = told(async () => {
     const { data } = await post("/selections", { name: name.value.trim(), targets: targetsNow() });
-    toast(t("“{name}” is kept.", { name: data.name }));
     name.value = "";
     await refresh();
+    tell(t("“{name}” is kept.", { name: data.name }));
   });
 
   const load = told(async (row, { instead }) => {
@@ -82,8 +87,8 @@ export function showSelections(store, actions) {
 
   const bringUpToDate = told(async (row) => {
     await patch(`/selections/${row.id}`, { targets: targetsNow() }, etag(row));
-    toast(t("“{name}” holds the present targets now.", { name: row.name }));
     await refresh();
+    tell(t("“{name}” holds the present targets now.", { name: row.name }));
   });
 
   const drop = told(async (row) => {
@@ -93,10 +98,10 @@ export function showSelections(store, actions) {
     const targets = requestOf({ targets: data.targets.map(storedTarget), uavs: [] }).targets;
     const back = told(async () => {
       await post("/selections", { name: row.name, targets });
-      if (dialog.open) await refresh();
+      await refresh();
     });
-    toast(t("“{name}” is deleted.", { name: row.name }), targets.length ? { label: t("Undo"), act: back } : null);
-    name.focus();
+    tell(t("“{name}” is deleted.", { name: row.name }), targets.length ? back : null);
+    (done.querySelector("button") ?? close).focus();
   });
 
   function rowOf(row) {
@@ -134,12 +139,13 @@ export function showSelections(store, actions) {
           h("button", { class: "button primary" }, t("Keep")),
         ),
       wrong,
+      done,
       list,
-      h("form", { method: "dialog", class: "acts" }, h("button", { class: "button" }, t("Close"))),
+      h("form", { method: "dialog", class: "acts" }, close),
     ),
   );
   list.append(h("li", { class: "quiet-text" }, t("Loading…")));
   open(dialog);
   if (count) name.focus();
-  refresh();
+  told(refresh)();
 }
