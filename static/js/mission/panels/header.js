@@ -2,6 +2,7 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
+import { t } from "../../text.js";
 import { clockText, countText } from "../../units.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 
@@ -43,7 +44,7 @@ export function mountHeader(store, actions, canPlan) {
   });
 
   store.listen(["problem", "conflict", "plan", "selection", "mission"], (state) => {
-    byId("notices").replaceChildren(...noticesOf(state, actions, canPlan));
+    byId("notices").replaceChildren(...noticesOf(state, actions, canPlan, store));
   });
   store.listen(["problem", "conflict"], (state) => {
     if (state.problem || state.conflict) byId("notices").parentElement.scrollTo({ top: 0 }); // it stands above a long list
@@ -81,7 +82,7 @@ function way({ label, act, href }) {
   return h("a", { class: "text-button", href: href(), onclick: (event) => (event.currentTarget.href = href()) }, label);
 }
 
-function noticesOf(state, actions, canPlan) {
+function noticesOf(state, actions, canPlan, store) {
   const notices = [];
   if (state.problem) {
     const isAway = state.problem.title.includes("cannot be reached");
@@ -106,7 +107,8 @@ function noticesOf(state, actions, canPlan) {
     for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", warning.message));
     const unreached = unreachedOf(state.plan);
     for (const { target, sentence } of unreached.slice(0, 3)) {
-      const acts = canPlan ? [{ label: "Remove it", act: () => actions.removeTargets([target.key]) }] : [];
+      const why = { label: t("Why?"), act: () => store.update({ why: { target: target.key } }) };
+      const acts = canPlan ? [why, { label: t("Remove it"), act: () => actions.removeTargets([target.key]) }] : [why];
       notices.push(notice("warning", "triangle-alert", `${target.label} is not reached.`, sentence, acts));
     }
     if (unreached.length > 3) {
