@@ -1,5 +1,6 @@
 """UAVs of an organisation."""
 
+from datetime import datetime
 from typing import Any
 
 from django.contrib.gis.geos import Point
@@ -53,7 +54,8 @@ def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
         base=Base.objects.filter(organisation=organisation, pk=facts["base"]).first(),
         uav_type=UavType.objects.filter(organisation=organisation, pk=facts["uav_type"]).first(),
     )  # fmt: skip
-    _place(uav, LonLat(*facts["position"]))
+    uav.location = Point(*facts["position"], srid=4326)
+    uav.located_at = facts["located_at"] and datetime.fromisoformat(facts["located_at"])
     return stored(uav, actor=actor, action="restore", before=None, facts=_facts)
 
 
@@ -76,4 +78,7 @@ def _place(uav: Uav, position: LonLat) -> None:
 
 def _facts(uav: Uav) -> dict[str, Any]:
     own = {field: getattr(uav, field) for field in FIELDS}
-    return own | {"base": uav.base_id, "uav_type": uav.uav_type_id, "position": list(uav.location.coords), "revision": uav.revision}
+    return own | {
+        "base": uav.base_id, "uav_type": uav.uav_type_id, "position": list(uav.location.coords), "revision": uav.revision,
+        "located_at": uav.located_at and uav.located_at.isoformat(),
+    }  # fmt: skip

@@ -188,8 +188,8 @@ def test_what_was_deleted_comes_back_as_it_was(client: Client) -> None:
             )
         after = post(client, f"{address}/restore").json()
         facts, known = (row.get("properties", row) for row in (after, before))
-        assert {name: facts[name] for name in facts if name not in {"revision", "updated_at", "located_at", "uav_count"}} == {
-            name: known[name] for name in known if name not in {"revision", "updated_at", "located_at", "uav_count"}
+        assert {name: facts[name] for name in facts if name not in {"revision", "updated_at", "uav_count"}} == {
+            name: known[name] for name in known if name not in {"revision", "updated_at", "uav_count"}
         }
         assert facts["revision"] > known["revision"]
         assert post(client, f"{address}/restore").json()["error"]["code"] == "not_deleted"
