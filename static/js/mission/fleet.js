@@ -1,11 +1,18 @@
 /** Fleet and mission together, as values. */
 
 import { routeLetter } from "../map/palette.js";
+import { t } from "../text.js";
 import { lengthText, speedText } from "../units.js";
+
+/** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, range, speed and end. */
+const factsIn = ({ base, base_name, type_name, sensors, battery_percent, state }) => ({ base, base_name, type_name, sensors, battery_percent, state });
 
 /** Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet. */
 export function standingUavs({ selection, fleet }) {
-  const chosen = selection.uavs.map((uav, sequence) => ({ ...uav, sequence, letter: routeLetter(sequence) }));
+  const chosen = selection.uavs.map((uav, sequence) => {
+    const known = fleet.find((other) => other.id === uav.id);
+    return { ...uav, ...(known ? factsIn(known) : {}), isGone: uav.id !== null && uav.id !== undefined && fleet.length > 0 && !known, sequence, letter: routeLetter(sequence) };
+  });
   const ids = new Set(chosen.map((uav) => uav.id));
   return [...chosen, ...fleet.filter((uav) => !ids.has(uav.id)).map((uav) => ({ ...uav, sequence: null, letter: "" }))];
 }
@@ -19,12 +26,30 @@ export function inFleetOrder(state) {
   return standingUavs(state).sort((a, b) => place(a) - place(b));
 }
 
-const END_WORDS = { hover: "hovers at the end", land: "lands at the end", return: "returns to start" };
+/** Whether it may be taken along: in maintenance or retired it may not. */
+export const canFly = ({ state }) => state === undefined || state === "active";
 
-/** "range 80 km · 12 m/s · hovers at the end": what a UAV can do and how its flight ends. */
-export function factsOfUav({ max_range_m, cruise_speed_mps, end_action }, returnsToStart) {
-  const facts = [max_range_m ? `range ${lengthText(max_range_m)}` : "range not stated"];
+/** What a fleet can be narrowed by: { base, sensor, type }, each a list of the names that occur. */
+export function choicesOf(fleet) {
+  const names = (list) => [...new Set(list.filter(Boolean))].sort((a, b) => a.localeCompare(b));
+  return {
+    base: names(fleet.map(({ base_name }) => base_name)),
+    sensor: names(fleet.flatMap(({ sensors }) => sensors ?? [])),
+    type: names(fleet.map(({ type_name }) => type_name)),
+  };
+}
+
+/** Whether a UAV is one of those that were asked for; an empty name asks for all. */
+export function isAskedFor({ base_name, sensors, type_name }, { base = "", sensor = "", type = "" }) {
+  return (!base || base_name === base) && (!sensor || (sensors ?? []).includes(sensor)) && (!type || type_name === type);
+}
+
+const END_WORDS = { hover: t("hovers at the end"), land: t("lands at the end"), return: t("returns to start") };
+
+/** "range 80 km · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends. */
+export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, type_name, sensors = [] }, returnsToStart) {
+  const facts = [max_range_m ? t("range {length}", { length: lengthText(max_range_m) }) : t("range not stated")];
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
   const end = END_WORDS[returnsToStart ? "return" : end_action];
-  return end ? [...facts, end].join(" · ") : facts.join(" · ");
+  return [...facts, end, sensors.join(", "), type_name].filter(Boolean).join(" · ");
 }

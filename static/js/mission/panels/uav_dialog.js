@@ -1,0 +1,81 @@
+/** Where a UAV starts, how far and how fast it flies and how its flight ends: for a new one, or for this mission alone. */
+
+import { ApiError, signInAddress } from "../../api.js";
+import { h } from "../../dom.js";
+import { open } from "../../page/keyboard.js";
+import { t } from "../../text.js";
+import { LONG_UNIT, SPEED_UNIT } from "../../units.js";
+
+let fields = 0; // each has an id of its own
+
+function field(label, input, unit = "") {
+  fields += 1;
+  input.id = `field-${fields}`;
+  return h("div", { class: "field" }, h("label", { for: input.id }, label), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input);
+}
+
+function number(value, min, max, required = true) {
+  return h("input", { class: "input", type: "number", step: "any", min, max, required, value: value ?? "" });
+}
+
+const END_CHOICES = [
+  ["hover", t("Hover over its last target")],
+  ["return", t("Return to start")],
+  ["land", t("Land at its last target")],
+];
+
+const inUnits = (value, unit) => Number((value / unit).toPrecision(6));
+
+/** What a field says in SI units. One that nobody touched is what it was: typed units are rounded. */
+function kept(input, before, unit) {
+  if (!Number.isFinite(input.valueAsNumber)) return null;
+  if (before !== null && before !== undefined && input.valueAsNumber === inUnits(before, unit)) return before;
+  return input.valueAsNumber * unit;
+}
+
+/** Where a UAV starts, how far and how fast it flies and how it ends; a new one has a name and a base as well. */
+export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
+  const longitude = number(Number(uav.position[0].toFixed(6)), -180, 180);
+  const latitude = number(Number(uav.position[1].toFixed(6)), -90, 90);
+  const name = h("input", { class: "input", required: true, maxlength: 100, value: uav.name });
+  const base = h("input", { class: "input", maxlength: 100, value: uav.base_name });
+  const range = number(uav.max_range_m === null ? "" : inUnits(uav.max_range_m, LONG_UNIT.metres), 0.1, 1000, false);
+  const speed = number(uav.cruise_speed_mps === null || uav.cruise_speed_mps === undefined ? "" : inUnits(uav.cruise_speed_mps, SPEED_UNIT.mps), 0.5, 300, false);
+  const end = h("select", { class: "input" }, END_CHOICES.map(([value, words]) => h("option", { value, selected: value === uav.end_action }, words)));
+  const unlimited = h("p", { class: "caption", role: "status" });
+  const wrong = h("p", { class: "field-error", role: "alert" });
+  const sayWhatIsMissing = () => (unlimited.textContent = range.value ? "" : t("Range not stated: it is planned as unlimited."));
+  range.addEventListener("input", sayWhatIsMissing);
+  sayWhatIsMissing();
+  const dialog = h("dialog", { "aria-labelledby": "place-title" });
+  const form = h(
+    "form",
+    { method: "dialog" },
+    h("div", {}, h("h2", { id: "place-title" }, title), h("p", { class: "quiet-text" }, note)),
+    isNew && h("div", { class: "pair" }, field(t("Name"), name), field(t("Base"), base)),
+    h("div", {}, h("div", { class: "pair" }, field(t("Range"), range, LONG_UNIT.unit), field(t("Speed"), speed, SPEED_UNIT.unit)), unlimited),
+    field(t("End, where “Return to start” is off"), end),
+    h("div", { class: "pair" }, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")),
+    wrong,
+    h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, act)),
+  );
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    try {
+      await submit({
+        name: name.value.trim(),
+        base_name: base.value.trim(),
+        position: [longitude.valueAsNumber, latitude.valueAsNumber],
+        max_range_m: kept(range, uav.max_range_m, LONG_UNIT.metres),
+        cruise_speed_mps: kept(speed, uav.cruise_speed_mps, SPEED_UNIT.mps),
+        end_action: end.value,
+      });
+      dialog.close();
+    } catch (error) {
+      wrong.replaceChildren(error instanceof ApiError ? error.message : t("It could not be added."), error.isSignedOut ? h("a", { href: signInAddress() }, t("Sign in")) : "");
+    }
+  });
+  dialog.append(form);
+  open(dialog);
+  if (isNew) name.select();
+}
