@@ -9,6 +9,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks
+from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
@@ -224,6 +225,22 @@ def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
     expect(page.get_by_text("Nothing matches “no such bird”")).to_be_visible()
     page.get_by_role("button", name="Clear the filter").press("Enter")
     expect(page.get_by_role("link", name="Lapwing")).to_be_visible()
+
+
+@pytest.mark.parametrize(("theme", "size"), [("light", (1440, 900)), ("dark", (390, 844))])
+def test_axe_finds_nothing_serious_in_details_and_forms(visitor: Visitor, theme: str, size: tuple[int, int], picture: Picture) -> None:
+    page = visitor.signs_in("opal", theme=theme, size=size)
+    uav = writes(page, "POST", "/uavs", {"name": f"Dunlin {theme}", "position": YARD})["id"]
+    fleet(page, f"?id={uav}")
+    expect(details(page).get_by_text("No mission uses it yet.")).to_be_visible()
+    assert faults(page) == []
+    details(page).get_by_role("button", name="Make: MAVLink signing key").click()
+    expect(details(page).locator("code")).to_have_text(re.compile(r"^[0-9a-f]{64}$"))
+    assert faults(page) == []
+    details(page).get_by_role("button", name="Edit").click()
+    expect(page.get_by_label("Name", exact=True)).to_be_focused()
+    assert faults(page) == []
+    picture(page, f"uav-edit-{theme}")
 
 
 def test_a_viewer_looks_and_changes_nothing_on_a_phone(visitor: Visitor, picture: Picture) -> None:

@@ -110,6 +110,15 @@ def test_the_list_is_filtered_and_counted(client: Client) -> None:
     assert client.get("/api/v1/uavs?state=retired").json()["numbers"] == {"active": 1, "maintenance": 1, "retired": 1}
 
 
+def test_a_longer_list_asks_the_database_no_oftener(client: Client, django_assert_max_num_queries: Any) -> None:
+    kestrel, depot = made(client, "uav-types", KESTREL)["id"], made(client, "bases", DEPOT)["id"]
+    for number in range(12):
+        made(client, f"uavs/{uav_of(client, f'Kestrel {number}', type=kestrel, base=depot)['id']}/credentials", {"kind": "link-token"})
+    with django_assert_max_num_queries(8):
+        features = client.get("/api/v1/uavs").json()["features"]
+    assert [feature["properties"]["credentials"] for feature in features] == [["link-token"]] * 12
+
+
 @pytest.mark.parametrize("query", ["state=lost", "base=x", "type=-1", "base=99999999999999999999"])
 def test_a_filter_that_is_none_is_refused(client: Client, query: str) -> None:
     assert client.get(f"/api/v1/uavs?{query}").status_code == 400

@@ -225,6 +225,7 @@ function takeOff() {
 addEventListener("beforeunload", (event) => {
   if (editing.isChanged()) event.preventDefault();
 });
+document.addEventListener("visibilitychange", () => document.visibilityState === "visible" && load()); // positions grow old while nobody looks
 document.getElementById("new-row")?.addEventListener("click", startNew);
 byId("fleet-more").addEventListener("click", loadMore);
 
