@@ -10,9 +10,9 @@ function filled(text, values) {
   return text.replace(/\{(\w+)\}/g, (whole, name) => values[name] ?? whole);
 }
 
-/** t("Saved as {name}.", { name }) */
+/** t("Saved as {name}.", { name }); t("Operator|role") where other languages have several words: what follows | is not shown. */
 export function t(text, values = {}) {
-  return filled(catalogue[text] ?? text, values);
+  return filled(catalogue[text] ?? text.replace(/\|\w+$/, ""), values);
 }
 
 /** tn(3, "{count} target", "{count} targets"): the catalogue holds [one, other] under the English singular. */

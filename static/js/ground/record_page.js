@@ -14,7 +14,7 @@ import { piecesOf } from "../map/click_router.js";
 import { boxAround } from "../map/map_view.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { say, toast } from "../page/toast.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
 import { askWhich } from "./conflict.js";
 import { createDraft } from "./draft.js";
@@ -116,7 +116,7 @@ export function mountRecordPage(about) {
     const none = byId("record-none");
     none.hidden = features.length > 0;
     if (!features.length) none.replaceChildren(...about.nothing());
-    byId("page-facts").textContent = features.length ? next ? t("{count} or more found", { count: features.length }) : t("{count} found", { count: features.length }) : "";
+    byId("page-facts").textContent = features.length ? (next ? t("{count} or more found", { count: features.length }) : tn(features.length, "{count} found", "{count} found")) : "";
   }
 
   // look

@@ -1,7 +1,7 @@
 /** The lines of a difference: counts as filters, what was and what would be, linked with the map. */
 
 import { byId, h, keyedList } from "../dom.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { ACTIONS, factLines } from "./words.js";
 
@@ -59,7 +59,7 @@ function shortOf(properties) {
   if (properties.action !== "changed" && properties.action !== "kept") return "";
   const names = factLines(properties).map(({ words }) => words);
   if (!names.length) return "";
-  return `: ${names.slice(0, 3).join(", ")}${names.length > 3 ? ` ${t("and {count} more", { count: numberText(names.length - 3) })}` : ""}`;
+  return `: ${names.slice(0, 3).join(", ")}${names.length > 3 ? ` ${tn(names.length - 3, "and {count} more", "and {count} more")}` : ""}`;
 }
 
 function factsOf(properties) {

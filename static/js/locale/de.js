@@ -1,6 +1,8 @@
 /** German, put together from one catalogue for each room of the program. */
 
+import account from "./de/account.js";
 import admin from "./de/admin.js";
+import administration from "./de/administration.js";
 import assets from "./de/assets.js";
 import draw from "./de/draw.js";
 import fleet from "./de/fleet.js";
@@ -15,4 +17,4 @@ import missions from "./de/missions.js";
 import terrain from "./de/terrain.js";
 import zones from "./de/zones.js";
 
-export default { ...admin, ...assets, ...draw, ...fleet, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...terrain, ...zones };
+export default { ...account, ...admin, ...administration, ...assets, ...draw, ...fleet, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...terrain, ...zones };

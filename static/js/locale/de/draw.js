@@ -20,7 +20,6 @@ export default {
   "Drag the whole shape, or move it with the arrow keys.": "Die ganze Form ziehen oder mit den Pfeiltasten verschieben.",
   "Draw a hole in the area": "Ein Loch in die Fläche zeichnen",
   "Draw another part of the area": "Einen weiteren Teil der Fläche zeichnen",
-  "Drawing": "Zeichnen",
   "Finish": "Beenden",
   "Hold a point to remove it.": "Einen Punkt gedrückt halten entfernt ihn.",
   "Hole": "Loch",

@@ -19,7 +19,6 @@ export default {
   "from {name}": "aus {name}",
   "Go on": "Weiter",
   "Go on editing": "Weiter bearbeiten",
-  "History": "Verlauf",
   "It follows its source again.": "Es folgt wieder seiner Quelle.",
   "It is back.": "Es ist zurück.",
   "It is from {when}.": "Sie ist von {when}.",

@@ -121,7 +121,6 @@ export default {
   "Who must be named": "Wer genannt werden muss",
   "Zone": "Zone",
   "{count} being worked on": "{count} in Arbeit",
-  "{count} entry": ["{count} Eintrag", "{count} Einträge"],
   "{count} import to be decided": ["{count} Import zu entscheiden", "{count} Importe zu entscheiden"],
   "{count} is as it was.": ["{count} ist wie zuvor.", "{count} sind wie zuvor."],
   "{count} row": ["{count} Zeile", "{count} Zeilen"],

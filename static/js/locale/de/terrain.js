@@ -29,8 +29,6 @@ export default {
   "One point. Click the next.": "Ein Punkt. Den nächsten anklicken.",
   "Posts every": "Stützpunkte alle",
   "Profile along a line": "Profil entlang einer Linie",
-  "Remove": "Entfernen",
-  "Remove {name}": "{name} entfernen",
   "Remove {name}?": "{name} entfernen?",
   "Synthetic demo data": "Künstliche Demodaten",
   "Take the last point back": "Letzten Punkt zurücknehmen",
