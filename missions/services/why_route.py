@@ -52,9 +52,11 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
     legs_m = _legs_m(request, field, uav, order)
     straight_m = _straight_m(request, field, uav, order)
     along_m = sum(field.along_m[visit] for visit in order)
+    length_m = sum(legs_m) + along_m
+    if not np.isfinite(length_m):
+        raise InvalidRequest({"routes": _("A target of this route cannot be reached any more. Plan again.")})
     detours = _detours(request, scene, uav, routes[uav], legs_m)
     round_zones_m = None if detours is None else sum(extra_m for extra_m, _ in detours)
-    length_m = sum(legs_m) + along_m
     return {
         "uav": uav,
         "length_m": length_m,

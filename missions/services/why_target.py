@@ -47,7 +47,9 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
         return said
     (place,) = found
     height_m = place_height_m(place, scene)
-    said |= {"height_m": height_m, "needed_height_m": height_m + scene.flight.clearance_m, "network_m": _network_m(place, scene)}
+    network_m = _network_m(place, scene)
+    said |= {"height_m": height_m, "needed_height_m": height_m + scene.flight.clearance_m}
+    said |= {"network_m": network_m if np.isfinite(network_m) else None}
     zones = _zones_at(place, scene)
     if zones:
         return said | {"reason": "inside_zone", "zones": zones, "stretches": _stretches_outside(place, scene)}

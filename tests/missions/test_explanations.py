@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 from django.test import Client
 
+from inspection.models import Asset
 from missions.models import Uav
 from tests.inspection import ground
 from tests.missions.api import TERN, plan_body, post
@@ -121,6 +122,22 @@ def test_a_way_round_a_zone_is_counted_and_the_zone_named(here: World, client: C
     assert after["round_zones_m"] == pytest.approx(after["length_m"] - before["length_m"], rel=0.05)
     assert after["round_zones_m"] > 100
     assert [(named["id"], named["name"]) for named in after["zones"]] == [(zone.pk, "Airport")]
+
+
+def test_a_route_that_a_later_zone_cuts_off_is_not_explained(here: World, client: Client) -> None:
+    body = plan_body(here.towers[0], here.towers[5])
+    plan = post(client, "plans", body).json()
+    zone_around((here.towers[5].centre.x, here.towers[5].centre.y), half_deg=0.001)
+    rebuild()
+    answer = post(client, "plans/why-route", body | {"routes": [route["targets"] for route in plan["routes"]], "uav": 0})
+    assert (answer.status_code, list(answer.json()["error"]["details"])) == (400, ["routes"])
+
+
+def test_a_place_where_there_is_no_network_at_all_has_no_distance_to_it(here: World, client: Client) -> None:
+    Asset.objects.all().delete()
+    rebuild()
+    said = why_target(client, plan_body({"position": [10.0, 56.3]}))
+    assert (said["reason"], said["network_m"]) == ("too_far_from_network", None)
 
 
 def test_another_uav_is_set_against_the_one_that_flies(here: World, client: Client) -> None:
