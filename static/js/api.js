@@ -75,10 +75,10 @@ async function problemOf(response) {
   return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null });
 }
 
-/** request("POST", "/plans", { body }) → { data, status, etag }. Throws ApiError; an abort passes as AbortError. */
-export async function request(method, path, { body, bytes, headers = {}, signal } = {}) {
+/** request("POST", "/plans", { body }) → { data, status, etag }; 304 comes without data. Throws ApiError; an abort passes as AbortError. */
+export async function request(method, path, { body, bytes, headers = {}, signal, keepalive = false } = {}) {
   const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
-  const send = { method, signal, credentials: "same-origin", headers: { Accept: "application/json", ...headers } };
+  const send = { method, signal, keepalive, credentials: "same-origin", headers: { Accept: "application/json", ...headers } };
   if (method !== "GET") send.headers["X-CSRFToken"] = cookie("csrftoken");
   if (body !== undefined) {
     send.headers["Content-Type"] = "application/json";
@@ -95,6 +95,7 @@ export async function request(method, path, { body, bytes, headers = {}, signal 
     if (error.name === "AbortError") throw error;
     throw new ApiError(t("The server cannot be reached."), { code: "server_away" });
   }
+  if (response.status === 304) return { data: null, status: 304, etag: response.headers.get("ETag") };
   if (!response.ok) throw await problemOf(response);
   const text = await response.text();
   return { data: text ? JSON.parse(text) : null, status: response.status, etag: response.headers.get("ETag") };

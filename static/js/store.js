@@ -61,6 +61,12 @@ export function createHistory(store, name) {
     settle(value) {
       show(value);
     },
+    /** Each step with what somebody else has changed meanwhile: undo takes back one's own steps alone. */
+    rebase(change) {
+      past = past.map(change);
+      future = future.map(change);
+      show(change(store.state[name]));
+    },
     /** A new beginning: what is loaded from the server cannot be undone. */
     startFrom(value) {
       past = [];

@@ -8,7 +8,7 @@ import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
 import { distinct } from "../../static/js/map/furniture.js";
 import { plainWords } from "../../static/js/map/tips.js";
 import { mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
-import { placeSketch } from "../../static/js/missions/sketch.js";
+import { fitTo } from "../../static/js/missions/sketch.js";
 
 const feature = (id, sourceLayer, properties = { id: 1 }) => ({ layer: { id }, sourceLayer, properties, geometry: { type: "Point", coordinates: [0, 0] } });
 
@@ -58,16 +58,15 @@ test("letters and colours go by the place in the mission", () => {
 });
 
 test("a sketch fits its frame and keeps the shape", () => {
-  const [route] = placeSketch([[[10, 0], [11, 0], [11, 1]]], 112, 56, 8);
-  const width = route[1][0] - route[0][0];
-  const height = route[1][1] - route[2][1];
-  assert.ok(Math.abs(height - 40) < 1e-6 && Math.abs(width - height) < 0.05);
-  for (const [x, y] of route) assert.ok(x >= 8 - 1e-6 && x <= 104 + 1e-6 && y >= 8 - 1e-6 && y <= 48 + 1e-6);
+  const route = [[10, 0], [11, 0], [11, 1]];
+  const [start, corner, end] = route.map(fitTo(route));
+  for (const [x, y] of [start, corner, end]) assert.ok(x >= 8 && x <= 104 && y >= 8 && y <= 48);
+  assert.ok(Math.abs(corner[0] - start[0] - (corner[1] - end[1])) < 0.05); // a degree is as long east as north at the equator
 });
 
-test("a sketch of nothing and of one point does not fail", () => {
-  assert.deepEqual(placeSketch([]), []);
-  assert.deepEqual(placeSketch([[[10, 50]]]), [[[56, 28]]]);
+test("a sketch of nothing has no places and one of a single target stands in the middle", () => {
+  assert.equal(fitTo([]), null);
+  assert.deepEqual(fitTo([[10, 50]])([10, 50]).map(Math.round), [56, 28]);
 });
 
 const pill = (sequence, number, x, y, isMissed = false) => ({ key: `${sequence} ${number}`, sequence, letter: "AB"[sequence] ?? "", number, x, y, isMissed });

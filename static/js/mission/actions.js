@@ -2,9 +2,11 @@
 
 import { ApiError, signInAddress } from "../api.js";
 import { t } from "../text.js";
+import { createConflicts } from "./conflicts.js";
 import { createFleetActions } from "./fleet_actions.js";
 import { createPicking } from "./picking.js";
 import { createPlanning } from "./planning.js";
+import { showBoth } from "./panels/both.js";
 import { createSaving } from "./saving.js";
 
 const wordsOf = (error) => (error instanceof ApiError ? error.message : t("Something failed on this page. Reload it; your selection is kept in this browser."));
@@ -32,5 +34,8 @@ export function createActions(store, history, page, drafts) {
 
   const context = { store, history, selection, change, problem, failed, page, drafts, running: { stopping: null } };
   const { waitForJob, ...planning } = createPlanning(context);
-  return { failed, ...createPicking(context), ...planning, ...createSaving(context, waitForJob), ...createFleetActions(context) };
+  let saving = null;
+  const conflicts = createConflicts(context, () => saving, showBoth);
+  saving = createSaving(context, waitForJob, conflicts);
+  return { failed, ...createPicking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context) };
 }

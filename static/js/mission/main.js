@@ -18,6 +18,7 @@ import { mountOptionsRead } from "./panels/options_read.js";
 import { mountProfile } from "./panels/profile.js";
 import { mountRoutes } from "./panels/routes.js";
 import { askForList } from "./panels/paste_list.js";
+import { mountSavedState } from "./panels/saved_state.js";
 import { showSelections } from "./panels/saved_selections.js";
 import { mountTargets } from "./panels/targets.js";
 import { mountTools } from "./panels/tools.js";
@@ -26,23 +27,27 @@ import { mountWhy } from "./panels/why.js";
 import { isUnsaved } from "./plan_view.js";
 import { createGrounds } from "./profile.js";
 import { EMPTY, uavOf } from "./selection.js";
+import { watchMission } from "./together.js";
 
 const page = readPage();
 const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
+  stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, why: null, along: null,
   tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null,
 });
 const history = createHistory(store, "selection");
-const drafts = createDrafts({ user: page.userId, editor: crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` });
+const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+const drafts = createDrafts({ user: page.userId, editor });
 const actions = createActions(store, history, page, drafts);
 
 let uavPanel = null;
 const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
 const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
-mountHeader(store, actions, page.canPlan);
+mountHeader(store, actions, page.canPlan, { showPlace: (position) => map.goTo({ position, zoom: 14 }) });
+mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
 uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
 if (page.canPlan) mountOptions(store, actions, page.canPlan);
@@ -77,6 +82,8 @@ startChrome({
     { keys: ["enter"], act: placeInTheMiddle },
   ],
 });
+
+watchMission(store, { editor, take: actions.take, connectedAgain: actions.connectedAgain, tellDeleted: actions.tellDeleted });
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
 

@@ -126,5 +126,5 @@ export function isUnsaved(state) {
   if (!state.mission) return state.selection.targets.length > 0 || state.name.trim() !== "";
   const basis = basisOf(state.selection);
   const planUnsaved = state.plan !== null && state.plan.basis === basis && !state.planIsStored;
-  return planUnsaved || basis !== state.savedBasis || state.name !== state.mission.name;
+  return planUnsaved || basis !== state.savedBasis || (state.name.trim() || state.mission.name) !== state.mission.name;
 }

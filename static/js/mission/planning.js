@@ -51,7 +51,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     store.update({ planning: { what, share: null, job: null, isStopping: false }, problem: null });
     try {
       const answer = await post("/plans", picks.requestOf(asked), { signal: running.stopping.signal });
-      const result = answer.status === 202 ? (await waitForJob(answer.data.job, what)).result : answer.data;
+      const result = answer.status === 202 ? { ...(await waitForJob(answer.data.job, what)).result, job: answer.data.job } : answer.data; // saved by the job's number
       const made = planOf(result, asked);
       if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
       store.update({ plan: made, figures: withResult(store.state.figures, made.basis, result), planIsStored: false, chosenRoute: null, why: null });
@@ -139,7 +139,8 @@ function planBeside(store) {
     try {
       const answer = await post("/plans", picks.requestOf(other), { signal: own.signal });
       if (answer.status === 202) job = answer.data.job;
-      const result = job ? (await follow(job, { signal: own.signal })).result : answer.data;
+      const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
+      const result = made && job ? { ...made, job } : made;
       if (result) store.update({ figures: withResult(store.state.figures, basis, result) });
     } catch (error) {
       if (error.name !== "AbortError") say(t("The other way of planning has no figures: {reason}", { reason: error.message }));

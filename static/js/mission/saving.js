@@ -1,28 +1,48 @@
-/** Saving, opening, and what happens when somebody else was faster. */
+/** Saving what is changed, opening a stored mission, and the draft that outlives the page. */
 
 import { get, patch, post, remove } from "../api.js";
 import { toast } from "../page/toast.js";
+import { t } from "../text.js";
 import { clockText, dayText } from "../units.js";
-import { draftDecision, isStarted, whoseSave } from "./draft.js";
-import { isUnsaved } from "./plan_view.js";
+import { draftDecision, isStarted } from "./draft.js";
+import { merged } from "./merge.js";
+import { isPlanCurrent, isUnsaved } from "./plan_view.js";
 import { planOf } from "./planning.js";
 import * as picks from "./selection.js";
 
-const RETRY_S = 8;
+export const RETRY_S = 8;
+const REST_MS = 1500; // after the last change
+const AT_ONCE_MS = 200;
+const PARTS = ["uavs", "targets", "objective", "return_to_start"];
 
-/** context: see actions.js; waitForJob(job, words): of planning.js. */
-export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, waitForJob) {
+const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+
+/** The parts of a selection that differ from what is stored, as the API takes them. */
+export function changedParts(selection, stored) {
+  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}];
+  return Object.fromEntries(PARTS.filter((part) => JSON.stringify(now[part]) !== JSON.stringify(before[part])).map((part) => [part, now[part]]));
+}
+
+/** context: see actions.js; waitForJob(job, words): of planning.js; conflicts: see conflicts.js. */
+export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, waitForJob, conflicts) {
   let retry = 0;
+  let rest = 0;
+  let unsure = null; // { asked, body, key } of a save whose answer never came
+  let refused = null; // what was not saved: it is tried again once it is another
+
+  const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.basisOf(picked), name, plan?.basis ?? null]);
 
   function shownAs(mission, stored, plan) {
     store.update({
       mission,
-      plan,
+      stored: { name: mission.name, selection: stored },
+      plan: plan ?? store.state.plan,
       planIsStored: Boolean(plan),
       savedBasis: picks.basisOf(stored),
       figures: plan ? { ...store.state.figures, [plan.basis]: plan.result } : store.state.figures,
       problem: null,
       conflict: null,
+      isAway: false,
     });
   }
 
@@ -43,50 +63,73 @@ export function createSaving({ store, history, selection, change, problem, faile
     const { stored, plan } = storedOf(mission);
     const isAsAsked = picks.basisOf(stored) === picks.basisOf(asked.selection);
     if (selection() === asked.selection && !isAsAsked) history.settle(stored);
-    if (store.state.name === asked.name) store.update({ name: mission.name });
+    if (store.state.name === asked.name && asked.name.trim()) store.update({ name: mission.name });
     shownAs(mission, stored, plan);
   }
 
   function addressNow(mission) {
-    globalThis.history.replaceState(null, "", `/missions/${mission.id}`);
+    globalThis.history.replaceState(null, "", `/missions/${mission.id}${location.hash}`);
   }
 
-  async function save({ asCopy = false } = {}) {
+  const nameOf = (name) => name.trim() || store.state.mission?.name || t("Mission of {day}, {time}", { day: dayText(new Date()), time: clockText(new Date()) });
+
+  function bodyOf(asked, { isNew, asCopy }) {
+    const { mission, plan, planIsStored, stored, savedBasis } = store.state;
+    const basis = picks.basisOf(asked.selection);
+    const body = isNew ? picks.requestOf(asked.selection) : changedParts(asked.selection, stored?.selection);
+    const name = nameOf(asked.name);
+    if (asCopy) body.name = t("{name} (copy)", { name });
+    else if (isNew || name !== mission.name) body.name = name;
+    if (plan !== null && plan.basis === basis && (isNew || !planIsStored || basis !== savedBasis)) {
+      body.plan = true;
+      if (plan.result.job) body.plan_of = plan.result.job;
+    }
+    return body;
+  }
+
+  /** byItself: nobody asked for it, so nothing is said where it goes well. */
+  async function save({ asCopy = false, byItself = false } = {}) {
     if (store.state.saving || store.state.planning) return;
     if (store.state.conflict && !asCopy) {
-      toast("Choose first: see what was saved, put yours on top, or keep yours as a copy.");
+      if (!byItself) conflicts.seeBoth();
       return;
     }
     clearTimeout(retry);
-    const { mission, plan, name } = store.state;
-    const asked = { selection: selection(), name };
+    clearTimeout(rest);
+    const { mission } = store.state;
     const isNew = !mission || asCopy;
     const draftOf = mission?.id ?? null; // the copy takes the changes along
-    const basis = picks.basisOf(asked.selection);
-    const withPlan = plan !== null && plan.basis === basis;
-    const body = { ...picks.requestOf(asked.selection), name: name.trim() || `Mission of ${dayText(new Date())}, ${clockText(new Date())}` };
-    if (asCopy) body.name = `${body.name} (copy)`;
-    if (withPlan && (isNew || !store.state.planIsStored || basis !== store.state.savedBasis)) body.plan = true;
+    const isAgain = unsure !== null && isNew; // the answer of the first try may be waiting: ask for just the same
+    const asked = isAgain ? unsure.asked : { selection: selection(), name: store.state.name };
+    const body = isAgain ? unsure.body : bodyOf(asked, { isNew, asCopy });
+    const key = isAgain ? unsure.key : freshKey();
+    if (!Object.keys(body).length) {
+      if (!byItself) toast(t("“{name}” is saved.", { name: mission.name }));
+      return;
+    }
     store.update({ saving: true, problem: null });
     let draftId = null; // stored already, its plan not yet
     try {
-      const headers = isNew ? { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } : { "If-Match": `"${mission.revision}"` };
-      const answer = isNew ? await post("/missions", body, { headers }) : await patch(`/missions/${mission.id}`, body, { headers });
-      let stored = answer.data;
+      const answer = isNew ? await post("/missions", body, { headers: { "Idempotency-Key": key } }) : await patch(`/missions/${mission.id}`, body, { headers: { "If-Match": `"${mission.revision}"` } });
+      let saved = answer.data;
       if (answer.status === 202) {
         draftId = answer.data.mission;
         drafts.dropOwn(draftOf);
         if (isNew) addressNow({ id: draftId });
         running.stopping = new AbortController();
-        await waitForJob(answer.data.job, "Planning what is saved");
-        stored = (await get(`/missions/${draftId}`)).data;
+        await waitForJob(answer.data.job, t("Planning what is saved"));
+        saved = (await get(`/missions/${draftId}`)).data;
       }
+      unsure = refused = null;
       drafts.dropOwn(draftOf);
-      keepOpen(stored, asked);
-      if (isNew) addressNow(stored);
+      keepOpen(saved, asked);
+      if (isNew) addressNow(saved);
       settleDraft();
-      toast(`“${stored.name}” is saved.`);
+      if (isNew && byItself) toast(t("“{name}” is saved. From now on it saves itself.", { name: saved.name }));
+      else if (!byItself) toast(t("“{name}” is saved.", { name: saved.name }));
     } catch (error) {
+      unsure = error.isAway ? { asked, body, key } : null;
+      refused = whatIsThere(store.state);
       if (draftId) await get(`/missions/${draftId}`).then(({ data }) => keepOpen(data, asked), () => {});
       await saveFailed(error, asCopy);
     } finally {
@@ -95,76 +138,43 @@ export function createSaving({ store, history, selection, change, problem, faile
     }
   }
 
-  const KEEP_COPY = { label: "Keep mine as a copy", act: () => save({ asCopy: true }) };
+  const KEEP_COPY = { label: t("Keep mine as a copy"), act: () => save({ asCopy: true }) };
 
   async function saveFailed(error, asCopy) {
     const again = () => save({ asCopy });
     if (error.name === "AbortError") {
-      problem("Saved as a draft.", "Planning was stopped before it was done.");
+      problem(t("Saved as a draft."), t("Planning was stopped before it was done."));
     } else if (error.status === 412) {
-      await meet();
+      await conflicts.meet(unsure?.asked);
     } else if (error.status === 404 && store.state.mission && !asCopy) {
-      problem("Not saved: the mission has been deleted.", "Your selection is kept in this browser.", [KEEP_COPY]);
+      conflicts.tellDeleted();
     } else if (error.isAway) {
-      problem("Not saved: the server cannot be reached.", `Your selection is kept in this browser. Next try in ${RETRY_S} s.`, [{ label: "Try now", act: again }]);
-      retry = setTimeout(again, RETRY_S * 1000);
+      store.update({ isAway: true });
+      problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }]);
+      retry = setTimeout(() => save({ asCopy, byItself: true }), RETRY_S * 1000);
     } else {
-      failed("Not saved.", error, [{ label: "Try again", act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])]);
+      failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])]);
     }
   }
 
-  // somebody else has saved since
+  // A stored mission saves itself a moment after each change; a new one is stored with its first plan.
+  store.listen(["selection", "name", "plan", "mission", "saving", "planning", "conflict", "isAway"], (state) => {
+    clearTimeout(rest);
+    const isWanted = page.canPlan && isUnsaved(state) && (state.mission || isPlanCurrent(state));
+    if (!isWanted || state.saving || state.planning || state.conflict) return;
+    if (state.isAway || refused === whatIsThere(state)) return; // it is tried again by the clock, by the network's return, by hand
+    rest = setTimeout(() => save({ byItself: true }), state.mission ? REST_MS : AT_ONCE_MS);
+  });
 
-  /** Whose save it was: the newest entry of the history, where that can be read. */
-  async function lastSave(mission) {
-    const newest = await get(`/missions/${mission.id}/history?limit=1`).then(({ data }) => data.results[0], () => null);
-    return { whose: whoseSave(newest?.actor, page.userName), at: newest?.recorded_at ?? mission.updated_at };
-  }
-
-  /** The server holds a younger revision than the one this selection was made from: theirs is fetched, mine stays on the page. */
-  async function meet() {
-    try {
-      const base = store.state.mission.revision;
-      const { data } = await get(`/missions/${store.state.mission.id}`);
-      store.update({ planIsStored: false }); // what is stored now is theirs
-      await conflictWith(data, base);
-    } catch (error) {
-      failed("Not saved: changed by another operator.", error, [{ label: "Try again", act: () => save() }, KEEP_COPY]);
-    }
-  }
-
-  async function conflictWith(theirs, base) {
-    const { stored } = storedOf(theirs);
-    const { name } = store.state;
-    if (picks.basisOf(stored) === picks.basisOf(selection()) && name === theirs.name) {
-      keepOpen(theirs, { selection: selection(), name });
-      toast("The same is saved already.");
-      return;
-    }
-    const between = await lastSave(theirs);
-    store.update({ mission: theirs, savedBasis: picks.basisOf(stored), problem: null, conflict: { ...between, base } });
-  }
-
-  /** Theirs becomes one more step of the history, so that mine is one step back. */
-  function seeTheirs() {
-    const { mission, conflict, name, plan } = store.state;
-    const mine = selection();
-    const { stored, plan: theirPlan } = storedOf(mission);
-    change(stored);
-    store.update({ name: mission.name });
-    shownAs(mission, stored, theirPlan);
-    toast(`This is ${conflict.whose} save of ${clockText(conflict.at)}.`, {
-      label: "Back to mine",
-      act() {
-        change(mine);
-        store.update({ name, plan, planIsStored: false, conflict });
-      },
-    });
-  }
-
-  function putMineOnTop() {
-    store.update({ conflict: null });
-    return save();
+  /** The server answers again: what waited is saved now. */
+  function connectedAgain() {
+    const hasWaited = store.state.isAway;
+    clearTimeout(retry);
+    if (hasWaited) refused = null;
+    store.update({ isAway: false });
+    if (!hasWaited) return;
+    if (page.canPlan && (store.state.mission || unsure) && isUnsaved(store.state)) void save({ byItself: true }).then(() => !isUnsaved(store.state) && toast(t("Connected again. Everything is saved.")));
+    else toast(t("Connected again."));
   }
 
   // opening, and the draft that outlives the page
@@ -176,10 +186,13 @@ export function createSaving({ store, history, selection, change, problem, faile
     const decision = draftDecision(draft, data, store.state.savedBasis);
     if (draft && decision === "none") drafts.drop(id);
     if (decision === "none") return;
-    change(draft.selection);
-    store.update({ name: draft.name || data.name });
-    if (decision === "behind") await conflictWith(data, draft.revision);
-    else toast("Your unsaved changes are back.", { label: "Drop them", act: () => dropChanges(data) });
+    const mine = { name: draft.name || data.name, selection: draft.selection };
+    const both = decision === "behind" && draft.base ? merged(draft.base, mine, store.state.stored) : null;
+    const shown = both?.clashes.length === 0 ? both : mine;
+    change(shown.selection);
+    store.update({ name: shown.name });
+    if (decision === "behind" && shown === mine) await conflicts.conflictWith(data, draft.revision, draft.base ?? null);
+    else toast(t("Your unsaved changes are back."), { label: t("Drop them"), act: () => dropChanges(data) });
     settleDraft(); // from now on it is this page's
   }
 
@@ -189,8 +202,8 @@ export function createSaving({ store, history, selection, change, problem, faile
     const { stored, plan } = storedOf(mission);
     change(stored);
     store.update({ name: mission.name });
-    shownAs(mission, stored, plan);
-    toast("Your changes are dropped.", { label: "Undo", act: () => (change(mine), store.update({ name })) });
+    if (store.state.mission.revision === mission.revision) shownAs(mission, stored, plan);
+    toast(t("Your changes are dropped."), { label: t("Undo"), act: () => (change(mine), store.update({ name })) });
   }
 
   function openDraft() {
@@ -199,7 +212,7 @@ export function createSaving({ store, history, selection, change, problem, faile
     history.startFrom(draft.selection);
     store.update({ name: draft.name ?? "" });
     settleDraft();
-    if (draft.selection.targets.length || draft.name) toast("Your unsaved mission is back.", { label: "Start empty", act: startEmpty });
+    if (draft.selection.targets.length || draft.name) toast(t("Your unsaved mission is back."), { label: t("Start empty"), act: startEmpty });
   }
 
   function startEmpty() {
@@ -207,14 +220,17 @@ export function createSaving({ store, history, selection, change, problem, faile
     const mine = selection();
     if (!change({ ...picks.EMPTY }) && !name) return;
     store.update({ name: "", plan: null, problem: null, chosenTarget: null, litTarget: null });
-    toast("Everything is cleared.", { label: "Undo", act: () => (change(mine), store.update({ name, plan })) });
+    toast(t("Everything is cleared."), { label: t("Undo"), act: () => (change(mine), store.update({ name, plan })) });
   }
 
   /** Keeps what is unsaved, and drops this page's draft where there is nothing left to keep. False where it could not be kept. */
   function settleDraft() {
-    const { mission, name, conflict } = store.state;
+    const { mission, name, conflict, stored } = store.state;
     const isWorthKeeping = mission ? isUnsaved(store.state) : isStarted(store.state);
-    if (isWorthKeeping) return drafts.keep(mission?.id ?? null, { name, selection: selection(), revision: conflict?.base ?? mission?.revision ?? 0 });
+    if (isWorthKeeping) {
+      const since = conflict ? { revision: conflict.base, base: conflict.before } : { revision: mission?.revision ?? 0, base: stored };
+      return drafts.keep(mission?.id ?? null, { name, selection: selection(), ...since });
+    }
     drafts.dropOwn(mission?.id ?? null);
     return true;
   }
@@ -223,14 +239,14 @@ export function createSaving({ store, history, selection, change, problem, faile
     try {
       await remove(`/missions/${store.state.mission.id}`);
       drafts.drop(store.state.mission.id);
-      location.href = `/?deleted=${store.state.mission.id}&name=${encodeURIComponent(store.state.mission.name)}`;
+      location.href = `/?gone=${store.state.mission.id}&was=${encodeURIComponent(store.state.mission.name)}`;
     } catch (error) {
-      failed("Not deleted.", error);
+      failed(t("Not deleted."), error);
     }
   }
 
   return {
-    save, open, openDraft, startEmpty, settleDraft, deleteMission, seeTheirs, putMineOnTop,
+    save, open, openStored, openDraft, startEmpty, settleDraft, deleteMission, connectedAgain, shownAs, storedOf, keepOpen,
     keepMineAsCopy: KEEP_COPY.act,
     rename: (name) => store.update({ name }),
   };

@@ -1,42 +1,46 @@
-/** A small drawing of a mission's routes, without a map. */
+/** A small drawing of a mission's routes over the lines round them, without a map. */
 
 import { h, icon, svg } from "../dom.js";
 import { routeNumber } from "../map/palette.js";
+import { t } from "../text.js";
 
 const WIDTH_PX = 112;
 const HEIGHT_PX = 56;
 const MARGIN_PX = 8;
+const LEAST_SPAN_DEG = 0.008; // of latitude: a single target is drawn with its surroundings
 
-/** Places in the drawing, shape kept: [[[x, y], …] per route]. Longitudes shrink with the latitude. */
-export function placeSketch(routes, width = WIDTH_PX, height = HEIGHT_PX, margin = MARGIN_PX) {
-  const all = routes.flat();
-  if (!all.length) return [];
-  const latitude = all.reduce((sum, [, lat]) => sum + lat, 0) / all.length;
+/** From degrees to places in the drawing, shape kept, so that all of `places` fit. Longitudes shrink with the latitude. Null without places. */
+export function fitTo(places, width = WIDTH_PX, height = HEIGHT_PX, margin = MARGIN_PX, leastSpan = LEAST_SPAN_DEG) {
+  if (!places.length) return null;
+  const latitude = places.reduce((sum, [, lat]) => sum + lat, 0) / places.length;
   const shrink = Math.max(0.05, Math.cos((latitude * Math.PI) / 180));
-  const flat = routes.map((route) => route.map(([lon, lat]) => [lon * shrink, -lat]));
-  const xs = flat.flat().map(([x]) => x);
-  const ys = flat.flat().map(([, y]) => y);
-  const [left, top] = [Math.min(...xs), Math.min(...ys)];
-  const [spanX, spanY] = [Math.max(...xs) - left, Math.max(...ys) - top];
-  const scale = Math.min(spanX ? (width - 2 * margin) / spanX : Infinity, spanY ? (height - 2 * margin) / spanY : Infinity);
-  const factor = Number.isFinite(scale) ? scale : 1;
-  const [offX, offY] = [(width - spanX * factor) / 2, (height - spanY * factor) / 2];
-  return flat.map((route) => route.map(([x, y]) => [offX + (x - left) * factor, offY + (y - top) * factor]));
+  const xs = places.map(([lon]) => lon * shrink);
+  const ys = places.map(([, lat]) => -lat);
+  const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+  const scale = Math.min((width - 2 * margin) / Math.max(right - left, leastSpan), (height - 2 * margin) / Math.max(bottom - top, leastSpan));
+  const [offX, offY] = [width / 2 - ((left + right) / 2) * scale, height / 2 - ((top + bottom) / 2) * scale];
+  return ([lon, lat]) => [lon * shrink * scale + offX, -lat * scale + offY];
 }
 
-export function sketch(routes) {
-  const places = placeSketch(routes ?? []);
-  if (!places.length) return h("span", { class: "sketch none" }, icon("pencil", "small"), "not planned");
+const pathOf = (line, place) => line.map((at, index) => `${index ? "L" : "M"}${place(at).map((px) => px.toFixed(1)).join(" ")}`).join("");
+
+/** { sketch, places, lines } of a mission in the list. */
+export function sketch({ sketch: routes = [], places = [], lines = [] }) {
+  const place = fitTo([...routes.flat(), ...places]);
+  if (!place) return h("span", { class: "sketch none" }, icon("pencil", "small"), t("nothing picked"));
+  const isPlanned = routes.some((route) => route.length);
   return svg(
     "svg",
     { class: "sketch", viewBox: `0 0 ${WIDTH_PX} ${HEIGHT_PX}`, "aria-hidden": "true" },
-    places.map((route, sequence) =>
+    svg("path", { class: "around", d: lines.map((line) => pathOf(line, place)).join("") }),
+    !isPlanned && places.map((at) => svg("circle", { class: "picked", cx: place(at)[0].toFixed(1), cy: place(at)[1].toFixed(1), r: 2 })),
+    routes.map((route, sequence) =>
       route.length
         ? svg(
             "g",
             { class: `route-${routeNumber(sequence)}` },
-            svg("path", { d: route.map(([x, y], index) => `${index ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("") }),
-            svg("circle", { cx: route[0][0].toFixed(1), cy: route[0][1].toFixed(1), r: 2.5 }),
+            svg("path", { d: pathOf(route, place) }),
+            svg("circle", { cx: place(route[0])[0].toFixed(1), cy: place(route[0])[1].toFixed(1), r: 2.5 }),
           )
         : null,
     ),

@@ -3,14 +3,34 @@
 import { byId, h, icon } from "../../dom.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { t } from "../../text.js";
-import { clockText, countText } from "../../units.js";
+import { toast } from "../../page/toast.js";
+import { t, tn } from "../../text.js";
+import { clockText } from "../../units.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
+import { showHistory } from "./history.js";
 
-const STATE_WORDS = { draft: "Draft", planned: "Planned", approved: "Approved", dispatched: "Dispatched", active: "Active", completed: "Completed", aborted: "Aborted", failed: "Failed" };
+const STATE_WORDS = { draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"), failed: t("Failed") };
+const MOST_CAUSES = 3;
+const targetsText = (count) => tn(count, "{count} target", "{count} targets");
 
-export function mountHeader(store, actions, canPlan) {
+/** The mission's address with the part of the map that is in sight. */
+async function copyAddress(mission) {
+  const address = `${location.origin}/missions/${mission.id}${location.hash}`;
+  try {
+    await navigator.clipboard.writeText(address);
+    toast(t("The address with this view of the map is copied."));
+  } catch {
+    toast(address); // without the clipboard: there to be marked and copied
+  }
+}
+
+/** showPlace(position): on the map. */
+export function mountHeader(store, actions, canPlan, { showPlace }) {
   const name = byId("mission-name");
   name.addEventListener("input", () => actions.rename(name.value));
+  name.addEventListener("blur", () => {
+    if (!name.value.trim() && store.state.mission) actions.rename(store.state.mission.name);
+  });
   name.addEventListener("keydown", (event) => {
     if (event.key === "Enter" || event.key === "Escape") name.blur();
   });
@@ -20,17 +40,21 @@ export function mountHeader(store, actions, canPlan) {
     toggleMenu(more, () => {
       const { mission } = store.state;
       const items = [];
+      if (mission) {
+        items.push({ icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) });
+        items.push({ icon: "history", label: t("History"), act: () => void showHistory(mission) });
+      }
       if (canPlan && mission) {
-        items.push({ icon: "copy", label: "Save a copy", act: () => actions.save({ asCopy: true }) });
-        items.push({ icon: "trash-2", label: "Delete", act: actions.deleteMission });
-      } else if (canPlan) items.push({ icon: "trash-2", label: "Clear everything", act: actions.startEmpty });
-      items.push({ icon: "clipboard-list", label: "All missions", act: () => void (location.href = "/") });
-      return menuOf("This mission", items);
+        items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
+        items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
+      } else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });
+      items.push({ icon: "clipboard-list", label: t("All missions"), act: () => void (location.href = "/") });
+      return menuOf(t("This mission"), items);
     }),
   );
 
   store.listen(["name", "mission", "selection", "plan", "planIsStored", "savedBasis"], (state) => {
-    const shown = state.name || (canPlan ? "New mission" : "Map");
+    const shown = state.name || (canPlan ? t("New mission") : t("Map"));
     if (name.value !== state.name) name.value = state.name;
     byId("page-title").textContent = shown;
     byId("bar-title").textContent = shown;
@@ -40,7 +64,7 @@ export function mountHeader(store, actions, canPlan) {
     chip.className = `chip ${stateName}`;
     chip.textContent = STATE_WORDS[stateName];
     chip.hidden = !canPlan && !state.mission; // just the map: there is nothing that could be a draft
-    byId("mission-facts").textContent = chip.hidden ? "no mission is open" : factsOf(state).join(" · ");
+    byId("mission-facts").textContent = chip.hidden ? t("no mission is open") : factsOf(state).join(" · ");
   });
 
   store.listen(["problem", "conflict", "plan", "selection", "mission"], (state) => {
@@ -56,14 +80,13 @@ function factsOf(state) {
   const facts = [];
   if (isPlanCurrent(state)) {
     const missed = state.plan.result.unassigned.length;
-    facts.push(missed ? `${targets - missed} of ${countText(targets, "target")}` : countText(targets, "target"));
-    if (state.planIsStored && state.mission?.planned_at) facts.push(`planned ${clockText(state.mission.planned_at)}`);
-    if (state.plan.result.flat_ground_assumed) facts.push("flat ground assumed");
+    facts.push(missed ? tn(targets, "{reached} of {count} target", "{reached} of {count} targets", { reached: targets - missed }) : targetsText(targets));
+    if (state.planIsStored && state.mission?.planned_at) facts.push(t("planned {time}", { time: clockText(state.mission.planned_at) }));
+    if (state.plan.result.flat_ground_assumed) facts.push(t("flat ground assumed"));
   } else {
-    facts.push(targets ? countText(targets, "target") : "nothing picked yet");
-    if (state.plan) facts.push("changed since it was planned");
+    facts.push(targets ? targetsText(targets) : t("nothing picked yet"));
+    if (state.plan) facts.push(t("changed since it was planned"));
   }
-  if (isUnsaved(state)) facts.push("not saved");
   return facts;
 }
 
@@ -82,39 +105,57 @@ function way({ label, act, href }) {
   return h("a", { class: "text-button", href: href(), onclick: (event) => (event.currentTarget.href = href()) }, label);
 }
 
-function noticesOf(state, actions, canPlan, store) {
+function noticesOf(state, actions, { canPlan, showPlace }) {
   const notices = [];
   if (state.problem) {
-    const isAway = state.problem.title.includes("cannot be reached");
-    notices.push(notice("critical", isAway ? "cloud-off" : "circle-alert", state.problem.title, state.problem.text, state.problem.actions));
+    notices.push(notice("critical", state.isAway ? "cloud-off" : "circle-alert", state.problem.title, state.problem.text, state.problem.actions));
+  } else if (state.isAway) {
+    const words = canPlan ? t("You can go on: what you change is kept in this browser and saved when the server is back.") : t("What you see may be out of date.");
+    notices.push(notice("warning", "cloud-off", t("The server cannot be reached."), words));
   }
   if (state.conflict && isUnsaved(state)) {
-    const title = `Your changes are from before ${state.conflict.whose} save at ${clockText(state.conflict.at)}.`;
+    const title = t("Your changes are from before {whose} save at {time}.", { whose: state.conflict.whose, time: clockText(state.conflict.at) });
     notices.push(
-      notice("warning", "triangle-alert", title, "Both are kept.", [
-        { label: "See theirs", act: actions.seeTheirs },
-        { label: "Put mine on top", act: actions.putMineOnTop },
-        { label: "Keep mine as a copy", act: actions.keepMineAsCopy },
+      notice("warning", "triangle-alert", title, t("Both are kept."), [
+        { label: t("See both"), act: actions.seeBoth },
+        { label: t("Keep mine as a copy"), act: actions.keepMineAsCopy },
       ]),
     );
   }
-  const planAgain = canPlan ? [{ label: "Plan again", act: actions.plan }] : [];
-  if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) {
-    const [what, ...why] = (state.mission.stale_reason || "The ground has changed since this was planned.").split(/(?<=\.) /);
-    notices.push(notice("warning", "triangle-alert", what, why.join(" "), planAgain));
-  }
+  if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) notices.push(staleNotice(state.mission, actions, { canPlan, showPlace }));
   if (isPlanCurrent(state)) {
     for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", warning.message));
     const unreached = unreachedOf(state.plan);
     for (const { target, sentence } of unreached.slice(0, 3)) {
-      const why = { label: t("Why?"), act: () => store.update({ why: { target: target.key } }) };
-      const acts = canPlan ? [why, { label: t("Remove it"), act: () => actions.removeTargets([target.key]) }] : [why];
-      notices.push(notice("warning", "triangle-alert", `${target.label} is not reached.`, sentence, acts));
+      const acts = canPlan ? [{ label: t("Remove it"), act: () => actions.removeTargets([target.key]) }] : [];
+      notices.push(notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, acts));
     }
     if (unreached.length > 3) {
-      const acts = canPlan ? [{ label: "Remove all that are not reached", act: () => actions.removeTargets(unreached.map(({ target }) => target.key)) }] : [];
-      notices.push(notice("warning", "triangle-alert", `${countText(unreached.length - 3, "more target is", "more targets are")} not reached.`, "The list below says which.", acts));
+      const acts = canPlan ? [{ label: t("Remove all that are not reached"), act: () => actions.removeTargets(unreached.map(({ target }) => target.key)) }] : [];
+      notices.push(notice("warning", "triangle-alert", tn(unreached.length - 3, "{count} more target is not reached.", "{count} more targets are not reached."), t("The list below says which."), acts));
     }
   }
   return notices;
+}
+
+/** What changed since the plan was made, what of the mission that touches, and the way out. */
+function staleNotice(mission, actions, { canPlan, showPlace }) {
+  const [headline, ...rest] = (mission.stale_reason || t("The ground has changed since this was planned.")).split(/(?<=\.) /);
+  const causes = mission.stale_causes ?? [];
+  const planAgain = canPlan && way({ label: t("Plan again"), act: actions.plan });
+  const lines = causes.slice(0, MOST_CAUSES).map((cause) => h("li", {}, cause.message, " ", cause.position && way({ label: t("See the place"), act: () => showPlace(cause.position) })));
+  const more = causes.length - lines.length;
+  return h(
+    "div",
+    { class: "notice warning" },
+    icon("triangle-alert"),
+    h(
+      "div",
+      {},
+      h("p", {}, h("strong", {}, headline), !causes.length && ` ${rest.join(" ")}`),
+      lines.length > 0 && h("ul", { class: "causes" }, lines),
+      more > 0 && h("p", { class: "caption" }, tn(more, "{count} more place", "{count} more places")),
+      planAgain && h("p", {}, planAgain),
+    ),
+  );
 }

@@ -1,0 +1,91 @@
+/** Two people's changes of one mission put together, part by part. Values in, values out. */
+
+import { t, tn } from "../text.js";
+
+const SINGLE = ["objective", "return_to_start"];
+const keyOfTarget = ({ key }) => key;
+const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav.name}` : `id ${uav.id}`);
+/** Without a task a target has its kind's own, which the server writes down: that is the same. */
+const isSameTarget = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
+const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null }) => JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action]);
+const isSameUav = (a, b) => uavFacts(a) === uavFacts(b);
+
+/** Items of three lists by their keys: theirs, with what I added, changed and took away. */
+function mergedList(base, mine, theirs, keyOf, isSame) {
+  const [b, m, th] = [base, mine, theirs].map((list) => new Map(list.map((item) => [keyOf(item), item])));
+  let isClash = false;
+  const list = [];
+  for (const [key, their] of th) {
+    const [own, old] = [m.get(key), b.get(key)];
+    if (!own && old && isSame(their, old)) continue; // I took it away
+    if (!own) {
+      isClash ||= Boolean(old); // I took away what they changed: it stays
+      list.push(their);
+    } else if (isSame(own, their) || (old && isSame(own, old))) list.push(their);
+    else {
+      isClash ||= !old || !isSame(their, old);
+      list.push(own);
+    }
+  }
+  for (const [key, own] of m) {
+    if (th.has(key)) continue;
+    const old = b.get(key);
+    if (old && isSame(own, old)) continue; // they took it away
+    isClash ||= Boolean(old);
+    list.push(own);
+  }
+  return { list, isClash };
+}
+
+/** base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands. */
+export function merged(base, mine, theirs) {
+  const clashes = [];
+  const single = (part, old, own, their) => {
+    if (own === their || own === old) return their;
+    if (their !== old) clashes.push(part);
+    return own;
+  };
+  const name = single("name", base.name, mine.name.trim() || base.name, theirs.name);
+  const selection = {};
+  for (const [part, keyOf, isSame] of [["targets", keyOfTarget, isSameTarget], ["uavs", keyOfUav, isSameUav]]) {
+    const { list, isClash } = mergedList(base.selection[part], mine.selection[part], theirs.selection[part], keyOf, isSame);
+    selection[part] = list;
+    if (isClash) clashes.push(part);
+  }
+  for (const part of SINGLE) selection[part] = single(part, base.selection[part], mine.selection[part], theirs.selection[part]);
+  return { name, selection, clashes };
+}
+
+function differences(before, after, keyOf, isSame) {
+  const [old, now] = [before, after].map((list) => new Map(list.map((item) => [keyOf(item), item])));
+  return {
+    added: after.filter((item) => !old.has(keyOf(item))),
+    removed: before.filter((item) => !now.has(keyOf(item))),
+    changed: after.filter((item) => old.has(keyOf(item)) && !isSame(item, old.get(keyOf(item)))),
+  };
+}
+
+export const targetDifferences = (before, after) => differences(before.targets, after.targets, keyOfTarget, isSameTarget);
+export const uavDifferences = (before, after) => differences(before.uavs, after.uavs, keyOfUav, isSameUav);
+
+/** Whether two ask for the same; what one of them leaves to the server counts as the same. */
+export function isAlike(a, b) {
+  if (a.name !== b.name || SINGLE.some((part) => a.selection[part] !== b.selection[part])) return false;
+  return [targetDifferences(a.selection, b.selection), uavDifferences(a.selection, b.selection)].every((found) => Object.values(found).every((list) => !list.length));
+}
+
+/** ["2 targets added", "renamed"]: what somebody did. */
+export function wordsOfChange(before, after) {
+  const words = [];
+  if (before.name !== after.name) words.push(t("renamed to “{name}”", { name: after.name }));
+  const targets = targetDifferences(before.selection, after.selection);
+  if (targets.added.length) words.push(tn(targets.added.length, "{count} target added", "{count} targets added"));
+  if (targets.removed.length) words.push(tn(targets.removed.length, "{count} target removed", "{count} targets removed"));
+  if (targets.changed.length) words.push(tn(targets.changed.length, "{count} task changed", "{count} tasks changed"));
+  const uavs = uavDifferences(before.selection, after.selection);
+  if (uavs.added.length) words.push(tn(uavs.added.length, "{count} UAV added", "{count} UAVs added"));
+  if (uavs.removed.length) words.push(tn(uavs.removed.length, "{count} UAV removed", "{count} UAVs removed"));
+  if (uavs.changed.length) words.push(tn(uavs.changed.length, "{count} UAV changed", "{count} UAVs changed"));
+  if (SINGLE.some((part) => before.selection[part] !== after.selection[part])) words.push(t("options changed"));
+  return words;
+}

@@ -1,0 +1,74 @@
+/** The dialog with both versions of a mission side by side, and the ways out. */
+
+import { h } from "../../dom.js";
+import { open } from "../../page/keyboard.js";
+import { t, tn } from "../../text.js";
+import { clockText } from "../../units.js";
+import { targetDifferences, uavDifferences } from "../merge.js";
+import { OBJECTIVES } from "../plan_view.js";
+
+const MOST_NAMES = 6;
+
+function listed(items, nameOf) {
+  const names = items.slice(0, MOST_NAMES).map(nameOf).join(", ");
+  return items.length > MOST_NAMES ? t("{names} and {count} more", { names, count: items.length - MOST_NAMES }) : names;
+}
+
+/** What a list became since `before`: how many, then what came and went. */
+function listWords(selection, before, part, { count, nameOf, differences }) {
+  const lines = [count(selection[part].length)];
+  if (before) {
+    const { added, removed, changed } = differences(before, selection);
+    if (added.length) lines.push(t("added: {names}", { names: listed(added, nameOf) }));
+    if (removed.length) lines.push(t("removed: {names}", { names: listed(removed, nameOf) }));
+    if (changed.length) lines.push(t("changed: {names}", { names: listed(changed, nameOf) }));
+  }
+  return lines;
+}
+
+const TARGETS = { count: (count) => tn(count, "{count} target", "{count} targets"), nameOf: ({ label }) => label, differences: targetDifferences };
+const UAVS = { count: (count) => tn(count, "{count} UAV", "{count} UAVs"), nameOf: ({ name }) => name, differences: uavDifferences };
+const objectiveWords = (value) => OBJECTIVES.find((objective) => objective.value === value)?.words ?? value;
+const returnWords = (returns) => (returns ? t("yes") : t("no"));
+
+/** conflict: see conflicts.js; ways: { takeTheirs, putMineOnTop, mergeBoth?, keepMineAsCopy }. */
+export function showBoth(conflict, mine, ways) {
+  const before = conflict.before?.selection ?? null;
+  const rows = [
+    [t("Name"), ({ name }) => [name]],
+    [t("Targets"), ({ selection }) => listWords(selection, before, "targets", TARGETS)],
+    [t("UAVs"), ({ selection }) => listWords(selection, before, "uavs", UAVS)],
+    [t("Best at"), ({ selection }) => [objectiveWords(selection.objective)]],
+    [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
+  ];
+  const act = (label, does, kind = "") => h("button", { type: "button", class: `button ${kind}`, onclick: () => (dialog.close(), void does()) }, label);
+  const dialog = h(
+    "dialog",
+    { class: "both", "aria-labelledby": "both-title" },
+    h("h2", { id: "both-title" }, t("Both versions of this mission")),
+    h(
+      "table",
+      {},
+      h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, t("Mine, not saved")), h("th", { scope: "col" }, t("Saved at {time}", { time: clockText(conflict.at) }), conflict.actor && h("span", { class: "caption" }, ` ${conflict.actor}`)))),
+      h(
+        "tbody",
+        {},
+        rows.map(([what, words]) => {
+          const [own, their] = [words(mine), words(conflict.theirs)];
+          const isSame = own.join() === their.join();
+          return h("tr", { class: isSame ? "same" : null }, h("th", { scope: "row" }, what), [own, their].map((lines) => h("td", {}, lines.map((line) => h("span", {}, line)))));
+        }),
+      ),
+    ),
+    h("p", { class: "caption" }, ways.mergeBoth ? t("Put together: what each added and removed, and mine where both changed the same.") : t("Mine is from an earlier visit: only one of the two can be kept under this name.")),
+    h(
+      "div",
+      { class: "acts" },
+      act(t("Take theirs"), ways.takeTheirs),
+      act(t("Put mine on top"), ways.putMineOnTop),
+      act(t("Keep mine as a copy"), ways.keepMineAsCopy),
+      ways.mergeBoth && act(t("Put together"), ways.mergeBoth, "primary"),
+    ),
+  );
+  open(dialog);
+}

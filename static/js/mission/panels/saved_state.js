@@ -1,0 +1,41 @@
+/** Always in sight: whether what is on the page is saved, and who else has it open. */
+
+import { byId, h, icon } from "../../dom.js";
+import { t, tn } from "../../text.js";
+import { clockText, exactText } from "../../units.js";
+import { isUnsaved } from "../plan_view.js";
+
+/** { words, icon, isBad } of the state. */
+export function savedWords(state) {
+  const { mission, saving, problem, conflict, isAway } = state;
+  if (!mission && !isUnsaved(state)) return null;
+  if (saving) return { words: t("Saving…"), image: "loader-circle" };
+  if (!mission && isAway) return { words: t("No connection. Kept in this browser."), image: "cloud-off", isBad: true };
+  if (!mission) return { words: t("Kept in this browser until it is planned or saved"), image: "info" };
+  if (!isUnsaved(state)) return isAway ? { words: t("No connection. Saved {time}.", { time: clockText(mission.updated_at) }), image: "cloud-off", isBad: true } : { words: t("Saved {time}", { time: clockText(mission.updated_at) }), image: "check", at: mission.updated_at };
+  if (conflict) return { words: t("Not saved: {whose} save came in between", { whose: conflict.whose }), image: "triangle-alert", isBad: true };
+  if (isAway) return { words: t("Not saved: the server cannot be reached"), image: "cloud-off", isBad: true };
+  if (problem) return { words: t("Not saved: see below"), image: "circle-alert", isBad: true };
+  return { words: t("Not saved yet"), image: "circle-dashed" };
+}
+
+function othersWords(others) {
+  const names = others.map(({ name, is_me }) => (is_me ? t("you, in another window") : name));
+  return tn(others.length, "Also open: {names}", "Also open: {names}", { names: names.join(", ") });
+}
+
+export function mountSavedState(store, canPlan) {
+  const place = byId("save-state");
+  store.listen(["mission", "saving", "problem", "conflict", "isAway", "selection", "name", "plan", "planIsStored", "savedBasis"], (state) => {
+    const found = canPlan ? savedWords(state) : state.isAway ? { words: t("No connection"), image: "cloud-off", isBad: true } : null;
+    place.hidden = !found;
+    if (!found) return;
+    place.className = `save-state${found.isBad ? " bad" : ""}`;
+    place.title = found.at ? exactText(found.at) : "";
+    place.replaceChildren(icon(found.image, "small"), h("span", {}, found.words));
+  });
+  store.listen(["others"], ({ others }) => {
+    byId("others").hidden = others.length === 0;
+    byId("others").replaceChildren(...(others.length ? [icon("users", "small"), h("span", {}, othersWords(others))] : []));
+  });
+}

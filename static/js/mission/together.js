@@ -1,0 +1,75 @@
+/** Who else has the mission open, what they save, and whether the server is there: asked every few seconds while the page is looked at. */
+
+import { get, post } from "../api.js";
+
+const POLL_MS = 3000;
+const PRESENCE_MS = 12_000;
+
+/** editor: the name of this page; take(mission): see conflicts.js. */
+export function watchMission(store, { editor, take, connectedAgain, tellDeleted }) {
+  let timer = 0;
+  let isAsking = false;
+  let reportedAt = 0;
+  let toldDeleted = null;
+
+  const presence = (here) => post(`/missions/${store.state.mission.id}/presence`, { editor, here }, { keepalive: !here });
+
+  function failed(error) {
+    if (error.isAway) store.update({ isAway: true });
+    else if (error.status === 404 && toldDeleted !== store.state.mission.id) {
+      toldDeleted = store.state.mission.id;
+      tellDeleted();
+    } else if (!error.status) throw error;
+  }
+
+  async function ask() {
+    const { mission, saving, planning } = store.state;
+    if (!mission || saving || planning || isAsking) return;
+    isAsking = true;
+    try {
+      const answer = await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } });
+      toldDeleted = null;
+      if (store.state.isAway) connectedAgain();
+      const { mission: now, saving: isSaving } = store.state;
+      if (answer.data && !isSaving && now.id === mission.id && answer.data.revision > now.revision) await take(answer.data);
+      if (Date.now() - reportedAt > PRESENCE_MS) await report();
+    } catch (error) {
+      failed(error);
+    } finally {
+      isAsking = false;
+    }
+  }
+
+  async function report() {
+    reportedAt = Date.now();
+    const { data } = await presence(true);
+    store.update({ others: data.others });
+    const { mission } = store.state;
+    if (!mission.plan || mission.is_stale || mission.plan.ground_revision === data.ground_revision) return;
+    const { data: fresh } = await get(`/missions/${mission.id}`); // the ground has changed, the mission has not
+    if (fresh.revision !== mission.revision || store.state.mission !== mission) return;
+    const { is_stale, stale_reason, stale_causes } = fresh;
+    store.update({ mission: { ...mission, is_stale, stale_reason, stale_causes } });
+  }
+
+  function start() {
+    clearInterval(timer);
+    if (document.hidden) return;
+    timer = setInterval(() => void ask(), POLL_MS);
+    void ask();
+  }
+
+  let watched = null;
+  store.listen(["mission"], ({ mission }) => {
+    if (!mission || mission.id === watched) return;
+    watched = mission.id;
+    reportedAt = 0;
+    start();
+  });
+  document.addEventListener("visibilitychange", () => watched && start());
+  addEventListener("offline", () => store.update({ isAway: true }));
+  addEventListener("online", () => (store.state.mission ? void ask() : connectedAgain()));
+  addEventListener("pagehide", () => {
+    if (watched) presence(false).catch(() => {}); // the page is gone; the others forget it by themselves too
+  });
+}

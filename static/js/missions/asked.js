@@ -1,0 +1,55 @@
+/** What the list is asked for: from the page's address to a request and back. Values in, values out. */
+
+export const NOTHING = Object.freeze({ text: "", state: "", author: "", uav: "", changed: "", from: "", to: "", stale: false, deleted: false, order: "-changed" });
+export const PAGE_SIZE = 25;
+export const LAST_DAYS = { 1: 1, 7: 7, 30: 30 };
+const FLAGS = ["stale", "deleted"];
+
+export function askedOf(search) {
+  const parameters = new URLSearchParams(search);
+  const asked = { ...NOTHING };
+  for (const name of Object.keys(NOTHING)) if (parameters.has(name)) asked[name] = FLAGS.includes(name) ? parameters.get(name) === "true" : parameters.get(name);
+  return asked;
+}
+
+/** "?state=draft&order=name": what differs from nothing. */
+export function searchOf(asked) {
+  const parameters = new URLSearchParams();
+  for (const [name, value] of Object.entries(asked)) if (value !== NOTHING[name]) parameters.set(name, String(value));
+  const search = parameters.toString();
+  return search ? `?${search}` : "";
+}
+
+const startOf = (day, plusDays = 0) => {
+  const [year, month, date] = day.split("-").map(Number);
+  return new Date(year, month - 1, date + plusDays).toISOString();
+};
+
+/** The path and query of the API. Days are the reader's: the last one counts whole. */
+export function requestOf(asked, now = new Date()) {
+  const parameters = new URLSearchParams({ limit: String(PAGE_SIZE), order: asked.order });
+  for (const name of ["state", "author", "uav"]) if (asked[name]) parameters.set(name, asked[name]);
+  if (asked.text.trim()) parameters.set("text", asked.text.trim());
+  for (const name of FLAGS) if (asked[name]) parameters.set(name, "true");
+  if (LAST_DAYS[asked.changed]) {
+    parameters.set("changed_from", new Date(now.getFullYear(), now.getMonth(), now.getDate() - LAST_DAYS[asked.changed] + 1).toISOString());
+  } else if (asked.changed === "between") {
+    if (asked.from) parameters.set("changed_from", startOf(asked.from));
+    if (asked.to) parameters.set("changed_before", startOf(asked.to, 1));
+  }
+  return `/missions?${parameters}`;
+}
+
+/** How many of the fields behind "More filters" are set. */
+export function countOfFields(asked) {
+  return ["author", "uav", "changed", "stale", "deleted"].filter((name) => asked[name]).length;
+}
+
+export const isFiltered = (asked) => searchOf({ ...asked, order: NOTHING.order }) !== "";
+
+/** A click on a column: names and people up first, figures and times down first, then the other way. */
+export function nextOrder(order, column) {
+  const first = ["name", "author", "state"].includes(column) ? column : `-${column}`;
+  const other = first.startsWith("-") ? column : `-${column}`;
+  return order === first ? other : first;
+}
