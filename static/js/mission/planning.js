@@ -86,12 +86,13 @@ export function createPlanning({ store, selection, change, problem, failed, runn
 
   const aside = planBeside(store);
 
-  // A selection that has been planned before, by undo or by the other objective, shows its plan again.
-  store.listen(["selection"], (state) => {
+  // A selection that has been planned before, by undo or by the other objective, shows its plan again; so it does when the answer to an
+  // earlier save brings back the plan of what was picked then.
+  store.listen(["selection", "plan"], (state) => {
     const basis = picks.basisOf(state.selection);
     const known = state.figures[basis];
-    if (known && state.plan && state.plan.basis !== basis) {
-      store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: null });
+    if (known && state.plan?.basis !== basis) {
+      store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: state.why?.compare ? state.why : null });
     }
     aside.keepOnlyFor(state.selection);
   });

@@ -8,7 +8,7 @@ import { counterpart, profileOfSummary } from "../compare.js";
 import { endingOf, isPlanCurrent, lastPlanOf, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
 import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
-const BESIDE_PX = 152 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
+const BESIDE_PX = 184 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
 const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
 /** One whose start lies in a zone; the notice and the row of the UAV say which. */
@@ -93,6 +93,7 @@ export function mountRoutes(store, { grounds, showPoint }) {
     width_px = stripRoom(dock);
     const last = lastPlanOf(state);
     const before = state.why?.compare ? last : null;
+    dock.classList.toggle("comparing", Boolean(before));
     const compare = byId("compare-plans");
     compare.hidden = !last;
     compare.setAttribute("aria-pressed", String(Boolean(before)));

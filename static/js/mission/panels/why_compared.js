@@ -29,8 +29,9 @@ function table(now, last) {
   const rows = now.routes.map((route, sequence) => {
     const old = counterpart(route, last);
     const figures = (of) => (of?.length_m > 0 ? `${lengthText(of.length_m)}, ${durationText(of.duration_s)}` : "—");
-    const difference = [moreOrLess(route.length_m - (old?.length_m ?? 0), 50, lengthText), moreOrLess(route.duration_s - (old?.duration_s ?? 0), 30, durationText)].join(", ");
-    return h("tr", {}, h("th", { scope: "row", class: `route-${routeNumber(sequence)}` }, h("span", { class: "letter" }, routeLetter(sequence)), ` ${route.uav}`), h("td", {}, figures(old)), h("td", {}, figures(route)), h("td", {}, difference));
+    const differences = [moreOrLess(route.length_m - (old?.length_m ?? 0), 50, lengthText), moreOrLess(route.duration_s - (old?.duration_s ?? 0), 30, durationText)].filter((words) => words !== "=");
+    const difference = differences.join(", ") || t("the same");
+    return h("tr", {}, h("th", { scope: "row", class: `route-${routeNumber(sequence)}` }, h("span", { class: "why-uav" }, h("span", { class: "letter" }, routeLetter(sequence)), route.uav)), h("td", {}, figures(old)), h("td", {}, figures(route)), h("td", {}, difference));
   });
   return h("table", { class: "why-table" }, h("thead", {}, h("tr", {}, heads.map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, rows));
 }
