@@ -128,10 +128,11 @@ export function createSaving({ store, history, selection, change, problem, faile
       if (isNew && byItself) toast(t("“{name}” is saved. From now on it saves itself.", { name: saved.name }));
       else if (!byItself) toast(t("“{name}” is saved.", { name: saved.name }));
     } catch (error) {
+      const lost = unsure?.asked ?? null; // what an earlier try may have stored after all
       unsure = error.isAway ? { asked, body, key } : null;
       refused = whatIsThere(store.state);
       if (draftId) await get(`/missions/${draftId}`).then(({ data }) => keepOpen(data, asked), () => {});
-      await saveFailed(error, asCopy);
+      await saveFailed(error, asCopy, lost);
     } finally {
       running.stopping = null;
       store.update({ saving: false, planning: null });
@@ -140,12 +141,12 @@ export function createSaving({ store, history, selection, change, problem, faile
 
   const KEEP_COPY = { label: t("Keep mine as a copy"), act: () => save({ asCopy: true }) };
 
-  async function saveFailed(error, asCopy) {
+  async function saveFailed(error, asCopy, lost) {
     const again = () => save({ asCopy });
     if (error.name === "AbortError") {
       problem(t("Saved as a draft."), t("Planning was stopped before it was done."));
     } else if (error.status === 412) {
-      await conflicts.meet(unsure?.asked);
+      await conflicts.meet(lost);
     } else if (error.status === 404 && store.state.mission && !asCopy) {
       conflicts.tellDeleted();
     } else if (error.isAway) {
