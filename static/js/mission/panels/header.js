@@ -2,7 +2,6 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
-import { t } from "../../text.js";
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";

@@ -1,0 +1,262 @@
+"""Picking what is inspected: by lasso, stretch, railway, search and list; tasks, several at once, undo, saved selections."""
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks, find_pickable, look_at, targets, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+
+def opens_new_mission(visitor: Visitor, **how: Any) -> Page:
+    page = visitor.signs_in("opal", **how)
+    page.goto("/missions/new")
+    wait_for_map(page)
+    return page
+
+
+def rows(page: Page) -> Locator:
+    return page.get_by_role("list", name="Targets").get_by_role("listitem")
+
+
+def searches(page: Page, text: str) -> None:
+    page.keyboard.press("/")
+    page.get_by_role("combobox", name="Find an asset or a line").fill(text)
+
+
+def adds_all(page: Page, text: str) -> int:
+    """How many came in by a search."""
+    searches(page, text)
+    button = page.get_by_role("button", name=re.compile(r"Add all \d+"))
+    count = int(re.findall(r"\d+", button.text_content() or "")[0])
+    button.click()
+    expect(rows(page)).to_have_count(count)
+    return count
+
+
+def longest_line(page: Page) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """The line with the most supports, and these in order."""
+    lines = asks(page, "/assets?kind=line&flyable=true&limit=100")["features"]
+    return max(((line, asks(page, f"/assets/{line['id']}/supports")["supports"]) for line in lines), key=lambda found: len(found[1]))
+
+
+def test_a_lasso_takes_the_towers_and_bridges_inside_it(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    tower = find_pickable(page).tower
+    place = look_at(page, tower["geometry"]["coordinates"], 15)
+    page.keyboard.press("o")
+    expect(page.get_by_role("radio", name="Lasso")).to_be_checked()
+    expect(page.get_by_text("Draw a line round towers and bridges.")).to_be_visible()
+    page.mouse.move(place["x"], place["y"] - 60)
+    page.mouse.down()
+    for east, south in ((60, 0), (0, 60), (-60, 0), (0, -60)):
+        page.mouse.move(place["x"] + east, place["y"] + south, steps=4)
+    page.mouse.up()
+    expect(page.get_by_text(re.compile(r"\d+ targets? added from the area\."))).to_be_visible()
+    assert tower["properties"]["label"] in targets(page)
+    page.keyboard.press("Control+z")
+    expect(rows(page)).to_have_count(0)
+
+
+def test_a_stretch_between_two_towers_is_taken_tower_by_tower_or_flown_along(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    _, supports = longest_line(page)
+    first, last = supports[1], supports[4]
+
+    def clicks_both() -> None:
+        page.keyboard.press("t")
+        for support in (first, last):
+            place = look_at(page, support["centre"], 17)
+            page.mouse.click(place["x"], place["y"])
+            if support is first:
+                expect(page.get_by_text(f"From {first['label']}. Now click the last tower.")).to_be_visible()
+
+    clicks_both()
+    page.get_by_role("button", name="All 4 towers").click()
+    expect(rows(page)).to_have_count(4)
+    assert targets(page) == [support["label"] for support in supports[1:5]]
+    page.keyboard.press("Control+z")
+    expect(rows(page)).to_have_count(0)
+    clicks_both()
+    page.get_by_role("button", name=re.compile("Fly along")).click()
+    expect(rows(page)).to_have_count(1)
+    expect(rows(page)).to_contain_text(re.compile(r"stretch, \d+\sm"))
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("radio", name="Point")).to_be_checked()
+
+
+def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    railways = asks(page, "/assets?kind=railway&flyable=true&limit=200")["features"]
+    railway, bridges = next(
+        (railway, found["bridges"])
+        for railway in railways
+        if railway["properties"]["ref"] or railway["properties"]["name"]
+        for found in [asks(page, f"/assets/{railway['id']}/bridges?sections=all")]
+        if found["bridges"] and found["sections"] > 1
+    )
+    searches(page, railway["properties"]["osm"])
+    page.get_by_role("option").first.click()
+    page.get_by_role("button", name=re.compile("^Task of ")).click()
+    page.get_by_role("button", name="Add every bridge of it").click()
+    expect(rows(page)).to_have_count(1 + len(bridges))
+    assert targets(page)[1:] == [bridge["label"] for bridge in bridges]
+
+
+def test_a_search_takes_all_that_match_and_is_filtered(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    count = asks(page, "/assets?text=138&flyable=true&total=true&limit=1")["total"]
+    assert adds_all(page, "138") == count > 1
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    expect(rows(page)).to_have_count(0)
+
+    tower = find_pickable(page).tower
+    look_at(page, tower["geometry"]["coordinates"], 15)
+    page.keyboard.press("/")
+    page.get_by_role("button", name="Towers", exact=True).click()
+    expect(page.get_by_role("button", name="Towers", exact=True)).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#found-head")).to_have_text(re.compile(r"\d+ assets? in view"))
+    kinds = page.get_by_role("option").locator(".icon use").evaluate_all("uses => uses.map(use => use.getAttribute('href').split('#')[1])")
+    assert set(kinds) == {"tower"}
+    page.get_by_role("combobox").fill("no such thing")
+    expect(page.get_by_text("No asset matches “no such thing” with these filters.")).to_be_visible()
+
+
+def test_a_pasted_list_says_what_is_found_what_is_unclear_and_what_is_unknown(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    towers = asks(page, "/assets?kind=tower&flyable=true&limit=3")["features"]
+    name, shared = shared_name(page)
+    page.keyboard.press("i")
+    dialog = page.get_by_role("dialog", name="Paste a list")
+    words = [feature["properties"]["osm"] for feature in towers]
+    dialog.get_by_label("References, names or OSM ids").fill("\n".join([*words, name, "nowhere 7"]))
+    dialog.get_by_role("button", name="Look them up").click()
+    expect(page.get_by_role("heading", name="3 found, 1 means several things, 1 is not known.")).to_be_focused()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_role("region", name="Not known")).to_contain_text("nowhere 7")
+    expect(dialog.get_by_role("button", name="Add 3 targets")).to_be_enabled()
+    dialog.get_by_label(name).select_option(index=2)
+    dialog.get_by_role("button", name="Add 4 targets").click()
+    expect(rows(page)).to_have_count(4)
+    assert targets(page)[:3] == [feature["properties"]["label"] for feature in towers]
+    assert targets(page)[3] in shared
+    page.keyboard.press("Control+z")
+    expect(rows(page)).to_have_count(0)
+
+
+def shared_name(page: Page) -> tuple[str, list[str]]:
+    """A name that several railways have, and what these are called."""
+    features = asks(page, "/assets?kind=railway&flyable=true&limit=1000")["features"]
+    names = [feature["properties"]["name"] for feature in features if feature["properties"]["name"]]
+    name = next(name for name in names if names.count(name) > 1 and not re.search(r"[,;]", name))
+    return name, [feature["properties"]["label"] for feature in features if feature["properties"]["name"] == name]
+
+
+def tasks(page: Page) -> list[str]:
+    buttons = page.get_by_role("button", name=re.compile("^Task of "))
+    return [str(button.get_attribute("title")) for button in buttons.all()]
+
+
+def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    _, supports = longest_line(page)
+    page.keyboard.press("i")
+    page.get_by_label("References, names or OSM ids").fill("\n".join(osm_of(page, support["id"]) for support in supports[:4]))
+    page.get_by_role("button", name="Look them up").click()
+    page.get_by_role("button", name="Add 4 targets").click()
+    usual = "Take photos, 10\u00a0s"
+    expect(rows(page)).to_have_count(4)
+    assert tasks(page) == [usual] * 4
+
+    page.get_by_role("button", name=re.compile("^Task of ")).first.click()
+    page.get_by_role("button", name="Hold over it", exact=True).click()
+    assert tasks(page) == ["Hold over it, 30\u00a0s", usual, usual, usual]
+    page.locator("#target-list .what").nth(1).click()
+    page.locator("#target-list .what").nth(3).click(modifiers=["Shift"])
+    expect(page.get_by_text("3 chosen")).to_be_visible()
+    page.get_by_role("button", name="Task", exact=True).click()
+    page.get_by_label("Stays").fill("45")
+    page.keyboard.press("Enter")
+    assert tasks(page) == ["Hold over it, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
+
+    page.wait_for_function(
+        """() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.')
+            && JSON.parse(localStorage.getItem(key)).selection.targets.filter(({ task }) => task).length === 4)"""
+    )
+    page.reload()
+    wait_for_map(page)
+    assert tasks(page) == ["Hold over it, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
+    page.get_by_role("button", name=re.compile("^Task of ")).first.click()
+    page.get_by_role("button", name="Take photos", exact=True).click()
+    assert tasks(page)[0] == usual
+    page.keyboard.press("Control+z")
+    assert tasks(page)[0] == "Hold over it, 30\u00a0s"
+    page.keyboard.press("Control+Shift+Z")
+    assert tasks(page)[0] == usual
+
+
+def osm_of(page: Page, asset: int) -> str:
+    return str(asks(page, f"/assets/{asset}")["properties"]["osm"])
+
+
+def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_undone(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    count = adds_all(page, "138")
+    page.get_by_role("button", name="Choose", exact=True).focus()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("checkbox", name=re.compile("^Choose ")).first).to_be_focused()
+    page.keyboard.press("Space")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Space")
+    expect(page.get_by_text("2 chosen")).to_be_visible()
+    page.keyboard.press("Delete")
+    expect(rows(page)).to_have_count(count - 2)
+    page.get_by_role("button", name="All", exact=True).click()
+    expect(page.get_by_text(f"{count - 2} chosen")).to_be_visible()
+    page.get_by_role("group", name="Chosen targets").get_by_role("button", name="Remove").click()
+    expect(page.get_by_text("Nothing picked yet", exact=True)).to_be_visible()
+    undo = page.get_by_role("button", name="Undo", exact=True).first
+    undo.click()
+    expect(rows(page)).to_have_count(count - 2)
+    undo.click()
+    expect(rows(page)).to_have_count(count)
+    undo.click()
+    expect(rows(page)).to_have_count(0)
+    expect(undo).to_be_disabled()
+
+
+def test_a_selection_is_kept_loaded_renamed_deleted_and_brought_back(visitor: Visitor) -> None:
+    page = opens_new_mission(visitor)
+    count = adds_all(page, "138")
+    page.get_by_role("button", name="Saved selections").click()
+    dialog = page.get_by_role("dialog", name="Saved selections")
+    dialog.get_by_label(f"Keep the {count} picked targets as").fill("Test belt")
+    page.keyboard.press("Enter")
+    expect(dialog.get_by_role("status")).to_have_text("“Test belt” is kept.")
+    row = dialog.get_by_role("listitem").filter(has_text="Test belt")
+    expect(row).to_contain_text(f"{count} targets · opal")
+    page.keyboard.press("Escape")
+
+    other = visitor.signs_in("rory")
+    other.goto("/missions/new")
+    wait_for_map(other)
+    other.get_by_role("button", name="Saved selections").click()
+    other.get_by_role("button", name="Add Test belt").click()
+    expect(rows(other)).to_have_count(count)
+    assert targets(other) == targets(page)
+
+    page.get_by_role("button", name="Saved selections").click()
+    dialog.get_by_role("button", name="Rename: Test belt").click()
+    dialog.get_by_label("New name of Test belt").fill("Belt of all")
+    page.keyboard.press("Enter")
+    dialog.get_by_role("button", name="Delete: Belt of all").click()
+    expect(dialog.get_by_role("status")).to_contain_text("“Belt of all” is deleted.")
+    expect(dialog.get_by_role("button", name="Add Belt of all")).to_have_count(0)
+    dialog.get_by_role("button", name="Undo").click()
+    expect(dialog.get_by_role("button", name="Add Belt of all")).to_be_visible()
+    dialog.get_by_role("button", name="Delete: Belt of all").click()
+    expect(dialog.get_by_role("button", name="Add Belt of all")).to_have_count(0)
