@@ -137,22 +137,29 @@ wide.addEventListener("change", () => void showMap());
 // look
 
 function open() {
+  choosing += 1;
   byId("fleet-body").dataset.open = "true";
   byId("fleet-side").dataset.panel = "true";
 }
 
+let choosing = 0; // an answer that comes after something else was begun is not shown
+
 async function choose(tab, id, { keepFocus = false } = {}) {
   if (!editing.leave()) return;
+  const mine = ++choosing;
   try {
     const { data } = await get(`${KINDS[tab].path}/${id}`);
+    if (mine !== choosing) return;
     const row = KINDS[tab].read(data);
     const others = store.state[tab] ?? [];
     const isListed = others.some((known) => known.id === row.id);
     open();
+    const shown = choosing;
     store.update({ [tab]: isListed ? others.map((known) => (known.id === row.id ? row : known)) : [...others, row], chosen: { tab, id: row.id }, problem: null });
     const title = panel.show(KINDS[tab], row);
     remember();
     await showMap();
+    if (shown !== choosing) return;
     if (row.position) map?.look(row.position);
     if (!keepFocus) title.focus({ preventScroll: wide.matches });
     say(row.name);
@@ -164,6 +171,7 @@ async function choose(tab, id, { keepFocus = false } = {}) {
 
 function close() {
   if (!editing.leave()) return;
+  choosing += 1;
   const id = store.state.chosen?.id;
   delete byId("fleet-body").dataset.open;
   delete byId("fleet-side").dataset.panel;
