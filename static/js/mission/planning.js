@@ -20,6 +20,9 @@ export function withResult(figures, basis, result) {
   return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
 }
 
+/** A large plan names its job: whoever stores the plan stores this one, and no other that a second search would find. */
+const ofJob = (job) => job.result && { ...job.result, job: job.id };
+
 /** context: see actions.js. `running.stopping` is the AbortController of what is being waited for. */
 export function createPlanning({ store, selection, change, problem, failed, running }) {
   async function waitForJob(jobId, what) {
