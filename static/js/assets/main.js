@@ -43,7 +43,7 @@ function details(feature) {
       term(t("Network"), properties.is_flyable ? "" : t("Not part of the flying network")), term(t("Place"), coordinateText(properties.centre)),
       term(t("Source"), sourceWords(feature)), term(t("Licence"), properties.source?.licence), term(t("Attribution"), properties.source?.attribution), term(t("Fetched"), properties.source?.fetched_at && whenText(properties.source.fetched_at)), term(t("Changed"), whenText(properties.updated_at)),
     ),
-    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, tn(tags.length, "{count} tag of the source", "{count} tags of the source")), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", {}, value)]))),
+    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, tn(tags.length, "{count} tag of the source", "{count} tags of the source")), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", { translate: "no" }, value)]))),
   ].filter(Boolean);
 }
 

@@ -1,0 +1,163 @@
+"""The program in German: no English is left on any page, for the eye and for a screen reader."""
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from scripts import texts
+from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.operator_map import asks, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+SAID = """() => {
+    const said = new Set();
+    const add = (words) => words && said.add(words.replace(/\\s+/g, " ").trim());
+    const roots = [document.body, ...[...document.querySelectorAll("template")].map((template) => template.content)];
+    for (const root of roots) {
+        const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+        while (walker.nextNode()) if (!walker.currentNode.parentElement?.closest("script, style, code, kbd, [translate=no]")) add(walker.currentNode.data);
+        for (const element of root.querySelectorAll("*")) {
+            for (const name of ["aria-label", "title", "placeholder", "alt"]) add(element.getAttribute(name));
+        }
+    }
+    add(document.title);
+    return [...said].filter((words) => /[A-Za-z]{2}/.test(words));
+}"""
+# Two of these in one text, and it is a sentence in English. What people and files have named is not looked at so closely.
+ENGLISH = re.compile(
+    r"\b(?:the|of|and|is|are|not|with|this|that|which|has|have|been|from|nothing|each|where|what|you|your)\b", re.IGNORECASE
+)
+PLACEHOLDER = re.compile(r"\{\w+\}|%\(\w+\)[sd]")
+
+
+def _patterns() -> re.Pattern[str]:
+    """All texts in English whose German is another one; what is put in may be anything."""
+    pairs: list[tuple[str, str]] = []
+    for text, german in texts.script_catalogue("de").items():
+        forms = [german] if isinstance(german, str) else german
+        pairs += [(text, form) for form in forms]
+    for message in texts.catalogue("de"):
+        if isinstance(message.id, str) and message.id:
+            pairs.append((message.id, str(message.string)))
+    english = {text for text, german in pairs if text != german} - {german for _, german in pairs}
+    written = {
+        text for text in english if len(re.findall(r"[A-Za-z]", PLACEHOLDER.sub("", text))) >= (1 if not PLACEHOLDER.search(text) else 8)
+    }
+    return re.compile("|".join(".+?".join(map(re.escape, PLACEHOLDER.split(text))) for text in sorted(written)))
+
+
+class Reader:
+    """Reads pages aloud and keeps what is English."""
+
+    def __init__(self) -> None:
+        self.english = _patterns()
+        self.found: dict[str, list[str]] = {}
+
+    def reads(self, page: Page, what: str) -> None:
+        left = [words for words in page.evaluate(SAID) if self.english.fullmatch(words) or len(set(ENGLISH.findall(words.lower()))) > 1]
+        if left:
+            self.found[what] = left
+
+    def opens(self, page: Page, path: str) -> None:
+        page.goto(path)
+        if page.locator("script[type=module]").count():
+            page.locator("html[data-loaded]").wait_for(state="attached")
+        expect(page.locator("html")).to_have_attribute("lang", "de")
+        self.reads(page, path)
+
+
+def _german(visitor: Visitor, name: str | None = None, *, size: tuple[int, int] = (1440, 900)) -> Page:
+    context = visitor.browser.new_context(
+        base_url=visitor.site.address, locale="de-DE", reduced_motion="reduce", viewport={"width": size[0], "height": size[1]}
+    )
+    page = context.new_page()
+    page.set_default_timeout(20_000)
+    page.on("pageerror", lambda error: visitor.complaints.append(str(error)))
+    page.goto("/sign-in")
+    if name:
+        page.get_by_label("Benutzername").fill(name)
+        page.get_by_label("Passwort").fill(PASSWORD)
+        page.get_by_role("button", name="Anmelden").click()
+        expect(page.get_by_role("heading", name="Missionen", exact=True)).to_be_visible()
+    return page
+
+
+def _stores_mission(page: Page, **rest: Any) -> str:
+    tower = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=3&flyable=true")["features"]
+    uav = asks(page, "/uavs")["features"]
+    token = page.evaluate("document.cookie.match(/csrftoken=([^;]*)/)[1]")
+    body = {
+        "name": "Prüfung",
+        "targets": [{"asset": feature["id"]} for feature in tower],
+        "uavs": [{"id": uav[0]["id"]}] if uav else [{"position": [-82.95, 39.9], "name": "Milan"}],
+        "plan": True,
+        **rest,
+    }
+    answer = page.request.post("/api/v1/missions", data=body, headers={"X-CSRFToken": token, "Referer": page.url})
+    assert answer.ok, answer.text()
+    return str(answer.json()["id"])
+
+
+def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor) -> None:
+    reader = Reader()
+    stranger = _german(visitor)
+    for path in ("/sign-in", "/lost-password", "/lost-password/sent", "/new-password/x/y", "/invitation/unknown"):
+        reader.opens(stranger, path)
+    page = _german(visitor, "opal")
+    mission = _stores_mission(page)
+    for path in (
+        "/",
+        "/missions/new",
+        "/uavs",
+        "/assets",
+        "/assets/gaps",
+        "/terrain",
+        "/zones",
+        "/account",
+        "/change-password",
+        "/nirgends",
+    ):
+        reader.opens(page, path)
+    reader.opens(page, f"/missions/{mission}")
+    wait_for_map(page)
+    reader.reads(page, "a planned mission")
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog", name="Tastatur")).to_be_visible()
+    reader.reads(page, "the keys of the mission")
+    page.keyboard.press("Escape")
+    page.locator("#open-layers").click()
+    reader.reads(page, "the layers")
+    assert reader.found == {}
+
+
+def test_no_english_is_left_on_the_pages_of_a_curator_and_an_administrator(visitor: Visitor) -> None:
+    reader = Reader()
+    page = _german(visitor, "cora")
+    for kind in ("tower", "line", "railway", "bridge"):
+        asset = asks(page, f"/assets?kind={kind}&limit=1")["features"][0]["id"]
+        reader.opens(page, f"/assets?id={asset}")
+        page.locator("#record-show h2").wait_for()
+        reader.reads(page, f"a {kind}")
+    page.keyboard.press("e")
+    page.locator("#record-edit h2").wait_for()
+    reader.reads(page, "an asset that is edited")
+    zone = asks(page, "/zones?limit=1")["features"][0]["id"]
+    reader.opens(page, f"/zones?id={zone}")
+    page.locator("#record-show h2").wait_for()
+    reader.reads(page, "a zone")
+    page.keyboard.press("e")
+    page.locator("#record-edit h2").wait_for()
+    reader.reads(page, "a zone that is edited")
+    for gap in asks(page, "/gaps?limit=3")["features"]:
+        reader.opens(page, f"/assets/gaps?gap={gap['id']}")
+        page.locator("#gap-panel h2").wait_for()
+        reader.reads(page, f"a gap: {gap['properties']['kind']}")
+    reader.opens(page, "/imports")
+    proposal = asks(page, "/imports?limit=1")["results"]
+    if proposal:
+        reader.opens(page, f"/imports/{proposal[0]['id']}")
+    reader.opens(_german(visitor, "ada"), "/administration")
+    assert reader.found == {}

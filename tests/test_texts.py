@@ -1,0 +1,73 @@
+"""Every text of the program is translatable, and German has all of them."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from scripts import texts
+
+PLACEHOLDER = re.compile(r"\{(\w+)\}|%\((\w+)\)[sd]")
+NOT_FOR_PEOPLE = re.compile(
+    r"\{% blocktranslate.*?endblocktranslate %\}|\{% block body_class %\}.*?\{% endblock %\}|\{%.*?%\}|\{\{.*?\}\}|\{#.*?#\}|<!--.*?-->",
+    re.S,
+)
+ELEMENT = re.compile(r"<(script|style|code|kbd|svg)\b.*?</\1>|<[^<>]*>|\b[a-z-]+=\"[^\"]*\"", re.S)
+SPOKEN = re.compile(r'(?:aria-label|title|placeholder|alt)="([^"]*)"')
+OWN_NAMES = {"Spanwise", "Spanwise administration", "English", "Deutsch", "UTC"}
+
+
+def _forms(text: str | list[str] | tuple[str, ...]) -> list[str]:
+    return [text] if isinstance(text, str) else list(text)
+
+
+def _placeholders(text: str) -> set[str]:
+    return {braces or percent for braces, percent in PLACEHOLDER.findall(text)}
+
+
+@pytest.mark.parametrize("language", texts.LANGUAGES)
+def test_every_text_of_the_pages_scripts_is_translated(language: str) -> None:
+    assert texts.missing_in_scripts(language) == []
+
+
+@pytest.mark.parametrize("language", texts.LANGUAGES)
+def test_every_text_of_the_server_is_translated(language: str) -> None:
+    assert texts.missing_on_server(language) == []
+
+
+@pytest.mark.parametrize("language", texts.LANGUAGES)
+def test_no_translation_is_left_of_a_text_that_is_gone(language: str) -> None:
+    assert texts.left_over_in_scripts(language) == []
+    assert texts.left_over_on_server(language) == []
+
+
+@pytest.mark.parametrize("language", texts.LANGUAGES)
+def test_a_translation_has_the_placeholders_of_its_text(language: str) -> None:
+    translated = list(texts.script_catalogue(language).items())
+    translated += [(_forms(message.id)[-1], message.string) for message in texts.catalogue(language) if message.id]
+    wrong = [
+        text for text, forms in translated if not all(_placeholders(form) <= _placeholders(text) | {"count"} for form in _forms(forms))
+    ]
+    wrong += [text for text, forms in translated if _placeholders(text) - _placeholders(_forms(forms)[-1]) - {"count"}]
+    assert wrong == []
+
+
+def _templates() -> list[Path]:
+    return sorted(path for path in texts.TEMPLATES.rglob("*.html") if path.name != "api_docs.html")
+
+
+@pytest.mark.parametrize("template", _templates(), ids=lambda path: str(path.relative_to(texts.TEMPLATES)))
+def test_a_template_has_no_text_that_cannot_be_translated(template: Path) -> None:
+    source = NOT_FOR_PEOPLE.sub("", template.read_text())
+    words = [line.strip(" ·\n") for line in (*SPOKEN.findall(source), *ELEMENT.sub("\n", source).split("\n"))]
+    assert [line for line in words if re.search(r"[A-Za-z]{2}", re.sub(r"&\w+;", "", line)) and line not in OWN_NAMES] == []
+
+
+def test_texts_are_found_in_scripts_templates_and_modules() -> None:
+    assert list(texts.texts_of_script('t("One"); tn(f(a, b), "{count} x", "{count} xs"); countText(n, "y");')) == [
+        "One", ("{count} x", "{count} xs"), ("{count} y", "{count} ys"),
+    ]  # fmt: skip
+    assert list(texts.texts_of_module('_("One"); ngettext("%(count)s a", "%(count)s b", n); other("Two")')) == [
+        "One",
+        ("%(count)s a", "%(count)s b"),
+    ]
