@@ -213,6 +213,26 @@ def test_a_name_that_was_given_again_is_not_taken_back(client: Client) -> None:
     assert post(client, f"bases/{depot}/restore").json()["error"]["code"] == "name_taken"
 
 
+def test_a_uav_comes_back_under_its_bases_present_name(client: Client) -> None:
+    depot = made(client, "bases", DEPOT)["id"]
+    uav = uav_of(client, base=depot)["id"]
+    client.delete(f"/api/v1/uavs/{uav}", headers=ANY)
+    patch(client, f"bases/{depot}", {"name": "West"}, **ANY)
+    assert post(client, f"uavs/{uav}/restore").json()["properties"]["base_name"] == "West"
+
+
+def test_a_uav_that_was_deleted_before_there_were_types_and_bases_comes_back(client: Client) -> None:
+    before = {
+        "name": "Tern", "base_name": "West", "max_range_m": 9_000.0, "cruise_speed_mps": 12.0, "battery_percent": None, "sensor": "",
+        "end_action": "hover", "position": [10.0, 56.0],
+    }  # fmt: skip
+    AuditEntry.objects.create(organisation_id=1, action="delete", subject_type="uav", subject_id="77", before=before)
+    answer = post(client, "uavs/77/restore")
+    assert answer.status_code == 200, answer.content
+    properties = answer.json()["properties"]
+    assert (properties["name"], properties["base_name"], properties["base"], properties["state"]) == ("Tern", "West", None, "active")
+
+
 def test_a_retired_uav_keeps_its_missions_and_can_come_back(client: Client) -> None:
     uav = uav_of(client)["id"]
     made(client, "missions", mission_body() | {"uavs": [{"id": uav}]})
