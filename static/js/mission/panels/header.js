@@ -66,8 +66,8 @@ export function mountHeader(store, actions, canPlan, { showPlace }) {
     byId("mission-facts").textContent = chip.hidden ? t("no mission is open") : factsOf(state).join(" · ");
   });
 
-  store.listen(["problem", "conflict", "plan", "selection", "mission"], (state) => {
-    byId("notices").replaceChildren(...noticesOf(state, actions, canPlan, store));
+  store.listen(["problem", "conflict", "plan", "planIsStored", "selection", "mission", "isAway"], (state) => {
+    byId("notices").replaceChildren(...noticesOf(state, actions, { canPlan, showPlace, askWhy: (why) => store.update({ why }) }));
   });
   store.listen(["problem", "conflict"], (state) => {
     if (state.problem || state.conflict) byId("notices").parentElement.scrollTo({ top: 0 }); // it stands above a long list
@@ -104,7 +104,7 @@ function way({ label, act, href }) {
   return h("a", { class: "text-button", href: href(), onclick: (event) => (event.currentTarget.href = href()) }, label);
 }
 
-function noticesOf(state, actions, { canPlan, showPlace }) {
+function noticesOf(state, actions, { canPlan, showPlace, askWhy }) {
   const notices = [];
   if (state.problem) {
     notices.push(notice("critical", state.isAway ? "cloud-off" : "circle-alert", state.problem.title, state.problem.text, state.problem.actions));
@@ -126,7 +126,8 @@ function noticesOf(state, actions, { canPlan, showPlace }) {
     for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", warning.message));
     const unreached = unreachedOf(state.plan);
     for (const { target, sentence } of unreached.slice(0, 3)) {
-      const acts = canPlan ? [{ label: t("Remove it"), act: () => actions.removeTargets([target.key]) }] : [];
+      const why = { label: t("Why?"), act: () => askWhy({ target: target.key }) };
+      const acts = canPlan ? [why, { label: t("Remove it"), act: () => actions.removeTargets([target.key]) }] : [why];
       notices.push(notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, acts));
     }
     if (unreached.length > 3) {
