@@ -12,7 +12,8 @@ from django.utils import timezone
 from django.utils.safestring import SafeString
 
 from workspace.admin_history import HistoryAdmin, as_table, what_changed
-from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Job, Organisation, Role, User
+from workspace.invitations import InvitationState, in_state, revoke_invitation
+from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Invitation, Job, Organisation, Role, SignInEntry, User
 from workspace.services import NoAdministratorLeft, change_people, delete_person, save_person
 
 admin.site.unregister(Group)  # what somebody may do follows from the role
@@ -63,11 +64,12 @@ class UserAdmin(HistoryAdmin, DjangoUserAdmin):
     list_select_related = ["organisation"]
     search_fields = ["username", "first_name", "last_name", "email", "organisation__name"]
     filter_horizontal = []
-    readonly_fields = ["last_login", "date_joined"]
+    readonly_fields = ["last_login", "last_seen_at", "date_joined"]
     fieldsets = [
         (None, {"fields": ["username", "password", "role", "organisation", "is_active"]}),
         ("Person", {"fields": ["first_name", "last_name", "email"]}),
-        ("Times", {"fields": ["last_login", "date_joined"]}),
+        ("Preferences", {"fields": ["theme", "units", "time_zone", "language", "single_keys"]}),
+        ("Times", {"fields": ["last_login", "last_seen_at", "date_joined"]}),
     ]
     add_fieldsets = [(None, {"fields": ["username", "email", "usable_password", "password1", "password2", "role", "organisation"]})]
     actions = ["let_in", "keep_out", "make_viewers", "make_operators", "make_curators", "make_administrators"]
@@ -130,13 +132,13 @@ class UserAdmin(HistoryAdmin, DjangoUserAdmin):
 
 @admin.register(ApiToken)
 class ApiTokenAdmin(admin.ModelAdmin):
-    """Tokens are made by `manage.py api_token`, which shows them once; here they are revoked."""
+    """Tokens are made by their owner, or by `manage.py api_token`, and shown once; here they are revoked."""
 
-    list_display = ["name", "user", "created_at", "expires_at", "revoked_at"]
+    list_display = ["name", "user", "created_at", "expires_at", "revoked_at", "last_used_at"]
     list_filter = ["expires_at", "revoked_at"]
     list_select_related = ["user"]
     search_fields = ["name", "user__username"]
-    fields = ["name", "user", "created_at", "expires_at", "revoked_at"]
+    fields = ["name", "user", "created_at", "expires_at", "revoked_at", "last_used_at"]
     readonly_fields = fields
     actions = ["revoke"]
 
@@ -147,6 +149,33 @@ class ApiTokenAdmin(admin.ModelAdmin):
     def revoke(self, request: HttpRequest, queryset: Any) -> None:
         revoked = queryset.filter(revoked_at=None).update(revoked_at=timezone.now())
         self.message_user(request, f"{revoked} revoked.")
+
+
+@admin.register(Invitation)
+class InvitationAdmin(ReadOnlyAdmin):
+    """Invitations are made on the administration page, which shows their link once; here they can be taken back."""
+
+    list_display = ["email", "role", "organisation", "invited_by", "created_at", "expires_at", "revoked_at", "accepted_at", "accepted_by"]
+    list_filter = ["role", "organisation", "accepted_at", "revoked_at"]
+    list_select_related = ["organisation", "invited_by", "accepted_by"]
+    search_fields = ["email", "invited_by__username", "accepted_by__username"]
+    fields = ["organisation", "email", "role", "invited_by", "created_at", "expires_at", "revoked_at", "accepted_at", "accepted_by"]
+    actions = ["take_back"]
+
+    @admin.action(description="Take the chosen invitations back", permissions=["view"])
+    def take_back(self, request: HttpRequest, queryset: QuerySet[Invitation]) -> None:
+        waiting = queryset.filter(in_state(InvitationState.OPEN))
+        revoked = [revoke_invitation(invitation=invitation, actor=request.user) for invitation in waiting]
+        self.message_user(request, f"{len(revoked)} taken back.")
+
+
+@admin.register(SignInEntry)
+class SignInEntryAdmin(ReadOnlyAdmin):
+    list_display = ["recorded_at", "outcome", "user", "address", "user_agent"]
+    list_filter = ["outcome", "recorded_at"]
+    list_select_related = ["user"]
+    search_fields = ["user__username", "user__email", "=address"]
+    date_hierarchy = "recorded_at"
 
 
 @admin.register(Job)

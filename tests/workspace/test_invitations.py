@@ -176,3 +176,17 @@ def test_invitations_of_another_organisation_are_not_there(client: Client) -> No
 @pytest.mark.parametrize("body", [{"role": "king"}, {"role": None}, {"days": 0}, {"days": 31}, {"email": "nobody"}])
 def test_an_invitation_that_is_none_is_refused(client: Client, body: dict[str, Any]) -> None:
     assert invite(client, **body).status_code == 400
+
+
+def test_the_admin_has_the_rows_and_takes_invitations_back(client: Client) -> None:
+    link, used = link_of(invite(client, email="nora@example.org")), link_of(invite(client))
+    accept(used)
+    page = client.get("/admin/workspace/invitation/").content.decode()
+    assert "nora@example.org" in page
+    assert link.removeprefix("/invitation/") not in page
+    chosen = list(Invitation.objects.values_list("pk", flat=True))
+    answer = client.post("/admin/workspace/invitation/", {"action": "take_back", "_selected_action": chosen}, follow=True)
+    assert "1 taken back." in answer.content.decode()
+    assert Client().get(link).status_code == 410
+    assert "newcomer" in client.get("/admin/workspace/signinentry/").content.decode()
+    assert client.get("/admin/workspace/signinentry/add/").status_code == 403

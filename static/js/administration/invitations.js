@@ -38,7 +38,7 @@ export function mountInvitations({ tell, settle, show }) {
       h("td", { class: "state" }, h("span", { class: `chip ${style}`.trim() }, words)),
       h("td", { class: "by" }, invitation.invited_by ?? "—"),
       h("td", { class: "when made", title: exactText(invitation.created_at) }, whenText(invitation.created_at)),
-      h("td", { class: "when", title: exactText(invitation.expires_at) }, t("{day}, {time}", { day: dayText(invitation.expires_at), time: clockText(invitation.expires_at) })),
+      h("td", { class: "when", title: exactText(invitation.expires_at) }, h("span", { class: "phone-label" }, `${t("Works until")}: `), t("{day}, {time}", { day: dayText(invitation.expires_at), time: clockText(invitation.expires_at) })),
       h("td", {}, invitation.state === "open" && takeBack),
     );
   }

@@ -51,7 +51,7 @@ export function mountPeople({ tell, settle }) {
       h("td", { class: "name" }, h("strong", {}, name, isMe && ` (${t("you")})`), second && h("span", { class: "caption" }, second)),
       h("td", { class: "role" }, role),
       h("td", { class: "access" }, accessChip(person)),
-      h("td", { class: "seen", title: person.last_seen_at && exactText(person.last_seen_at) }, h("span", { class: "phone-label" }, `${t("Last here")} `), person.last_seen_at ? whenText(person.last_seen_at) : t("never")),
+      h("td", { class: "seen", title: person.last_seen_at && exactText(person.last_seen_at) }, h("span", { class: "phone-label" }, `${t("Last here")}: `), person.last_seen_at ? whenText(person.last_seen_at) : t("never")),
       h("td", { class: "number tokens" }, person.valid_tokens ? `${person.valid_tokens}` : "—"),
       h("td", {}, more),
     );
