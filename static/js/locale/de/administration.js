@@ -63,6 +63,7 @@ export default {
   "Viewer": "Betrachter",
   "whoever has the link": "wer den Link hat",
   "Works for": "Gilt für",
+  "Works until": "Gilt bis",
   "you": "Sie",
   "{count} invitation": ["{count} Einladung", "{count} Einladungen"],
   "{count} person": ["{count} Person", "{count} Personen"],

@@ -58,6 +58,7 @@ export default {
   "In maintenance": "In Wartung",
   "It is selected. Copy it with Ctrl+C.": "Es ist markiert. Mit Strg+C kopieren.",
   "Keep it": "Behalten",
+  "Keep mine as a copy": "Meine als Kopie behalten",
   "Keyboard": "Tastatur",
   "Land at its last target": "Am letzten Ziel landen",
   "Latitude": "Breite (geogr.)",
