@@ -1,191 +1,244 @@
-"""The operator's map over 200,000 assets: tiles through the front door, the first load of the page, and what a frame costs while panning.
+"""The map page over 200,000 assets: its tiles over HTTP, its first load in Chromium, and the script time of a frame while somebody pans.
 
-    python -m benchmarks.map_page [--assets 200000]
+    python -m benchmarks.map_page [--assets 200000] [--state FOLDER]
 
-A made region (see large_region.py) is served by ./run on a port of its own, with its own database; Chromium does the rest. Software
-rendering gives no honest frame rate, so what is measured is the time that scripts take.
+A whole installation (./run) is started over a made region, the same in every run, and stopped again. With --state it is left in that
+folder, and a second run does not import again. Tiles are asked for through the proxy as the browser does; of each one the second answer
+counts, because what a database reads from disk the first time is not what people wait for.
 """
 
 import argparse
+import http.client
 import os
 import shutil
 import socket
 import subprocess
 import tempfile
 import time
-from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import numpy as np
+import osmium
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from benchmarks.large_region import SIDE_DEG, SOUTH, WEST, tile_of, write_region
-from scripts.places import DEMO_USER, Places
+from benchmarks.large_region import tile_of, write_region
+from scripts.places import Places
 from tests.browser.conftest import CHROMIUM_FLAGS
 
-ZOOMS = (0, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14)
-TILES_A_ZOOM = 24
-PANNED_ZOOMS = (7, 9, 11, 13)
-PAN_STEPS = 120
-# Counts the frames and times what the page does in each: MapLibre draws in them.
-COUNT_FRAMES = """() => {
-    window.frames_ms = [];
-    const ask = window.requestAnimationFrame.bind(window);
-    window.requestAnimationFrame = (act) => ask((now) => {
-        const began = performance.now();
-        act(now);
-        window.frames_ms.push(performance.now() - began);
+PROJECT_DIR = Path(__file__).resolve().parents[1]
+SIDE_DEG = 4.5  # some 500 by 360 km: the lines stand as close as in the region of a million
+ZOOMS = range(16)
+TILES_A_ZOOM = 30
+LOADS = 5
+PAN_ZOOMS = (6, 8, 10, 11, 12.8, 14)
+DRAGS, STEPS, STEP_PX = 4, 30, 9
+PLACES_EVERY = 499  # one node of so many is a place to look at
+
+# In every page, before its own scripts: when it could be used, and how long the callbacks of each frame took.
+WATCH = """
+(() => {
+  const watched = { usable: null, drawn: null, frames: new Map() };
+  window.watched = watched;
+  const look = () => {
+    if (document.documentElement?.dataset.loaded) watched.usable ??= performance.now();
+    if (document.getElementById("map")?.dataset.idle) watched.drawn ??= performance.now();
+    if (watched.usable === null || watched.drawn === null) setTimeout(look, 4);
+  };
+  look();
+  const ask = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (act) =>
+    ask((at) => {
+      const began = performance.now();
+      act(at);
+      watched.frames.set(at, (watched.frames.get(at) ?? 0) + performance.now() - began);
     });
-}"""
-
-MIDDLE = """() => {
-    const box = document.getElementById("map").getBoundingClientRect();
-    return [box.x + box.width / 2, box.y + box.height / 2];
-}"""
+})();
+"""
 
 
-def free_port() -> int:
+@dataclass(frozen=True)
+class Installation:
+    address: str
+    port: int
+    password: str
+
+
+@contextmanager
+def installation(state: Path, osm_file: Path, assets: int, keeps: bool) -> Iterator[Installation]:
+    environment = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL"}}
+    environment |= {"SPANWISE_VAR": str(state), "SPANWISE_BASE_MAP_TILES": ""}
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+        port = int(probe.getsockname()[1])
+
+    def run(*options: str) -> None:
+        done = subprocess.run(["./run", *options], cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise SystemExit(f"{done.stdout}\n{done.stderr}")
+
+    is_new = not osm_file.exists()
+    if is_new:
+        write_region(osm_file, assets, SIDE_DEG)
+    try:
+        run("--detach", "--port", str(port), *(["--osm", str(osm_file)] if is_new else []))
+        yield Installation(f"http://127.0.0.1:{port}", port, (state / "demo_password").read_text().strip())
+    finally:
+        run("--stop")
+        if not keeps:
+            shutil.rmtree(Places(state).data, ignore_errors=True)  # as root the database may stand outside the state folder
 
 
-def run(environment: dict[str, str], *command: str) -> None:
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise SystemExit(f"{' '.join(command)}\n{done.stdout}\n{done.stderr}")
+def places_in(osm_file: Path) -> np.ndarray:
+    """Longitude and latitude of some nodes of the file: where something stands."""
+    nodes = (node for node in osmium.FileProcessor(str(osm_file), osmium.osm.NODE))
+    return np.array([(node.location.lon, node.location.lat) for index, node in enumerate(nodes) if index % PLACES_EVERY == 0])
 
 
-def signs_in(page: Page, password: str) -> None:
-    page.goto("/sign-in")
-    page.get_by_label("User name").fill(DEMO_USER)
-    page.get_by_label("Password").fill(password)
-    page.get_by_role("button", name="Sign in").click()
-    page.locator("html[data-loaded]").wait_for(state="attached")
-
-
-def tiles(page: Page, side_deg: float) -> list[tuple[int, int, float, float, float]]:
-    """Of each zoom: tiles asked for, p50 and p95 in ms of the second answer, largest in kB as sent."""
+def measure_tiles(site: Installation, cookie: str, places: np.ndarray) -> None:
+    connection = http.client.HTTPConnection("127.0.0.1", site.port, timeout=60)
     rng = np.random.default_rng(11)
-    rows = []
+    print("zoom  tiles   p50 ms   p95 ms   largest kB, compressed")
+    every_time: list[float] = []
     for zoom in ZOOMS:
-        places = rng.random((TILES_A_ZOOM * 3, 2)) * side_deg + (WEST, SOUTH)
-        wanted = sorted({tile_of(zoom, lon, lat) for lon, lat in places})[:TILES_A_ZOOM]
+        wanted = sorted({tile_of(zoom, *places[index]) for index in rng.integers(0, len(places), TILES_A_ZOOM * 3)})[:TILES_A_ZOOM]
         times, sizes = [], []
         for column, row in wanted:
-            address = f"/api/v1/tiles/{zoom}/{column}/{row}"
-            page.request.get(address)
-            began = time.perf_counter()
-            answer = page.request.get(address)
-            times.append((time.perf_counter() - began) * 1_000)
-            if not answer.ok:
-                raise SystemExit(f"{address}: {answer.status}")
-            sizes.append(int(answer.headers.get("content-length", len(answer.body()))))
-        rows.append((zoom, len(times), float(np.percentile(times, 50)), float(np.percentile(times, 95)), max(sizes) / 1_000))
-    return rows
+            for _ in range(2):
+                began = time.perf_counter()
+                connection.request("GET", f"/api/v1/tiles/{zoom}/{column}/{row}", headers={"Cookie": cookie, "Accept-Encoding": "gzip"})
+                answer = connection.getresponse()
+                body = answer.read()
+                took_ms = (time.perf_counter() - began) * 1_000
+                if answer.status != http.client.OK:
+                    raise SystemExit(f"tile {zoom}/{column}/{row}: {answer.status}")
+            times.append(took_ms)
+            sizes.append(len(body) / 1_000)
+        every_time += times
+        print(f"{zoom:4}  {len(times):5}  {np.percentile(times, 50):7.1f}  {np.percentile(times, 95):7.1f}  {max(sizes):10.0f}")
+    print(f" all  {len(every_time):5}  {np.percentile(every_time, 50):7.1f}  {np.percentile(every_time, 95):7.1f}")
 
 
-def first_load(browser: Browser, address: str, cookies: list[Any], view: str) -> tuple[dict[str, float], float, float]:
-    """kB on the wire by what they are, and seconds until the page can be used and until the map is whole; with an empty cache."""
-    context = browser.new_context(base_url=address, viewport={"width": 1440, "height": 900})
-    context.add_cookies(cookies)
+def sign_in(browser: Browser, site: Installation) -> dict[str, Any]:
+    """The browser's state with a session, so that each page can be opened with nothing in its cache."""
+    context = browser.new_context(base_url=site.address)
     page = context.new_page()
-    session = context.new_cdp_session(page)
-    session.send("Network.enable")
-    names: dict[str, str] = {}
-    sent: dict[str, float] = defaultdict(float)
-
-    def kind(url: str) -> str:
-        if "/lib/maplibre-gl/" in url:
-            return "MapLibre"
-        return "tiles" if "/tiles/" in url else "API" if "/api/" in url else "page, styles, scripts, icons"
-
-    session.on("Network.responseReceived", lambda event: names.update({event["requestId"]: event["response"]["url"]}))
-    session.on(
-        "Network.loadingFinished",
-        lambda event: sent.__setitem__(
-            kind(names.get(event["requestId"], "")), sent[kind(names.get(event["requestId"], ""))] + event["encodedDataLength"] / 1_000
-        ),
-    )
-    began = time.perf_counter()
-    page.goto(f"/missions/new{view}")
+    page.goto("/sign-in")
+    page.get_by_label("User name").fill("demo")
+    page.get_by_label("Password").fill(site.password)
+    page.get_by_role("button", name="Sign in").click()
     page.locator("html[data-loaded]").wait_for(state="attached")
-    usable_s = time.perf_counter() - began
-    page.locator("#map[data-idle]").wait_for(state="attached")
-    whole_s = time.perf_counter() - began
+    state = context.storage_state()
     context.close()
-    return dict(sent), usable_s, whole_s
+    return state  # type: ignore[return-value]
 
 
-def panning(page: Page, zoom: float, lon: float, lat: float) -> tuple[int, float, float, float]:
-    """Frames, script ms a frame in all, p95 of the work inside a frame, and the assets in view."""
-    page.goto("about:blank")
-    page.goto(f"/missions/new#map={zoom}/{lat}/{lon}")
-    page.locator("#map[data-idle]").wait_for(state="attached")
-    session = page.context.new_cdp_session(page)
-    session.send("Performance.enable")
+def open_map(browser: Browser, site: Installation, state: dict[str, Any], view: str = "") -> tuple[Page, list[tuple[str, float]]]:
+    """The page, and what it fetched with the bytes that came over the wire."""
+    context = browser.new_context(base_url=site.address, storage_state=state, viewport={"width": 1440, "height": 900})  # type: ignore[arg-type]
+    context.add_init_script(WATCH)
+    page = context.new_page()
+    wire = context.new_cdp_session(page)
+    wire.send("Network.enable")
+    addresses: dict[str, str] = {}
+    fetched: list[tuple[str, float]] = []
+    wire.on("Network.responseReceived", lambda event: addresses.update({event["requestId"]: event["response"]["url"]}))
+    wire.on("Network.loadingFinished", lambda event: fetched.append((addresses.get(event["requestId"], ""), _kilobytes(event))))
+    page.goto(f"/missions/new{view}")
+    page.wait_for_function("() => watched.usable !== null && watched.drawn !== null", timeout=60_000)
+    return page, fetched
 
-    def script_s() -> float:
-        metrics = session.send("Performance.getMetrics")["metrics"]
-        return next(metric["value"] for metric in metrics if metric["name"] == "ScriptDuration")
 
-    page.evaluate(COUNT_FRAMES)
-    x, y = page.evaluate(MIDDLE)
-    page.mouse.move(x, y)
-    before = script_s()
-    page.mouse.down()
-    for step in range(PAN_STEPS):
-        page.mouse.move(x - step * 4, y + (step % 20) * 4)
-    page.mouse.up()
-    spent_ms = (script_s() - before) * 1_000
-    frames = page.evaluate("window.frames_ms")
-    return len(frames), spent_ms / max(1, len(frames)), float(np.percentile(frames, 50)), float(np.percentile(frames, 95))
+def _kilobytes(event: dict[str, Any]) -> float:
+    return float(event["encodedDataLength"]) / 1_000
+
+
+def measure_first_load(browser: Browser, site: Installation, state: dict[str, Any]) -> None:
+    usable, drawn, library, tiles, own, files = [], [], 0.0, 0.0, 0.0, 0
+    for _ in range(LOADS):
+        page, fetched = open_map(browser, site, state)
+        times = page.evaluate("({ usable: watched.usable, drawn: watched.drawn })")
+        usable.append(times["usable"])
+        drawn.append(times["drawn"])
+        library = sum(size for address, size in fetched if "/maplibre-gl/" in address)
+        tiles = sum(size for address, size in fetched if "/api/v1/tiles/" in address)
+        own = sum(size for _, size in fetched) - library - tiles
+        files = len(fetched)
+        page.context.close()
+    print(f"first load: {files} files; {own:.0f} kB and {tiles:.0f} kB of tiles besides {library:.0f} kB of MapLibre, all as sent")
+    print(f"usable after {median(usable):.0f} ms, everything drawn after {median(drawn):.0f} ms (middle of {LOADS}, empty cache)")
+    context = browser.new_context(base_url=site.address, storage_state=state, viewport={"width": 1440, "height": 900})  # type: ignore[arg-type]
+    context.add_init_script(WATCH)
+    again = []
+    for _ in range(LOADS):
+        page = context.new_page()
+        page.goto("/missions/new")
+        page.wait_for_function("() => watched.usable !== null && watched.drawn !== null", timeout=60_000)
+        again.append(page.evaluate("watched.usable"))
+        page.close()
+    context.close()
+    print(f"usable after {median(again[1:]):.0f} ms with the files in the cache")
+
+
+def measure_panning(browser: Browser, site: Installation, state: dict[str, Any], places: np.ndarray) -> None:
+    lon, lat = np.median(places, axis=0)
+    near = places[np.argmin(np.abs(places - (lon, lat)).sum(axis=1))]
+    print("zoom  frames  script ms a frame, mean   callbacks of a frame, p50   p95")
+    for zoom in PAN_ZOOMS:
+        page, _ = open_map(browser, site, state, f"#map={zoom}/{near[1]:.5f}/{near[0]:.5f}")
+        wire = page.context.new_cdp_session(page)
+        wire.send("Performance.enable")
+        box = page.locator("#map").bounding_box()
+        if box is None:
+            raise SystemExit("the page has no map")
+        middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+        page.mouse.move(*middle)
+        page.evaluate("watched.frames.clear()")
+        before = _script_s(wire)
+        for drag in range(DRAGS):
+            side = 1 if drag % 2 else -1
+            start = (middle[0] - side * STEPS * STEP_PX / 2, middle[1])
+            page.mouse.move(*start)
+            page.mouse.down()
+            page.mouse.move(start[0] + side * STEPS * STEP_PX, start[1] + STEPS, steps=STEPS)
+            page.mouse.up()
+        after = _script_s(wire)
+        frames = page.evaluate("[...watched.frames.values()]")
+        mean_ms = (after - before) * 1_000 / len(frames)
+        print(f"{zoom:4}  {len(frames):6}  {mean_ms:23.1f}  {np.percentile(frames, 50):26.1f}  {np.percentile(frames, 95):4.1f}")
+        page.context.close()
+
+
+def _script_s(wire: Any) -> float:
+    """Seconds that the page's main thread has spent in scripts."""
+    return next(float(metric["value"]) for metric in wire.send("Performance.getMetrics")["metrics"] if metric["name"] == "ScriptDuration")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--assets", type=int, default=200_000)
+    parser.add_argument("--state", type=Path, help="folder that keeps the installation for another run")
+    parser.add_argument("--chromium", default="/usr/bin/chromium")
     options = parser.parse_args()
-    side_deg = SIDE_DEG * (options.assets / 1_000_000) ** 0.5  # as dense as the large region
-    environment = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL"}}
-    port = free_port()
-    with tempfile.TemporaryDirectory(prefix="spanwise-map-page-") as folder:
-        state = Path(folder) / "var"
-        region = Path(folder) / "region.osm.pbf"
-        write_region(region, options.assets, side_deg)
-        environment |= {"SPANWISE_VAR": str(state), "SPANWISE_BASE_MAP_TILES": ""}
-        try:
-            run(environment, "./run", "--detach", "--port", str(port), "--osm", str(region))
-            measure(f"http://127.0.0.1:{port}", Places(state).demo_password.read_text().strip(), options.assets, side_deg)
-        finally:
-            run(environment, "./run", "--stop")
-            shutil.rmtree(Places(state).data, ignore_errors=True)
-
-
-def measure(address: str, password: str, assets: int, side_deg: float) -> None:
-    program = shutil.which("chromium") or shutil.which("google-chrome")
-    if not program:
-        raise SystemExit("Chromium is missing; ./check installs it")
-    centre = (WEST + side_deg / 2, SOUTH + side_deg / 2)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=CHROMIUM_FLAGS)
-        page = browser.new_context(base_url=address, viewport={"width": 1440, "height": 900}).new_page()
-        signs_in(page, password)
-        print(f"{assets:,} assets; load of the machine {os.getloadavg()[0]:.1f}")
-        print("zoom  tiles   p50 ms   p95 ms   largest kB")
-        for zoom, number, middle, late, largest in tiles(page, side_deg):
-            print(f"{zoom:4}  {number:5}  {middle:7.1f}  {late:7.1f}  {largest:10.0f}")
-        sent, usable_s, whole_s = first_load(browser, address, page.context.cookies(), f"#map=11/{centre[1]}/{centre[0]}")
-        for what, size_kb in sorted(sent.items()):
-            print(f"first load: {what:32} {size_kb:7.0f} kB")
-        print(f"first load: besides MapLibre and tiles {sum(sent.values()) - sent['MapLibre'] - sent.get('tiles', 0):10.0f} kB")
-        print(f"first load: usable after {usable_s:.2f} s, map whole after {whole_s:.2f} s")
-        print("zoom  frames  script ms a frame   inside a frame p50, p95 ms")
-        for zoom in PANNED_ZOOMS:
-            frames, script_ms, middle, late = panning(page, zoom, *centre)
-            print(f"{zoom:4}  {frames:6}  {script_ms:17.1f}   {middle:8.1f} {late:8.1f}")
-        browser.close()
+    with tempfile.TemporaryDirectory() as folder:
+        state = options.state or Path(folder) / "state"
+        state.mkdir(parents=True, exist_ok=True)
+        osm_file = state / "region.osm.pbf"
+        with installation(state, osm_file, options.assets, keeps=options.state is not None) as site, sync_playwright() as playwright:
+            print(f"load of the machine before: {os.getloadavg()[0]:.1f}")
+            browser = playwright.chromium.launch(executable_path=options.chromium, args=CHROMIUM_FLAGS)
+            session = sign_in(browser, site)
+            places = places_in(osm_file)
+            cookie = "; ".join(f"{kept['name']}={kept['value']}" for kept in session["cookies"])
+            measure_first_load(browser, site, session)
+            measure_panning(browser, site, session, places)
+            measure_tiles(site, cookie, places)
+            browser.close()
+            print(f"load of the machine after: {os.getloadavg()[0]:.1f}")
 
 
 if __name__ == "__main__":

@@ -46,13 +46,15 @@ class Tile(APIView):
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
         revision, changed_at = selectors.ground_edition()
-        etag = f'"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}"'
+        edition = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}"
+        etag = f'"{edition}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:
             response = cast(HttpResponse, not_changed)
         else:
             try:
-                response = HttpResponse(selectors.vector_tile(zoom, column, row), content_type=TILE_TYPE)
+                tile = selectors.tile_of_edition(zoom, column, row, edition if changed_at else None)
+                response = HttpResponse(tile, content_type=TILE_TYPE)
             except NoSuchTile as error:
                 raise Http404 from error
         response["ETag"] = etag

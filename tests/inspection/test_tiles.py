@@ -1,5 +1,6 @@
 """Vector tiles: what is in them, at which zoom, and when they are asked for again."""
 
+import json
 import math
 from typing import Any
 
@@ -9,7 +10,7 @@ from django.test import Client
 from django.utils import timezone
 
 from inspection.models import Ground, NoFlyZone
-from inspection.selectors import asset_detail, asset_label, vector_tile
+from inspection.selectors import asset_detail, asset_label, tile_of_edition, vector_tile
 from inspection.services import mark_ground_changed
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from tests.inspection.vector_tile import Feature, read_tile
@@ -186,6 +187,35 @@ def test_a_zone_up_to_the_pole_and_round_the_earth_can_be_drawn() -> None:
     NoFlyZone.objects.create(identifier="pole", name="Pole", geometry=MultiPolygon(cap, srid=4326))
     assert read_tile(vector_tile(0, 0, 0))["zones"]
     assert read_tile(vector_tile(3, 7, 0))["zones"]
+
+
+def test_a_zone_says_when_it_applies_unless_that_is_very_long() -> None:
+    period = {"startDateTime": None, "endDateTime": "2026-06-01T00:00:00Z", "schedule": []}
+    always, seasonal, long = (
+        zone(identifier=name, schedule=schedule) for name, schedule in (("a", None), ("b", [period]), ("c", [period] * 99))
+    )
+    told = {feature.id: feature.properties.get("schedule") for feature in layers_at(14)["zones"]}
+    assert (told[always.pk], json.loads(told[seasonal.pk]), told[long.pk]) == (None, [period], None)
+
+
+def test_a_far_tile_is_kept_until_the_ground_changes_and_a_near_one_is_not() -> None:
+    viewer = client_of(somebody(Role.VIEWER))
+    addresses = ["/".join(map(str, tile_at(zoom))) for zoom in (10, 14)]
+    mark_ground_changed()
+    assert [get(viewer, address).content for address in addresses] == [b"", b""]
+    row = line()
+    far, near = (read_tile(get(viewer, address).content) for address in addresses)
+    assert (far, [feature.id for feature in near["lines"]]) == ({}, [row.pk])
+    mark_ground_changed()
+    assert [feature.id for feature in read_tile(get(viewer, addresses[0]).content)["lines"]] == [row.pk]
+
+
+def test_tiles_are_made_without_the_cache_while_it_is_away(settings: Any) -> None:
+    nowhere = settings.CACHES["default"] | {"LOCATION": "unix:///nowhere/redis.sock"}
+    settings.CACHES = {"default": nowhere}
+    line()
+    mark_ground_changed()
+    assert tile_of_edition(*tile_at(10), "without a cache") == vector_tile(*tile_at(10))
 
 
 def get(client: Client, address: str, **headers: str) -> Any:
