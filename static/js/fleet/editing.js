@@ -15,7 +15,8 @@ export const ifUnchanged = (row) => ({ headers: { "If-Match": `"${row.revision}"
 const stated = (body) => Object.fromEntries(Object.entries(body).filter(([, value]) => value !== null));
 
 /**
- * context: { store, page, panel, isWide(), open(), map(): the map or null, showMap(): a promise, turnTo(tab), choose(tab, id), close(), load() }.
+ * context: { store, page, panel, isWide(), open(), map(): the map or null, showMap(): a promise, turnTo(tab), choose(tab, id), close(), load(),
+ * moment(): another number once something else was begun }.
  * `leave()` is false while the edit is being stored.
  */
 export function createEditing(context) {
@@ -88,6 +89,13 @@ export function createEditing(context) {
     else context.close();
   }
 
+  /** Unless something else was begun in the meantime. */
+  async function showAsStored(tab, id) {
+    const moment = context.moment();
+    await context.load();
+    if (moment === context.moment()) await context.choose(tab, id);
+  }
+
   async function save() {
     if (edit.isSaving) return;
     const { tab, row, form, etag, key } = edit;
@@ -103,8 +111,7 @@ export function createEditing(context) {
       const { data } = row ? await patch(`${kind.path}/${row.id}`, changes(), etag) : await post(kind.path, stated(form.body()), { headers: { "Idempotency-Key": key } });
       end();
       toast(t("Saved."));
-      await context.load();
-      await context.choose(tab, data.id);
+      await showAsStored(tab, data.id);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       edit.isSaving = false;
@@ -122,10 +129,9 @@ export function createEditing(context) {
     form.ask(
       conflictNotice({
         who: changed_by, seen: began, theirs: bodies[kind.tab](now), form,
-        async onTheirs() {
+        onTheirs() {
           end();
-          await context.load();
-          await context.choose(kind.tab, now.id);
+          return showAsStored(kind.tab, now.id);
         },
         onMine() {
           edit.etag = ifUnchanged(now);

@@ -21,6 +21,7 @@ const store = createStore({
   tab: KINDS[address.get("tab")] ? address.get("tab") : "uavs", uavs: null, types: null, bases: null, numbers: null, next: null,
   text: "", state: IN_USE, type: "", base: "", chosen: null, problem: null,
 });
+let choosing = 0; // counts what was begun: an answer that comes after something else was begun is not shown
 let map = null;
 let ground = null;
 
@@ -29,7 +30,7 @@ const chosenRow = () => store.state.chosen && (store.state[store.state.chosen.ta
 const filters = mountFilters(store, { onTab: turnTo, onChange: load });
 const table = mountTable({ canPlan: page.canPlan, onChoose: (id) => choose(store.state.tab, id), onNew: startNew, onClear: clearFilter });
 const panel = mountPanel({ canPlan: page.canPlan, acts: { back: close, edit: () => editing.start(chosenRow()), put, remove: takeOff, refresh: load, failed: tell, showUavs } });
-const editing = createEditing({ store, page, panel, isWide: () => wide.matches, open, map: () => map, showMap, turnTo, choose, close, load });
+const editing = createEditing({ store, page, panel, isWide: () => wide.matches, open, map: () => map, showMap, turnTo, choose, close, load, moment: () => choosing });
 
 // what went wrong, and what then
 
@@ -142,8 +143,6 @@ function open() {
   byId("fleet-side").dataset.panel = "true";
 }
 
-let choosing = 0; // an answer that comes after something else was begun is not shown
-
 async function choose(tab, id, { keepFocus = false } = {}) {
   if (!editing.leave()) return;
   const mine = ++choosing;
@@ -203,8 +202,9 @@ async function attempt(change) {
 
 /** The list and what is chosen, as they are now. */
 async function refresh(id) {
+  const moment = choosing;
   await load();
-  if (store.state.chosen?.id === id) await choose(store.state.tab, id, { keepFocus: true });
+  if (moment === choosing && store.state.chosen?.id === id && !editing.isOpen()) await choose(store.state.tab, id, { keepFocus: true });
 }
 
 function put(state) {
