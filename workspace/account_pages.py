@@ -4,14 +4,14 @@ from threading import Thread
 from typing import Any
 
 from django.contrib.auth import views
-from django.contrib.auth.forms import PasswordResetForm, SetPasswordForm
+from django.contrib.auth.forms import PasswordChangeForm, PasswordResetForm, SetPasswordForm
 from django.core.exceptions import ValidationError
 from django.http import HttpResponse
 from django.urls import reverse_lazy
 from django.utils.translation import gettext as _
 
 from workspace.known_browsers import remember
-from workspace.sign_in_attempts import HeldBack, address_of, network_of, take_turn
+from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, take_turn
 
 
 class LostPasswordForm(PasswordResetForm):
@@ -69,8 +69,20 @@ class NewPasswordSetPage(views.PasswordResetCompleteView):
     template_name = "account/new_password_set.html"
 
 
+class ChangePasswordForm(PasswordChangeForm):
+    """Django's form with a limit: somebody at an open browser cannot guess on."""
+
+    def clean_old_password(self) -> str:
+        try:
+            take_turn(PASSWORD_CHANGES, str(self.user.pk))
+        except HeldBack as error:
+            raise ValidationError(_("Too many tries. Wait 15 min, then try again."), code="locked") from error
+        return str(super().clean_old_password())
+
+
 class ChangePasswordPage(views.PasswordChangeView):
     template_name = "account/change_password.html"
+    form_class = ChangePasswordForm
     success_url = reverse_lazy("password-changed")
 
 

@@ -26,7 +26,7 @@ from workspace.people_serializers import (
 )
 from workspace.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.schema import PAGE_PARAMETERS
-from workspace.sign_in_attempts import HeldBack, take_turn
+from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
 from workspace.sign_in_log import record_sign_in
 
 
@@ -64,7 +64,7 @@ class AccountPassword(APIView):
         body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
         try:
-            take_turn("password of", str(request.user.pk))
+            take_turn(PASSWORD_CHANGES, str(request.user.pk))
         except HeldBack as held:
             raise ApiProblem(429, "held_back", _("Too many tries. Wait 15 min, then try again."), retry_after_s=held.wait_s) from held
         if not request.user.check_password(body.validated_data["old_password"]):

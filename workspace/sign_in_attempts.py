@@ -19,6 +19,7 @@ TRIES = 5  # of one name from one network, or from one known browser
 TRIES_OF_A_NETWORK = 50  # of any names
 TRIES_BEFORE_A_NAME_IS_SLOW = 20  # of one name from everywhere
 SLOW_S = 10  # then strangers have one try in so long
+PASSWORD_CHANGES = "changing the password of"  # noqa: S105 - a purpose, no password
 NETWORK_BITS_OF_IPV6 = 64  # what one subscriber usually has
 
 CACHE_AWAY = (RedisError, OSError)
@@ -46,8 +47,7 @@ class Try:
         try:
             if self.keys:
                 cache.delete(self.keys[0])
-            for key in self.keys[1:]:
-                cache.decr(key)
+            _take_back(*self.keys[1:])
         except (*CACHE_AWAY, ValueError):  # ValueError: the window ended in between
             logger.warning("wrong sign-ins are not forgotten: the cache is away")
 
@@ -82,6 +82,7 @@ def try_to_sign_in(*, name: str, address: str, known_browser: str | None) -> Try
         of_network = _key("network", network)
         _count(of_network, TRIES_OF_A_NETWORK)
         if _add(everybody) > TRIES_BEFORE_A_NAME_IS_SLOW and not cache.add(_key("slow", name), 1, SLOW_S):
+            _take_back(own, of_network)  # to wait for a turn is no wrong try
             raise HeldBack(SLOW_S, name_is_slow=True)
         return Try((own, of_network, everybody), left)
     except (*CACHE_AWAY, ValueError):
@@ -112,6 +113,11 @@ def _key(purpose: str, *parts: str) -> str:
 def _add(key: str) -> int:
     cache.add(key, 0, WINDOW_S)
     return int(cache.incr(key))
+
+
+def _take_back(*keys: str) -> None:
+    for key in keys:
+        cache.decr(key)
 
 
 def _count(key: str, most: int) -> int:

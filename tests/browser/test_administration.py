@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 PICTURES = [("light", (1440, 900)), ("dark", (1440, 900)), ("light", (390, 844)), ("dark", (390, 844))]
@@ -178,4 +179,13 @@ def test_pictures_of_the_administration(visitor: Visitor, picture: Callable[[Pag
     for tab in ("people", "invitations", "sign-ins"):
         administration(page, tab)
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), tab
+        assert faults(page) == [], tab
         picture(page, f"administration-{tab}-{kind}")
+    page.get_by_role("button", name="Invite somebody").click()
+    assert faults(page) == []
+    page.get_by_role("dialog").get_by_role("button", name="Make the link").click()
+    link = page.get_by_role("textbox", name="Link of the invitation").text_content() or ""
+    assert faults(page) == []
+    guest = visitor.opens(link, theme=theme, size=size, touch=size[0] < 720)
+    assert faults(guest) == []
+    picture(guest, f"invitation-{kind}")

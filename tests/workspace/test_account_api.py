@@ -115,6 +115,13 @@ def test_somebody_at_an_open_browser_cannot_guess_on(client: Client) -> None:
     assert int(answer["Retry-After"]) > 0
 
 
+def test_the_page_for_it_counts_with_the_address_for_programs(client: Client) -> None:
+    for _ in range(5):
+        post(client, "password", old_password="wrong", new_password=NEW)
+    form = {"old_password": OLD, "new_password1": NEW, "new_password2": NEW}
+    assert "Too many tries." in client.post("/change-password", form).content.decode()
+
+
 def test_signing_out_everywhere_keeps_this_browser_alone(client: Client, user: User) -> None:
     elsewhere = client_of(user)
     assert works(elsewhere)

@@ -94,6 +94,14 @@ def test_a_slow_name_lets_strangers_try_again_after_a_moment(owner: User, monkey
     assert sign_in(Client(), owner.username, PASSWORD, "203.0.113.10")
 
 
+def test_waiting_for_a_turn_is_no_wrong_try(owner: User, monkeypatch: pytest.MonkeyPatch) -> None:
+    hammer(owner.username)
+    for _ in range(TRIES * 2):
+        assert not sign_in(Client(), owner.username, PASSWORD, "203.0.113.9")
+    monkeypatch.setattr(sign_in_attempts.cache, "add", lambda *_: True)
+    assert sign_in(Client(), owner.username, PASSWORD, "203.0.113.9")
+
+
 def test_names_that_nobody_has_are_slowed_down_alike() -> None:
     hammer("nobody")
     page = Client().post("/sign-in", {"username": "nobody", "password": "x"}, REMOTE_ADDR="203.0.113.9").content.decode()
