@@ -10,10 +10,26 @@ from django.http import HttpRequest
 from inspection.admin_map import GeoJSONField
 from missions.models import Base, InspectionTarget, Mission, MissionUav, Route, Uav, UavCredential, UavType, Waypoint
 from workspace.admin import ReadOnlyAdmin
+from workspace.admin_history import HistoryAdmin
+from workspace.services import record_change
+
+
+class _FleetAdmin(HistoryAdmin):
+    """What is changed here counts as on the page of the fleet: whoever has seen the row before is told, and the history has it."""
+
+    def save_model(self, request: HttpRequest, obj: Any, form: Any, change: bool) -> None:
+        if change:
+            obj.revision += 1
+        super().save_model(request, obj, form, change)
+        record_change(
+            organisation=obj.organisation, actor=request.user, action="change" if change else "create",
+            subject_type=self.history_subject, subject_id=obj.pk, after={name: str(form.cleaned_data[name]) for name in form.changed_data},
+        )  # fmt: skip
 
 
 @admin.register(Uav)
-class UavAdmin(admin.ModelAdmin):
+class UavAdmin(_FleetAdmin):
+    history_subject = "uav"
     formfield_overrides = {models.GeometryField: {"form_class": GeoJSONField}}
     list_display = ["name", "state", "uav_type", "base_name", "battery_percent", "located_at", "mavlink_system_id", "organisation"]
     list_filter = ["state", "uav_type", "base_name", "end_action", "organisation"]
@@ -23,7 +39,8 @@ class UavAdmin(admin.ModelAdmin):
 
 
 @admin.register(UavType)
-class UavTypeAdmin(admin.ModelAdmin):
+class UavTypeAdmin(_FleetAdmin):
+    history_subject = "uav_type"
     list_display = ["name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "sensors", "organisation"]
     list_filter = ["organisation"]
     list_select_related = ["organisation"]
@@ -32,7 +49,8 @@ class UavTypeAdmin(admin.ModelAdmin):
 
 
 @admin.register(Base)
-class BaseAdmin(admin.ModelAdmin):
+class BaseAdmin(_FleetAdmin):
+    history_subject = "base"
     formfield_overrides = {models.GeometryField: {"form_class": GeoJSONField}}
     list_display = ["name", "note", "organisation"]
     list_filter = ["organisation"]

@@ -326,3 +326,22 @@ def test_viewers_see_the_fleet_and_change_nothing(client: Client) -> None:
     for path, body in (("uav-types", KESTREL), ("bases", DEPOT), (f"uavs/{uav}/credentials", {"kind": "link-token"})):
         assert post(viewer, path, body).status_code == 403
     assert patch(viewer, f"uavs/{uav}", {"state": UavState.RETIRED}, **ANY).status_code == 403
+
+
+def test_who_has_seen_a_type_before_the_admin_changed_it_does_not_overwrite_that(client: Client) -> None:
+    kestrel = made(client, "uav-types", KESTREL)
+    form = {
+        "organisation": 1,
+        "name": "Kestrel",
+        "max_range_m": 5_000,
+        "cruise_speed_mps": 14,
+        "battery_wh": "",
+        "mass_kg": "",
+        "sensors": "",
+    }
+    administrator = client_of(somebody(Role.ADMINISTRATOR))
+    assert administrator.post(f"/admin/missions/uavtype/{kestrel['id']}/change/", form).status_code == 302
+    refused = patch(client, f"uav-types/{kestrel['id']}", {"max_range_m": 70_000.0}, **{"If-Match": '"1"'})
+    assert (refused.status_code, refused.json()["error"]["details"]["current"]["max_range_m"]) == (412, 5_000.0)
+    entry = AuditEntry.objects.filter(subject_type="uav_type", action="change").get()
+    assert entry.after == {"max_range_m": "5000.0"}
