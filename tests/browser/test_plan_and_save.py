@@ -51,11 +51,10 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     assert len(numbers) == 4 and all(re.fullmatch(r"[AB]\d", number) for number in numbers)
     facts = page.locator("#plan-facts").text_content()
 
-    page.keyboard.press("Control+s")
-    expect(page.get_by_text("“South belt, autumn” is saved.")).to_be_visible()
+    expect(page.get_by_text("“South belt, autumn” is saved. From now on it saves itself.")).to_be_visible()
     expect(page).to_have_url(re.compile(r"/missions/[0-9a-f-]{36}"))
     expect(page.locator("#plan-facts")).to_have_text(facts or "")  # what was shown is what is stored
-    expect(page.locator("#mission-facts")).not_to_contain_text("not saved")
+    expect(page.locator("#save-state")).to_have_text(re.compile(r"^Saved \d\d:\d\d$"))
     page.locator("#toasts .toast").wait_for(state="detached")
     page.keyboard.press("f")
     wait_for_map(page)
@@ -71,7 +70,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     expect(page.locator("#plan-facts")).to_have_text(facts or "")
     assert sorted(targets(page)) == sorted(picked)
     assert second_facts(page) == facts_of_targets
-    expect(page.locator("#mission-facts")).not_to_contain_text("not saved")
+    expect(page.locator("#save-state")).to_have_text(re.compile(r"^Saved \d\d:\d\d$"))
     address = page.url.split("#")[0]
 
     page.get_by_role("button", name="Theme: system").click()

@@ -10,6 +10,7 @@ from tests.browser.operator_map import stores_mission, targets, wait_for_map
 
 pytestmark = pytest.mark.browser
 
+SAVED = re.compile(r"^Saved \d\d:\d\d$")
 BEHIND = re.compile(r"Your changes are from before rory’s save at \d\d:\d\d\.")
 
 
@@ -47,6 +48,15 @@ def forgives(visitor: Visitor, status: int) -> None:
     visitor.complaints.clear()
 
 
+def cuts_the_saves(page: Page) -> None:
+    page.route("**/api/v1/missions/**", lambda route: route.abort() if route.request.method == "PATCH" else route.continue_())
+
+
+def is_kept_here(page: Page) -> None:
+    expect(page.locator("#save-state")).to_contain_text("Not saved")
+    page.wait_for_function("() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.'))")
+
+
 @pytest.mark.parametrize("way", ["top", "copy"])
 def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) -> None:
     mine = visitor.signs_in("opal")
@@ -54,35 +64,38 @@ def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) 
     theirs = visitor.signs_in("rory")
     opens_mission(mine, address)
     opens_mission(theirs, address)
+    cuts_the_saves(mine)
     removes_first_target(mine)
-    expect(mine.locator("#target-list .target")).to_have_count(1)
+    mine.get_by_role("textbox", name="Name of the mission").fill("River crossing, mine")
+    is_kept_here(mine)
     saves_as(theirs, "River crossing, checked")
-
-    mine.keyboard.press("Control+s")
     expect(mine.get_by_text(BEHIND)).to_be_visible()
-    forgives(visitor, 412)
+    visitor.complaints.clear()  # of the saves that were cut
     assert len(targets(mine)) == 1
     mine.reload()
     wait_for_map(mine)
     expect(mine.get_by_text(BEHIND)).to_be_visible()  # also a reload loses nothing
     assert len(targets(mine)) == 1
+    mine.unroute("**/api/v1/missions/**")
 
-    mine.get_by_role("button", name="See theirs").click()
+    mine.get_by_role("button", name="See both").click()
+    mine.get_by_role("button", name="Take theirs").click()
     expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing, checked")
     expect(mine.locator("#target-list .target")).to_have_count(2)
     expect(mine.get_by_text(BEHIND)).to_be_hidden()
     mine.get_by_role("button", name="Back to mine").click()
     expect(mine.locator("#target-list .target")).to_have_count(1)
-    expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing")
+    expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing, mine")
 
     if way == "top":
+        mine.get_by_role("button", name="See both").click()
         mine.get_by_role("button", name="Put mine on top").click()
-        expect(mine.get_by_text("“River crossing” is saved.")).to_be_visible()
+        expect(mine.get_by_text("“River crossing, mine” is saved.")).to_be_visible()
     else:
         mine.get_by_role("button", name="Keep mine as a copy").click()
-        expect(mine.get_by_text("“River crossing (copy)” is saved.")).to_be_visible()
+        expect(mine.get_by_text("“River crossing, mine (copy)” is saved.")).to_be_visible()
         assert address not in mine.url
-    expect(mine.locator("#mission-facts")).not_to_contain_text("not saved")
+    expect(mine.locator("#save-state")).to_have_text(SAVED)
     stored = opens_mission(theirs, address)
     assert len(targets(stored)) == (1 if way == "top" else 2)
 
@@ -93,14 +106,20 @@ def test_a_save_in_one_window_leaves_the_changes_of_another(visitor: Visitor) ->
     second = first.context.new_page()
     opens_mission(first, address)
     opens_mission(second, address)
+    cuts_the_saves(second)
     removes_first_target(second)
-    expect(second.locator("#target-list .target")).to_have_count(1)
-    second.wait_for_function("() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.'))")
+    is_kept_here(second)
     saves_as(first, "Two windows, renamed")
+    expect(second.get_by_role("textbox", name="Name of the mission")).to_have_value("Two windows, renamed")  # theirs came in
+    assert len(targets(second)) == 1
     second.reload()
     wait_for_map(second)
-    expect(second.get_by_text("Your changes are from before your own save at")).to_be_visible()
+    expect(second.get_by_text("Your unsaved changes are back.")).to_be_visible()
     assert len(targets(second)) == 1
+    second.unroute("**/api/v1/missions/**")
+    second.reload()
+    expect(second.locator("#save-state")).to_have_text(SAVED)
+    expect(first.locator("#target-list .target")).to_have_count(1)
 
 
 def test_a_cleared_selection_stays_cleared(visitor: Visitor) -> None:
@@ -124,7 +143,10 @@ def test_saving_keeps_what_can_be_undone(visitor: Visitor) -> None:
     saves_as(page, "Undo after saving")
     page.get_by_role("button", name="Undo", exact=True).click()
     expect(page.locator("#target-list .target")).to_have_count(1)
-    expect(page.locator("#mission-facts")).to_contain_text("not saved")
+    expect(page.locator("#save-state")).to_have_text("Not saved yet")
+    expect(page.locator("#save-state")).to_have_text(SAVED)
+    page.get_by_role("button", name="Redo", exact=True).click()
+    expect(page.locator("#target-list .target")).to_have_count(2)
 
 
 def test_a_notice_about_an_empty_selection_goes_with_the_first_pick(visitor: Visitor) -> None:

@@ -24,7 +24,7 @@ export function mountFoot(store, actions) {
     save.textContent = state.saving ? t("Saving") : t("Save");
     save.setAttribute("aria-busy", String(state.saving));
     const nothing = !isUnsaved(state);
-    save.disabled = nothing;
+    save.disabled = nothing && !state.mission; // a stored mission answers that it is saved
     save.title = nothing ? (state.mission ? t("Everything is saved") : t("Nothing to save yet")) : t("Save (Ctrl+S)");
   });
 
