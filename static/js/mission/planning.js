@@ -7,6 +7,7 @@ import { isSamePlan, summaryOfPlan } from "./compare.js";
 import { otherObjective, sentenceOf, unreachedOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
+const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
 const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
 
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
@@ -24,7 +25,7 @@ export function withResult(figures, basis, result) {
 const ofJob = (job) => job.result && { ...job.result, job: job.id };
 
 /** context: see actions.js. `running.stopping` is the AbortController of what is being waited for. */
-export function createPlanning({ store, selection, change, problem, failed, running }) {
+export function createPlanning({ store, selection, change, problem, failed, running, page }) {
   async function waitForJob(jobId, what) {
     const job = await follow(jobId, {
       signal: running.stopping?.signal,
@@ -98,6 +99,8 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: state.why?.compare ? state.why : null });
     }
     aside.keepOnlyFor(state.selection);
+    const isShownAsStored = state.planIsStored && state.plan?.basis === basis;
+    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE) aside.start(state.selection);
   });
 
   let shown = null; // the plan on the page in short
@@ -136,7 +139,7 @@ function planBeside(store) {
   async function start(asked) {
     const other = { ...asked, objective: otherObjective(asked.objective) };
     const basis = picks.basisOf(other);
-    if (store.state.figures[basis]) return;
+    if (store.state.figures[basis] || store.state.planningBeside === basis) return;
     const own = new AbortController();
     stopping = own;
     store.update({ planningBeside: basis });

@@ -22,6 +22,7 @@ export function mountWhy(store, actions, { canPlan }) {
   const panel = byId("why");
   const answers = new WeakMap(); // result of a plan → Map of question → promise
   let opener = null;
+  let shown = null; // the question that was drawn last
 
   function ask(plan, path, more) {
     if (!answers.has(plan.result)) answers.set(plan.result, new Map());
@@ -57,10 +58,11 @@ export function mountWhy(store, actions, { canPlan }) {
     panel.hidden = !why || !plan;
     byId("dock").classList.toggle("with-why", !panel.hidden);
     if (panel.hidden) {
+      shown = null;
       if (!wasHidden) giveBack();
       return;
     }
-    if (wasHidden) opener = document.activeElement;
+    if (why !== shown) opener = document.activeElement;
     if (why.compare) {
       const last = lastPlanOf(state);
       if (last) put(t("Against the last plan"), ...comparison(plan, last));
@@ -78,7 +80,8 @@ export function mountWhy(store, actions, { canPlan }) {
     panel.className = why.route === undefined ? "why" : `why route-${routeNumber(why.route)}`;
     byId("why-letter").hidden = why.route === undefined;
     byId("why-letter").textContent = why.route === undefined ? "" : routeLetter(why.route);
-    if (wasHidden || document.activeElement === document.body) byId("why-title").focus();
+    if (why !== shown || document.activeElement === document.body) byId("why-title").focus(); // on a phone it comes into sight so
+    shown = why;
   }
 
   /** Focus goes back to what opened it; a row may have been drawn anew. */
