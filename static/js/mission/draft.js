@@ -1,5 +1,6 @@
 /** The unsaved selection, kept in this browser for each user until it is saved. */
 
+import { t } from "../text.js";
 import { basisOf, EMPTY } from "./selection.js";
 
 /** What somebody has picked is theirs alone, also where several use one browser. */
@@ -57,6 +58,6 @@ export function draftDecision(draft, mission, storedBasis) {
 
 /** "vera's", "your own" or "another operator's": whose save came in between. */
 export function whoseSave(actor, userName) {
-  if (!actor) return "another operator’s";
-  return actor === userName ? "your own" : `${actor}’s`;
+  if (!actor) return t("another operator’s");
+  return actor === userName ? t("your own") : t("{name}’s", { name: actor });
 }

@@ -70,15 +70,15 @@ if (page.canPlan) mountTools(store, { pasteList: () => askForList(actions), save
 
 startChrome({
   bindings: [
-    { keys: ["/"], words: "Find an asset", act: finder.focus },
+    { keys: ["/"], words: t("Find an asset"), act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
     ...map.bindings,
-    { keys: ["f"], words: "Fit the mission", act: () => map.fit() },
-    { keys: ["+", "="], words: "Zoom in", act: () => map.zoom(1) },
-    { keys: ["-"], words: "Zoom out", act: () => map.zoom(-1) },
-    { keys: ["["], words: "Fold the side", act: layout.foldSide },
-    { keys: ["]"], words: "Fold the routes", act: layout.foldDock },
-    { keys: ["escape"], words: page.canPlan ? "Close, back to points" : "Close", act: escape },
+    { keys: ["f"], words: t("Fit the mission"), act: () => map.fit() },
+    { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
+    { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
+    { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
+    { keys: ["]"], words: t("Fold the routes"), act: layout.foldDock },
+    { keys: ["escape"], words: page.canPlan ? t("Close, back to points") : t("Close"), act: escape },
     { keys: ["enter"], act: placeInTheMiddle },
   ],
 });
@@ -90,15 +90,15 @@ store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
 function planningKeys() {
   const choose = (tool) => () => store.update({ tool });
   return [
-    { keys: ["p"], words: "Plan, plan again", act: actions.plan },
-    { keys: ["mod+s"], words: "Save", whileTyping: true, act: () => void actions.save() },
-    { keys: ["mod+z"], words: "Undo", act: actions.undo },
-    { keys: ["mod+shift+z", "mod+y"], words: "Redo", act: actions.redo },
+    { keys: ["p"], words: t("Plan, plan again"), act: actions.plan },
+    { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => void actions.save() },
+    { keys: ["mod+z"], words: t("Undo"), act: actions.undo },
+    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: actions.redo },
     { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
-    { keys: ["v"], words: "Pick points", act: choose("point") },
-    { keys: ["b"], words: "Pick by box", act: choose("box") },
+    { keys: ["v"], words: t("Pick points"), act: choose("point") },
+    { keys: ["b"], words: t("Pick by box"), act: choose("box") },
     { keys: ["o"], words: t("Draw round what is picked"), act: choose("lasso") },
-    { keys: ["w"], words: "Pick whole lines", act: choose("line") },
+    { keys: ["w"], words: t("Pick whole lines"), act: choose("line") },
     { keys: ["t"], words: t("Pick a stretch between two towers"), act: choose("stretch") },
     { keys: ["i"], words: t("Paste a list"), act: () => void askForList(actions) },
   ];
@@ -160,7 +160,7 @@ async function load() {
     else if (page.canPlan) actions.openDraft();
     isLoaded = true;
   } catch (error) {
-    actions.failed("Not loaded.", error, [{ label: "Load again", act: () => location.reload() }]);
+    actions.failed(t("Not loaded."), error, [{ label: t("Load again"), act: () => location.reload() }]);
     if (!(error instanceof ApiError)) throw error;
   }
   await map.ready;

@@ -14,7 +14,7 @@ import { boxAround, createMap } from "../map/map_view.js";
 import { goTo } from "../map/places_found.js";
 import { tipOf } from "../map/tips.js";
 import { rememberedUnder } from "../map/under.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { isPlanCurrent, placesOf, routesOf, unreachedOf } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
 import { createMapPicking } from "./map_picking.js";
@@ -26,7 +26,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   const frame = byId("map").parentElement;
   const container = byId("map");
   const { baseMap, satellite, extent } = page;
-  const view = createMap(container, { baseMap, satellite, under: rememberedUnder(page), describe: "Map", bounds: page.bounds ?? extent, extent: page.bounds && extent ? boxAround(cornersOf(page.bounds, extent)) : extent });
+  const view = createMap(container, { baseMap, satellite, under: rememberedUnder(page), describe: t("Map"), bounds: page.bounds ?? extent, extent: page.bounds && extent ? boxAround(cornersOf(page.bounds, extent)) : extent });
   const { map, opensAtPlace } = view;
   const shapes = new Map(); // asset id → geometry of what is picked whole
   let pointed = null; // what the pointer is at on the map
@@ -182,7 +182,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   });
   store.listen(["selection", "plan"], ({ selection, plan }) => {
     const routes = plan ? plan.result.routes.filter((route) => route.geometry).length : 0;
-    map.getCanvas().setAttribute("aria-label", `Map, ${selection.targets.length} targets, ${routes} routes`);
+    map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes: tn(routes, "{count} route", "{count} routes") }));
   });
 
   /** Routes and targets; UAVs only as long as nothing says which of them fly. */

@@ -3,7 +3,6 @@
 export default {
   "All assets": "Alle Objekte",
   "Bring in an OpenStreetMap file, or take the visible area from Overpass.": "Eine OpenStreetMap-Datei einlesen oder den sichtbaren Bereich von Overpass holen.",
-  "Find an asset": "Ein Objekt suchen",
   "Height above ground": "Höhe über Grund",
   "Light rail": "Stadtbahn",
   "Minor line": "Kleine Leitung",
