@@ -29,10 +29,13 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
   let asking = null;
   let results = []; // { words, detail, icon, end, act }
   let active = -1;
+  let isBehind = false; // the list is not yet of what has been typed
+  let takesFirst = false; // Enter came before the list
 
   const close = () => {
     asking?.abort();
     clearTimeout(timer);
+    isBehind = takesFirst = false;
     panel.hidden = true;
     input.setAttribute("aria-expanded", "false");
     input.removeAttribute("aria-activedescendant");
@@ -117,10 +120,14 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
       ]);
       results = [...places.map(placeResult), ...data.features.map(assetResult)];
       active = -1;
+      isBehind = false;
       draw(results.length ? headOf(asked, data.total) : emptyWords(text), data.total);
       if (results.length && text) activate(0);
+      if (takesFirst) take(0);
+      takesFirst = false;
     } catch (error) {
       if (error.name === "AbortError") return;
+      isBehind = takesFirst = false;
       results = [];
       draw(error instanceof ApiError ? error.message : t("The search failed. Try again."), 0);
     }
@@ -168,6 +175,8 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
   );
   input.addEventListener("input", () => {
     clearTimeout(timer);
+    isBehind = true;
+    takesFirst = false;
     timer = setTimeout(search, WAIT_MS);
   });
   input.addEventListener("focus", search);
@@ -188,7 +197,8 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
       if (results.length) activate((active + step + results.length) % results.length);
     } else if (event.key === "Enter") {
       event.preventDefault();
-      take(Math.max(active, 0));
+      if (isBehind) takesFirst = true;
+      else take(Math.max(active, 0));
     }
   });
   const focus = () => {
