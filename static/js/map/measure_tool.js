@@ -7,6 +7,7 @@ import { say } from "../page/toast.js";
 import { t } from "../text.js";
 import { areaText, lengthText } from "../units.js";
 
+const NEAREST_M = 0.01;
 const RADIANS = Math.PI / 180;
 
 /** Direction of a leg at its beginning, degrees from north, 0 to 359. */
@@ -108,7 +109,8 @@ export function createMeasure(map, frame, button, { onSwitch = () => {}, isBusy 
     end,
     add,
     at(position) {
-      pointer = position;
+      const last = points?.at(-1);
+      pointer = last && position && distance_m(last, position) < NEAREST_M ? null : position; // where the pointer was clicked is a point already
       if (points === null || waits) return;
       waits = true;
       requestAnimationFrame(draw);

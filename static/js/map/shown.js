@@ -59,7 +59,7 @@ export function createShown(map, onChange = () => {}) {
 
   map.on("load", () => {
     let isDue = true;
-    map.on("sourcedata", ({ sourceId, tile }) => (isDue ||= sourceId === TILES && Boolean(tile)));
+    map.on("sourcedata", ({ sourceId }) => (isDue ||= sourceId === TILES));
     map.on("idle", () => {
       if (isDue) lookAtZones();
       isDue = false;

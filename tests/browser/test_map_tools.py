@@ -1,0 +1,198 @@
+"""What the map offers to look with: tooltips, layers, measuring, coordinates, places to go to, and what is said when it cannot be read."""
+
+import re
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, Route, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks, look_at, targets, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+RIVER = [-83.06, 39.9]  # south-west of the city: nothing else of the fixture is near
+AROUND = 0.01
+
+
+@pytest.fixture
+def curator(visitor: Visitor) -> Page:
+    page = visitor.signs_in("cora")
+    page.goto("/missions/new")
+    wait_for_map(page)
+    return page
+
+
+@pytest.fixture
+def operator(visitor: Visitor) -> Page:
+    page = visitor.signs_in("opal")
+    page.goto("/missions/new")
+    wait_for_map(page)
+    return page
+
+
+def draws_zone(page: Page, name: str, **facts: Any) -> int:
+    """A square zone at RIVER, made through the API with the page's session. Its number."""
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    [west, south], [east, north] = [[degrees + side * AROUND for degrees in RIVER] for side in (-1, 1)]
+    square = {"type": "Polygon", "coordinates": [[[west, south], [east, south], [east, north], [west, north], [west, south]]]}
+    answer = page.request.post("/api/v1/zones", data={"name": name, "geometry": square, **facts}, headers={"X-CSRFToken": token})
+    assert answer.status == 201, answer.text()
+    return int(answer.json()["id"])
+
+
+def removes_zone(page: Page, number: int) -> None:
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    answer = page.request.delete(f"/api/v1/zones/{number}", headers={"X-CSRFToken": token, "If-Match": '"1"'})
+    assert answer.ok, answer.text()
+
+
+def opens_at(page: Page, position: list[float], zoom: float) -> dict[str, float]:
+    """The page anew, with the tiles of now, at a place; where that is on the screen."""
+    page.goto("about:blank")
+    page.goto("/missions/new")
+    wait_for_map(page)
+    return look_at(page, position, zoom)
+
+
+def test_a_zone_under_the_pointer_tells_its_heights_times_source_and_whether_it_is_in_force(curator: Page) -> None:
+    number = draws_zone(
+        curator,
+        "Heron colony",
+        reason="Breeding season",
+        lower_limit={"value_m": 0, "reference": "AGL"},
+        upper_limit={"value_m": 120, "reference": "AGL"},
+        schedule=[{"startDateTime": None, "endDateTime": "2020-06-01T00:00:00Z", "schedule": []}],
+    )
+    try:
+        place = opens_at(curator, RIVER, 14)
+        curator.mouse.move(place["x"] + 20, place["y"] + 20)
+        tip = curator.get_by_role("tooltip")
+        expect(tip).to_contain_text("Heron colony")
+        expect(tip).to_contain_text(re.compile(r"From ground to 120\sm above ground"))
+        expect(tip).to_contain_text("until")
+        expect(tip).to_contain_text("Not in force now")
+        expect(tip).to_contain_text("Breeding season")
+        expect(tip).to_contain_text("Drawn here, changed now")
+        expect(tip).to_contain_text("Plans count it at all heights and times.")
+        expect(tip.locator("svg").first).to_be_visible()
+        curator.keyboard.press("Escape")
+        expect(tip).to_be_hidden()
+
+        legend = curator.get_by_role("list", name="Legend")
+        expect(legend).to_contain_text("No-fly zone, not in force now")
+        curator.get_by_role("button", name="Layers").click()
+        curator.get_by_label("Also zones not in force now").uncheck()
+        expect(legend).not_to_contain_text("not in force now")
+        curator.mouse.move(place["x"] + 24, place["y"] + 24)
+        expect(tip).to_be_hidden()
+    finally:
+        removes_zone(curator, number)
+
+
+def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(operator: Page) -> None:
+    line = asks(operator, "/assets?kind=line&text=138&limit=1")["features"][0]
+    look_at(operator, line["properties"]["centre"], 13)
+    legend = operator.get_by_role("list", name="Legend")
+    expect(legend).to_contain_text("100 to 199 kV")
+    operator.get_by_role("button", name="Layers").click()
+    menu = operator.get_by_role("group", name="Layers")
+    menu.get_by_label("100 to 199 kV").uncheck()
+    expect(legend).not_to_contain_text("100 to 199 kV")
+    expect(operator.get_by_role("button", name="Layers: some are hidden")).to_be_visible()
+    menu.get_by_label("Railways").uncheck()
+    expect(legend).not_to_contain_text("Railway")
+    menu.get_by_role("button", name="Show everything").click()
+    expect(legend).to_contain_text("100 to 199 kV")
+    expect(operator.get_by_role("button", name="Layers", exact=True)).to_be_visible()
+    expect(menu.get_by_label("Railways")).to_be_checked()
+    operator.keyboard.press("Escape")
+    expect(menu).to_have_count(0)
+
+
+def test_distances_are_measured_with_the_mouse_and_nothing_is_picked_meanwhile(operator: Page) -> None:
+    place = look_at(operator, RIVER, 14)
+    operator.get_by_role("button", name="Measure").click()
+    banner = operator.get_by_role("group", name="Measuring")
+    expect(banner).to_contain_text("Click where to measure from")
+    a_kilometre = operator.evaluate(
+        "([x, y]) => { const map = document.getElementById('map'); return map.project([x + 0.01176, y]).x - map.project([x, y]).x; }", RIVER
+    )
+    operator.mouse.click(place["x"], place["y"])
+    operator.mouse.click(place["x"] + a_kilometre, place["y"])
+    expect(banner).to_contain_text(re.compile(r"1\.0\skm · 090°"))
+    operator.mouse.click(place["x"] + a_kilometre, place["y"] - a_kilometre)
+    expect(banner).to_contain_text(re.compile(r"2\.0\skm · last leg 1\.0\skm · 000° · area 0\.50\skm²"))
+    banner.get_by_role("button", name="Remove the last point").click()
+    expect(banner).to_contain_text(re.compile(r"1\.0\skm · 090°"))
+    operator.keyboard.press("Escape")
+    expect(banner).to_be_hidden()
+    assert targets(operator) == []
+
+
+def test_distances_are_measured_with_the_keyboard_alone(operator: Page) -> None:
+    look_at(operator, RIVER, 14)
+    operator.keyboard.press("m")
+    banner = operator.get_by_role("group", name="Measuring")
+    operator.get_by_role("region", name="Map").locator("canvas").focus()
+    operator.keyboard.press("Enter")
+    expect(banner).to_contain_text("Click the next point.")
+    operator.evaluate("delete document.getElementById('map').dataset.idle")
+    operator.keyboard.press("ArrowRight")
+    operator.locator("#map[data-idle]").wait_for(state="attached")
+    operator.keyboard.press("Enter")
+    expect(banner).to_contain_text(re.compile(r"\d\s(km|m) · 090°"))
+    operator.keyboard.press("Backspace")
+    expect(banner).to_contain_text("Click the next point.")
+    operator.keyboard.press("m")
+    expect(banner).to_be_hidden()
+
+
+def test_the_coordinates_of_a_place_are_copied_latitude_first(operator: Page) -> None:
+    operator.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    place = look_at(operator, RIVER, 14)
+    operator.mouse.click(place["x"], place["y"], button="right")
+    operator.get_by_role("button", name="Copy the coordinates").click()
+    copied = [float(part) for part in operator.evaluate("navigator.clipboard.readText()").split(", ")]
+    assert copied == pytest.approx([RIVER[1], RIVER[0]], abs=1e-4)
+    expect(operator.get_by_text(re.compile("^Copied: 39.9"))).to_be_visible()
+
+
+@pytest.mark.parametrize("words", ["39.9612, -82.9988", "39°57'40.3\"N 82°59'55.7\"W"])
+def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -> None:
+    find = operator.get_by_role("combobox")
+    find.fill(words)
+    expect(operator.get_by_role("option").first).to_contain_text("39.9612, −82.9988")
+    find.press("Enter")
+    expect(operator).to_have_url(re.compile(r"#map=[\d.]+/39\.961\d*/-82\.998\d*$"))
+
+
+def test_a_zone_is_found_by_name_and_gone_to(operator: Page) -> None:
+    operator.get_by_role("combobox").fill("Greenlawn")
+    operator.get_by_role("option", name="Greenlawn heliport").click()
+    expect(operator).to_have_url(re.compile(r"#map=1[2-6][\d.]*/39\.9[45]\d*/-83\.0[12]\d*$"))
+
+
+def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor, operator: Page) -> None:
+    def away(route: Route) -> None:
+        route.abort()
+
+    operator.route("**/api/v1/tiles/**", away)
+    look_at(operator, [-82.9, 39.99], 15)
+    notice = operator.get_by_text("The map cannot be read.")
+    expect(notice).to_be_visible()
+    operator.unroute("**/api/v1/tiles/**", away)
+    operator.get_by_role("button", name="Try now").click()
+    expect(notice).to_be_hidden()
+    heard = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint and not complaint.startswith("map: ")]
+    assert heard == []
+    visitor.complaints.clear()
+
+
+def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal", size=(390, 844), touch=True)
+    page.goto("/missions/new")
+    wait_for_map(page)
+    place = look_at(page, [-83.02, 39.9495], 14)
+    page.touchscreen.tap(place["x"], place["y"])
+    expect(page.get_by_role("tooltip")).to_contain_text("Greenlawn heliport")
