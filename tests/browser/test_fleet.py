@@ -32,8 +32,9 @@ def writes(page: Page, method: str, path: str, body: Any = None) -> Any:
     return answer.json() if answer.status != 204 else None
 
 
-def is_saved(page: Page) -> None:
-    expect(page.get_by_text("Saved.")).to_be_visible(timeout=20_000)
+def is_saved(page: Page, name: str) -> None:
+    expect(page.get_by_text(f"{name} is saved.")).to_be_visible(timeout=20_000)
+    expect(details(page).get_by_role("heading", name=name, exact=True)).to_be_visible(timeout=20_000)
 
 
 def forgives(visitor: Visitor, *words: str) -> None:
@@ -50,7 +51,7 @@ def adds(page: Page, button: str, fields: dict[str, str]) -> None:
     for label, value in fields.items():
         page.get_by_label(label, exact=True).fill(value)
     page.get_by_role("button", name="Save", exact=True).click()
-    is_saved(page)
+    is_saved(page, fields["Name"])
 
 
 def details(page: Page) -> Any:
@@ -110,7 +111,7 @@ def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) ->
     typed = [float(page.get_by_label(name).input_value()) for name in ("Longitude", "Latitude")]
     assert typed[0] < clicked[0] - 0.002
     page.get_by_role("button", name="Save", exact=True).click()
-    is_saved(page)
+    is_saved(page, "Plover")
     assert asks(page, f"/uavs/{uav}")["geometry"]["coordinates"] == pytest.approx(typed, abs=1e-6)
 
 
@@ -182,7 +183,7 @@ def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None
     expect(details(page).get_by_text("Changed by rory in the meantime.")).to_be_visible()
     expect(details(page).get_by_text("→ 40")).to_be_visible()
     page.get_by_role("button", name="Store mine over it").click()
-    is_saved(page)
+    is_saved(page, "Godwit")
     facts = asks(page, f"/uavs/{uav}")["properties"]
     assert (facts["serial_number"], facts["battery_percent"]) == ("SN-1", 40.0)
     forgives(visitor, "412")
@@ -202,7 +203,7 @@ def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_wa
     page.get_by_role("button", name="Undo").click()
     expect(page.get_by_label("Serial number")).to_have_value("SN-2")
     page.get_by_role("button", name="Save", exact=True).click()
-    is_saved(page)
+    is_saved(page, "Curlew")
     assert asks(page, f"/uavs/{uav}")["properties"]["serial_number"] == "SN-2"
     forgives(visitor, "ERR_INTERNET_DISCONNECTED")
 

@@ -17,7 +17,6 @@ const stated = (body) => Object.fromEntries(Object.entries(body).filter(([, valu
 /**
  * context: { store, page, panel, isWide(), open(), map(): the map or null, showMap(): a promise, turnTo(tab), choose(tab, id), close(), load(),
  * moment(): another number once something else was begun }.
- * `leave()` is false while the edit is being stored.
  */
 export function createEditing(context) {
   const { store } = context;
@@ -62,29 +61,24 @@ export function createEditing(context) {
     context.map()?.place(null);
   }
 
-  /** Ends the edit, with a way back where something was changed. */
+  async function reopen({ tab, row }, kept) {
+    context.turnTo(tab);
+    store.update({ chosen: row && { tab, id: row.id } });
+    await start(row, kept);
+  }
+
+  /** Ends the edit, with a way back where something was changed. What is just being stored is stored all the same. */
   function leave() {
-    if (!edit) return true;
-    if (edit.isSaving) return false;
-    const { tab, row, form, etag } = edit;
-    const kept = isChanged() && { body: form.body(), etag };
+    if (!edit) return;
+    const left = edit;
+    const kept = isChanged() && !left.isSaving && { body: left.form.body(), etag: left.etag };
     end();
-    if (kept) {
-      toast(t("Your edit is dropped."), {
-        label: t("Undo"),
-        async act() {
-          context.turnTo(tab);
-          store.update({ chosen: row && { tab, id: row.id } });
-          await start(row, kept);
-        },
-      });
-    }
-    return true;
+    if (kept) toast(t("Your edit is dropped."), { label: t("Undo"), act: () => reopen(left, kept) });
   }
 
   function cancel() {
     const { row, tab } = edit;
-    if (!leave()) return;
+    leave();
     if (row) context.choose(tab, row.id);
     else context.close();
   }
@@ -98,25 +92,30 @@ export function createEditing(context) {
 
   async function save() {
     if (edit.isSaving) return;
-    const { tab, row, form, etag, key } = edit;
+    const mine = edit;
+    const { tab, row, form, etag, key } = mine;
     const kind = KINDS[tab];
     if (row && !isChanged()) {
       cancel();
       return;
     }
+    const body = form.body();
     form.clear();
     form.busy(true);
-    edit.isSaving = true;
+    mine.isSaving = true;
     try {
-      const { data } = row ? await patch(`${kind.path}/${row.id}`, changes(), etag) : await post(kind.path, stated(form.body()), { headers: { "Idempotency-Key": key } });
-      end();
-      toast(t("Saved."));
-      await showAsStored(tab, data.id);
+      const { data } = row ? await patch(`${kind.path}/${row.id}`, changes(), etag) : await post(kind.path, stated(body), { headers: { "Idempotency-Key": key } });
+      toast(t("{name} is saved.", data.properties ?? data));
+      if (edit === mine) {
+        end();
+        await showAsStored(tab, data.id);
+      } else await context.load();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      edit.isSaving = false;
-      if (!error.isAway) edit.key = newKey(); // an answer that was lost is asked for again under the same key
-      if (error.status === 412 && error.details?.current) settle(error.details, kind);
+      mine.isSaving = false;
+      if (!error.isAway) mine.key = newKey(); // an answer that was lost is asked for again under the same key
+      if (edit !== mine) toast(t("Not saved: {message}", error), { label: t("Look"), act: () => reopen(mine, { body, etag }) });
+      else if (error.status === 412 && error.details?.current) settle(error.details, kind);
       else form.tell(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message, error.details);
     } finally {
       form.busy(false);

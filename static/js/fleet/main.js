@@ -144,7 +144,7 @@ function open() {
 }
 
 async function choose(tab, id, { keepFocus = false } = {}) {
-  if (!editing.leave()) return;
+  editing.leave();
   const mine = ++choosing;
   try {
     const { data } = await get(`${KINDS[tab].path}/${id}`);
@@ -169,7 +169,7 @@ async function choose(tab, id, { keepFocus = false } = {}) {
 }
 
 function close() {
-  if (!editing.leave()) return;
+  editing.leave();
   choosing += 1;
   const id = store.state.chosen?.id;
   delete byId("fleet-body").dataset.open;
@@ -182,7 +182,7 @@ function close() {
 }
 
 function startNew() {
-  if (!editing.leave()) return;
+  editing.leave();
   store.update({ chosen: null });
   editing.start(null);
 }

@@ -91,4 +91,6 @@ export default {
   "{name} is in maintenance.": "{name} ist in Wartung.",
   "{name} is in service.": "{name} ist in Betrieb.",
   "{name} is retired.": "{name} ist ausgemustert.",
+  "{name} is saved.": "{name} ist gespeichert.",
+  "Not saved: {message}": "Nicht gespeichert: {message}",
 };
