@@ -1,8 +1,11 @@
 """Shapes of the workspace's API."""
 
+from typing import Any
+
 from rest_framework import serializers
 
 from workspace.models import Job, JobState
+from workspace.stored_words import in_words
 
 
 class ErrorDetailSerializer(serializers.Serializer):
@@ -26,6 +29,13 @@ class JobSerializer(serializers.ModelSerializer):
         model = Job
         fields = ["id", "task", "state", "progress", "message", "result", "error", "created_at", "started_at", "finished_at"]
         read_only_fields = fields
+
+    def to_representation(self, instance: Job) -> dict[str, Any]:
+        shown = super().to_representation(instance)
+        shown["message"] = in_words(instance.message)
+        if instance.error:
+            shown["error"] = instance.error | {"message": in_words(str(instance.error.get("message", "")))}
+        return shown
 
 
 class ListedJobSerializer(JobSerializer):

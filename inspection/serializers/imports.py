@@ -9,6 +9,7 @@ from inspection.models import ChangeAction, ImportKind, ImportProposal, Proposal
 from inspection.serializers.features import GeometrySerializer
 from inspection.services.uploads import PART_BYTES
 from workspace.models import JobState, User
+from workspace.stored_words import in_words
 
 
 class UploadInputSerializer(serializers.Serializer):
@@ -130,10 +131,10 @@ def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[s
         "size_bytes": proposal.upload and proposal.upload.size_bytes,
         "parameters": proposal.parameters,
         "provenance": proposal.provenance,
-        "faults": proposal.faults,
+        "faults": [fault | {"message": in_words(fault["message"])} for fault in proposal.faults],
         "summary": summary,
         "difference": proposal.difference,
-        "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": job.message},
+        "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": in_words(job.message)},
         "created_by": _name(proposal.created_by),
         "created_at": proposal.created_at,
         "decided_by": _name(proposal.decided_by),

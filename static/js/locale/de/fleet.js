@@ -51,6 +51,7 @@ export default {
   "No UAV is like that": "Kein UAV ist so",
   "No UAVs yet": "Noch keine UAVs",
   "None: it cannot connect this way.": "Keiner: So kann es sich nicht verbinden.",
+  "Not saved: {message}": "Nicht gespeichert: {message}",
   "not used yet": "noch nicht benutzt",
   "Nothing matches “{text}”": "Nichts passt zu „{text}“",
   "On one battery; empty: not limited.": "Mit einem Akku; leer: nicht begrenzt.",
@@ -92,5 +93,4 @@ export default {
   "{name} is in service.": "{name} ist in Betrieb.",
   "{name} is retired.": "{name} ist ausgemustert.",
   "{name} is saved.": "{name} ist gespeichert.",
-  "Not saved: {message}": "Nicht gespeichert: {message}",
 };

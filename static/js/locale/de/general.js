@@ -126,7 +126,6 @@ export default {
   "Return to start": "Zum Start zurück",
   "Revoke": "Widerrufen",
   "Save": "Speichern",
-  "Saved.": "Gespeichert.",
   "Saving…": "Wird gespeichert…",
   "See the place": "Die Stelle zeigen",
   "Set": "Setzen",

@@ -66,6 +66,7 @@ export default {
   "Remove these hours": "Diese Stunden entfernen",
   "Restriction not stated": "Beschränkung nicht angegeben",
   "Sat": "Sa",
+  "Saved.": "Gespeichert.",
   "See it": "Ansehen",
   "See the difference": "Den Unterschied zeigen",
   "Sets and sources": "Sätze und Quellen",

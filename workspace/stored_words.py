@@ -1,0 +1,77 @@
+"""What workers have stored in English, in the language of whoever reads it: they do not know who that will be."""
+
+import re
+
+from django.utils.translation import gettext as _
+from django.utils.translation import gettext_noop
+
+# A stored sentence is found by the one that it was made from; what was put in is put in again.
+TEMPLATES = (
+    gettext_noop("Looking for a first plan"),
+    gettext_noop("Looking up the targets"),
+    gettext_noop("Measuring the ways between the targets"),
+    gettext_noop("Working out heights and checking every leg"),
+    gettext_noop("Planned"),
+    gettext_noop("Stopped; the best plan until then is kept"),
+    gettext_noop("Cancelled"),
+    gettext_noop("Refused"),
+    gettext_noop("Applied"),
+    gettext_noop("writing"),
+    gettext_noop("comparing"),
+    gettext_noop("Comparing"),
+    gettext_noop("Fetching"),
+    gettext_noop("Waiting to be fetched"),
+    gettext_noop("asking Overpass"),
+    gettext_noop("%(size)s MiB from Overpass"),
+    gettext_noop("Overpass is busy; next try in %(seconds)s s"),
+    gettext_noop("writing the heights"),
+    gettext_noop("reading the heights"),
+    gettext_noop("reading the rows"),
+    gettext_noop("reading the rows, row %(row)s"),
+    gettext_noop("writing the assets"),
+    gettext_noop("reading the zones"),
+    gettext_noop("writing the zones"),
+    gettext_noop("reading the ground"),
+    gettext_noop("relations"),
+    gettext_noop("ways"),
+    gettext_noop("way nodes"),
+    gettext_noop("towers and poles"),
+    gettext_noop("geometry"),
+    gettext_noop("read"),
+    gettext_noop("looking the file over, %(size)s MiB"),
+    gettext_noop("The subscription is no longer there."),
+    gettext_noop("The ground has changed since: look at the difference again."),
+    gettext_noop("The mission was changed while its plan was being made. Plan it again."),
+    gettext_noop("Only drafts and planned missions can be planned."),
+    gettext_noop("A mission needs at least one UAV and one target."),
+    gettext_noop("No plan within %(minutes)s min. Split the mission."),
+    gettext_noop("The planner failed; the error is in the log."),
+    gettext_noop("The worker was lost %(times)s times; the job is given up."),
+    gettext_noop("The file is empty."),
+    gettext_noop("The file cannot be read: %(error)s"),
+    gettext_noop("This is neither OSM XML, OSM PBF nor Overpass JSON."),
+    gettext_noop("The PBF is cut off or damaged at byte %(byte)s."),
+    gettext_noop("The file has no power lines, towers, railways or bridges."),
+    gettext_noop("This is neither a GeoTIFF nor an HGT file, zipped or not."),
+    gettext_noop("This is no JSON: %(error)s"),
+    gettext_noop("The text is not UTF-8: byte %(byte)s cannot be read."),
+    gettext_noop("The file could not be read."),
+    gettext_noop("polygon is not closed"),
+    gettext_noop("the border crosses itself"),
+)
+
+
+def _pattern(template: str) -> re.Pattern[str]:
+    parts = re.split(r"%\((\w+)\)s", template)
+    return re.compile("".join(f"(?P<{part}>.+)" if index % 2 else re.escape(part) for index, part in enumerate(parts)), re.S)
+
+
+_PATTERNS = {template: _pattern(template) for template in TEMPLATES}
+
+
+def in_words(stored: str) -> str:
+    """The same sentence in the reader's language; as it is where nobody has foreseen it."""
+    for template, pattern in _PATTERNS.items():
+        if match := pattern.fullmatch(stored):
+            return _(template) % match.groupdict() if match.groupdict() else _(template)
+    return stored
