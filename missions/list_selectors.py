@@ -1,5 +1,6 @@
 """Reads for the list of missions: what it finds, in which order, and the small drawing of each."""
 
+import contextlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from django.contrib.gis.geos import GEOSGeometry, Polygon
 from django.core.cache import cache
 from django.db.models import CharField, Count, Exists, F, FloatField, Func, IntegerField, Max, OuterRef, Q, QuerySet, Subquery, Value
 from django.db.models.functions import Coalesce, Lower
+from redis.exceptions import RedisError
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_revision
@@ -25,6 +27,7 @@ LEAST_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
 MOST_LINES = 60
 MOST_PLACES = 60
 KEPT_S = 7 * 24 * 3600
+CACHE_AWAY = (RedisError, OSError)
 NOT_PLANNED = -1.0  # what was not planned stands below what was
 
 LAST_CHANGED_FIRST = "-changed"
@@ -153,7 +156,9 @@ def surroundings(missions: Sequence[Mission]) -> dict[UUID, dict[str, Any]]:
     """
     ground = ground_revision()
     keys = {mission.pk: f"mission-sketch:{mission.pk}:{mission.revision}:{ground}" for mission in missions}
-    kept = cache.get_many(keys.values())
+    kept: dict[str, Any] = {}
+    with contextlib.suppress(*CACHE_AWAY):
+        kept = cache.get_many(keys.values())
     found = {pk: kept[key] for pk, key in keys.items() if key in kept}
     missing = [mission for mission in missions if mission.pk not in found]
     places = _places_of([mission.pk for mission in missing])
@@ -161,7 +166,8 @@ def surroundings(missions: Sequence[Mission]) -> dict[UUID, dict[str, Any]]:
         at = places.get(mission.pk, [])
         routes = [place for line in sketch(mission) for place in line]
         found[mission.pk] = {"places": at[:MOST_PLACES], "lines": _lines_in(_box_of([*at, *routes]))}
-    cache.set_many({keys[mission.pk]: found[mission.pk] for mission in missing}, KEPT_S)
+    with contextlib.suppress(*CACHE_AWAY):
+        cache.set_many({keys[mission.pk]: found[mission.pk] for mission in missing}, KEPT_S)
     return found
 
 

@@ -9,6 +9,7 @@ from django.test import Client
 
 from inspection.services import mark_ground_changed
 from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
+from missions.presence import MOST_PAGES
 from missions.selectors import mission_of_organisation
 from missions.services import duplicate_mission
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
@@ -277,3 +278,19 @@ def test_the_history_names_what_came_and_went(here: World, client: Client) -> No
     assert (entry["targets"], entry["targets_added"], entry["targets_removed"]) == (1, 0, 1)
     assert entry["targets_names"] == {"added": [], "removed": [mission["targets"][0]["label"]]}
     assert entry["uavs_names"]["added"] == ["Kite"]
+
+
+def test_one_user_with_ever_new_pages_fills_no_memory(here: World, client: Client) -> None:
+    mission = created(client, here, "Shared", plan=False)["id"]
+    for number in range(MOST_PAGES + 3):
+        post(client, f"missions/{mission}/presence", {"editor": f"page-{number}"})
+    kept = cache.get(f"mission-open:{mission}")
+    assert len(kept) == MOST_PAGES
+    assert any(page.endswith(f"page-{MOST_PAGES + 2}") for page in kept)
+
+
+def test_without_the_cache_missions_are_listed_and_nobody_is_seen(here: World, client: Client, settings: Any) -> None:
+    mission = created(client, here, "North")["id"]
+    settings.CACHES = {"default": {"BACKEND": "django.core.cache.backends.redis.RedisCache", "LOCATION": "unix:///nowhere/redis.sock"}}
+    assert client.get("/api/v1/missions").json()["results"][0]["lines"] != []
+    assert post(client, f"missions/{mission}/presence", {"editor": "one"}).json()["others"] == []
