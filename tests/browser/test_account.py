@@ -1,7 +1,6 @@
 """One's own account: preferences that hold in every browser, the password, tokens, sessions."""
 
 import re
-from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -9,7 +8,6 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import PASSWORD, Visitor
 
 pytestmark = pytest.mark.browser
-PICTURES = [("light", (1440, 900)), ("dark", (1440, 900)), ("light", (390, 844)), ("dark", (390, 844))]
 
 
 def account(page: Page) -> Page:
@@ -148,11 +146,3 @@ def test_signing_out_everywhere_else_leaves_this_browser(visitor: Visitor) -> No
     elsewhere.goto("/account")
     expect(elsewhere.get_by_role("heading", name="Sign in")).to_be_visible()
     account(page)
-
-
-@pytest.mark.parametrize(("theme", "size"), PICTURES)
-def test_pictures_of_the_account(visitor: Visitor, picture: Callable[[Page, str], None], theme: str, size: tuple[int, int]) -> None:
-    page = account(visitor.signs_in("opal", theme=theme, size=size, touch=size[0] < 720))
-    expect(page.get_by_role("heading", name="Account", exact=True)).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-    picture(page, f"account-{theme}-{'desk' if size[0] > 720 else 'phone'}")

@@ -1,7 +1,9 @@
 """Who works here: invited, found, given roles, kept out; and who came to the door."""
 
+import os
 import re
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
@@ -10,7 +12,12 @@ from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
-PICTURES = [("light", (1440, 900)), ("dark", (1440, 900)), ("light", (390, 844)), ("dark", (390, 844))]
+VIEWS: dict[str, dict[str, Any]] = {
+    "light": {"theme": "light", "size": (1440, 900)},
+    "dark": {"theme": "dark", "size": (1440, 900)},
+    "phone-light": {"theme": "light", "size": (390, 844), "touch": True},
+    "phone-dark": {"theme": "dark", "size": (390, 844), "touch": True},
+}
 
 
 def administration(page: Page, tab: str = "") -> Page:
@@ -151,8 +158,11 @@ def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
     page.get_by_role("radio", name="Sign-ins").check()
     expect(page).to_have_url(re.compile(r"\?tab=sign-ins$"))
     table = page.get_by_role("table", name="Sign-ins, newest first")
+    person = page.get_by_role("searchbox", name="Find sign-ins of a person")
+    person.fill("ada")
     expect(table.get_by_role("row").nth(1)).to_contain_text("ada")
     expect(table.get_by_role("row").nth(1)).to_contain_text("127.0.0.1")
+    person.fill("")
     page.get_by_label("What happened").select_option("Wrong name or password")
     expect(table.get_by_role("row").nth(1)).to_contain_text("a name that nobody has")
     expect(page.get_by_text("nobody-at-all")).to_have_count(0)
@@ -172,20 +182,19 @@ def test_only_administrators_find_the_administration(visitor: Visitor) -> None:
     visitor.complaints[:] = [words for words in visitor.complaints if "403" not in words]
 
 
-@pytest.mark.parametrize(("theme", "size"), PICTURES)
-def test_pictures_of_the_administration(visitor: Visitor, picture: Callable[[Page, str], None], theme: str, size: tuple[int, int]) -> None:
-    page = administration(visitor.signs_in("ada", theme=theme, size=size, touch=size[0] < 720))
-    kind = f"{theme}-{'desk' if size[0] > 720 else 'phone'}"
-    for tab in ("people", "invitations", "sign-ins"):
+@pytest.mark.parametrize("view", VIEWS if os.environ.get("SPANWISE_SCREENSHOTS") == "1" else ["light", "phone-dark"])
+def test_axe_finds_nothing_serious_on_any_tab_or_behind_a_link(visitor: Visitor, picture: Callable[[Page, str], None], view: str) -> None:
+    page = visitor.signs_in("ada", **VIEWS[view])
+    for tab in ("invitations", "sign-ins"):
         administration(page, tab)
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), tab
         assert faults(page) == [], tab
-        picture(page, f"administration-{tab}-{kind}")
+        picture(page, f"page-administration-{tab}-{view}")
     page.get_by_role("button", name="Invite somebody").click()
     assert faults(page) == []
     page.get_by_role("dialog").get_by_role("button", name="Make the link").click()
     link = page.get_by_role("textbox", name="Link of the invitation").text_content() or ""
     assert faults(page) == []
-    guest = visitor.opens(link, theme=theme, size=size, touch=size[0] < 720)
+    guest = visitor.opens(link, **VIEWS[view])
     assert faults(guest) == []
-    picture(guest, f"invitation-{kind}")
+    picture(guest, f"page-invitation-{view}")
