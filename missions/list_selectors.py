@@ -21,6 +21,7 @@ from missions.models import InspectionTarget, Mission, MissionState, MissionUav,
 from workspace.models import Organisation
 
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
+SKETCH_STEPS = 400  # across the drawing: what is finer than one is not seen
 SKETCH_SHAPE = 2.0  # width by height of the drawing, on the ground
 SKETCH_ROOM = 1.35  # the margins of the drawing show the surroundings
 LEAST_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
@@ -199,9 +200,11 @@ def _box_of(places: list[list[float]]) -> Polygon | None:
 def _lines_in(box: Polygon | None) -> list[list[list[float]]]:
     if box is None:
         return []
+    west, _, east, _ = box.extent
+    tolerance_deg = max(SKETCH_TOLERANCE_DEG, (east - west) / SKETCH_STEPS)
     clipped = Func(
         Func(F("geometry"), Value(box.wkt), function="ST_ClipByBox2D", template="%(function)s(%(expressions)s::geometry)"),
-        Value(SKETCH_TOLERANCE_DEG),
+        Value(tolerance_deg),
         function="ST_Simplify",
         output_field=GeometryField(srid=4326),
     )

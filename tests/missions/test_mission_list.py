@@ -12,6 +12,7 @@ from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
 from missions.presence import MOST_PAGES
 from missions.selectors import mission_of_organisation
 from missions.services import duplicate_mission
+from tests.inspection.ground import line
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world, zone_around
 from tests.workspace.people import client_of, somebody
@@ -144,6 +145,14 @@ def test_the_drawing_shows_lines_round_the_routes_and_places_of_a_draft(here: Wo
     assert row["places"] == [[10.0, 56.0], [10.008, 56.012]]
     assert len(row["lines"]) == 2  # the power line and the railway
     assert all(9.9 < lon < 10.1 and 55.9 < lat < 56.1 for line in row["lines"] for lon, lat in line)
+
+
+def test_the_drawing_of_a_wide_mission_is_no_finer_than_it_is_seen(here: World, client: Client) -> None:
+    winding = line(*[(10.0 + 0.001 * step, 56.0 + 0.002 * (step % 2)) for step in range(2_000)])
+    created(client, here, "Wide", {"position": [10.0, 56.0]}, {"position": [12.0, 56.0]}, plan=False)
+    drawn = client.get("/api/v1/missions").json()["results"][0]["lines"]
+    assert winding.geometry.num_points == 2_000
+    assert sum(map(len, drawn)) < 100
 
 
 def test_a_list_seen_again_asks_for_no_drawing_again(here: World, client: Client, django_assert_max_num_queries: Any) -> None:
