@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_playwright
@@ -32,7 +33,10 @@ for name, role in {USERS!r}.items():
 
 @dataclass(frozen=True)
 class Site:
+    """Where it is, and the cookies of those who have come in: only the first of their tests goes through the door."""
+
     address: str
+    cookies: dict[str, list[Any]] = field(default_factory=dict)
 
 
 def _free_port() -> int:
@@ -83,7 +87,15 @@ class Visitor:
     complaints: list[str] = field(default_factory=list)
     requests_outside: list[str] = field(default_factory=list)
 
-    def opens(self, path: str = "/sign-in", *, size: tuple[int, int] = (1440, 900), theme: str = "light", touch: bool = False) -> Page:
+    def opens(
+        self,
+        path: str = "/sign-in",
+        *,
+        size: tuple[int, int] = (1440, 900),
+        theme: str = "light",
+        touch: bool = False,
+        cookies: list[Any] | None = None,
+    ) -> Page:
         context = self.browser.new_context(
             base_url=self.site.address,
             viewport={"width": size[0], "height": size[1]},
@@ -91,6 +103,8 @@ class Visitor:
             has_touch=touch,
             reduced_motion="reduce",
         )
+        if cookies:
+            context.add_cookies(cookies)
         page = context.new_page()
         page.set_default_timeout(20_000)
         page.on("console", self._heard)
@@ -100,12 +114,15 @@ class Visitor:
         return page
 
     def signs_in(self, name: str, **how: object) -> Page:
-        page = self.opens(**how)  # type: ignore[arg-type]
-        page.get_by_label("User name").fill(name)
-        page.get_by_label("Password").fill(PASSWORD)
-        page.get_by_role("button", name="Sign in").click()
+        """The page of missions; without the door where it has been passed before and nobody has closed the session since."""
+        page = self.opens("/", cookies=self.site.cookies.get(name), **how)  # type: ignore[arg-type]
+        if page.locator("form[action$='sign-in'], input[name=password]").count():
+            page.get_by_label("User name").fill(name)
+            page.get_by_label("Password").fill(PASSWORD)
+            page.get_by_role("button", name="Sign in").click()
         expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible(timeout=20_000)
         page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to keys
+        self.site.cookies[name] = page.context.cookies()
         return page
 
     def _heard(self, message: ConsoleMessage) -> None:
