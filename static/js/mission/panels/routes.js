@@ -98,9 +98,10 @@ export function mountRoutes(store, { grounds, showPoint }) {
     compare.hidden = !last;
     compare.setAttribute("aria-pressed", String(Boolean(before)));
     strips.clear();
-    const focused = list.contains(document.activeElement) ? [...list.children].findIndex((item) => item.contains(document.activeElement)) : -1;
+    const buttons = () => [...list.querySelectorAll("button")];
+    const focused = buttons().indexOf(document.activeElement);
     list.replaceChildren(...routesOf(state.plan).map((route) => row(route, state, before)));
-    if (focused >= 0) list.children[focused]?.querySelector("button:not(:disabled)")?.focus({ preventScroll: true });
+    if (focused >= 0) buttons()[focused]?.focus({ preventScroll: true });
     byId("route-axis").replaceChildren(h("div", {}, stripAxis(longest(state, before) || 1, width_px)));
     mark(state);
   }
@@ -138,7 +139,10 @@ export function mountRoutes(store, { grounds, showPoint }) {
   }
 
   byId("compare-plans").addEventListener("click", () => store.update({ why: store.state.why?.compare ? null : { compare: true } }));
-  store.listen(["plan", "selection", "why", "lastPlan", "mission"], draw);
+  store.listen(["plan", "selection", "lastPlan", "mission"], draw);
+  store.listen(["why"], (state) => {
+    if (Boolean(state.why?.compare) !== dock.classList.contains("comparing")) draw(state);
+  });
   store.listen(["plan"], (state) => {
     lookForZones(state);
     dock.closest(".side-scroll")?.scrollTo({ top: 0 }); // on a phone the result stands first

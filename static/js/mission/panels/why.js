@@ -22,6 +22,7 @@ export function mountWhy(store, actions, { canPlan }) {
   const panel = byId("why");
   const answers = new WeakMap(); // result of a plan → Map of question → promise
   let opener = null;
+  let openedFrom = ""; // the row of it: rows are drawn anew
   let shown = null; // the question that was drawn last
 
   function ask(plan, path, more) {
@@ -62,7 +63,10 @@ export function mountWhy(store, actions, { canPlan }) {
       if (!wasHidden) giveBack();
       return;
     }
-    if (why !== shown) opener = document.activeElement;
+    if (why !== shown) {
+      opener = document.activeElement;
+      openedFrom = opener?.closest(".route")?.dataset.sequence ?? "";
+    }
     if (why.compare) {
       const last = lastPlanOf(state);
       if (last) put(t("Against the last plan"), ...comparison(plan, last));
@@ -86,7 +90,9 @@ export function mountWhy(store, actions, { canPlan }) {
 
   /** Focus goes back to what opened it; a row may have been drawn anew. */
   function giveBack() {
+    const row = document.querySelector(`.route[data-sequence="${openedFrom}"] .why-button`);
     if (opener?.isConnected) opener.focus();
+    else if (row) row.focus();
     else if (!document.activeElement || document.activeElement === document.body) byId("compare-plans").focus();
     opener = null;
   }

@@ -1,0 +1,223 @@
+"""Planning: whom to send, both ways of planning side by side, the flight from the side, why, and against the last plan."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import asks, place_of, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+FAR_AWAY = [-82.5, 39.6]
+WEST, EAST = [-83.045, 39.935], [-82.945, 39.945]
+
+
+def sends(page: Page, path: str, body: dict[str, Any]) -> Any:
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    answer = page.request.post(f"/api/v1/{path}", data=body, headers={"X-CSRFToken": token})
+    assert answer.ok, answer.text()
+    return answer.json()
+
+
+def opens_mission(page: Page, name: str, *, targets: int = 8, more: list[dict[str, Any]] | None = None) -> None:
+    """A planned mission with two UAVs that start apart, and towers around both."""
+    towers = asks(page, "/assets?kind=tower&bbox=-83.12,39.83,-82.86,40.0&limit=200")["features"]
+    picked = towers[:: max(1, len(towers) // targets)][:targets]
+    uavs = [{"name": "Heron", "position": WEST}, {"name": "Kite", "position": EAST}]
+    wanted = [{"asset": tower["id"]} for tower in picked] + (more or [])
+    options = {"objective": "makespan", "return_to_start": True, "plan": targets <= 12}
+    mission = sends(page, "missions", {"name": name, "uavs": uavs, "targets": wanted, **options})
+    page.goto(f"/missions/{mission['id']}")
+    wait_for_map(page)
+
+
+def objective(page: Page, name: str) -> Any:
+    return page.get_by_role("radio", name=name)
+
+
+def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Two ways", more=[{"position": FAR_AWAY}])
+    facts = page.locator("#plan-facts")
+    even, least = (
+        page.locator("#objective label").filter(has_text="Even routes"),
+        page.locator("#objective label").filter(has_text="Fly least"),
+    )
+    expect(even).to_contain_text(re.compile(r"\d+\smin, \d+\.\d\skm"))
+    expect(least).to_contain_text(re.compile(r"\d+\smin, \d+\.\d\skm"))
+    figures = {name: (label.text_content() or "").split(", ")[1] for name, label in (("even", even), ("least", least))}
+    expect(facts).to_contain_text(figures["even"])
+
+    objective(page, "Fly least").focus()
+    page.keyboard.press("Space")
+    expect(facts).to_contain_text(figures["least"])
+    expect(facts).not_to_contain_text("for the selection before")
+    page.keyboard.press("Control+z")
+    expect(objective(page, "Even routes")).to_be_checked()
+    expect(facts).to_contain_text(figures["even"])
+
+
+def test_a_strip_the_profile_and_the_map_follow_one_pointer(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "From the side")
+    profile = page.locator("#route-profile")
+    drawing = profile.get_by_role("img")
+    expect(drawing).to_have_attribute("aria-label", re.compile(r"flies \d+\sm to \d+\sm above"))
+    row = page.get_by_role("list", name="Routes").get_by_role("listitem").nth(1)
+    strip = row.get_by_role("img").first
+    box = strip.bounding_box()
+    assert box
+    page.mouse.move(box["x"] + box["width"] * 0.4, box["y"] + 18)
+    expect(row).to_have_class(re.compile("lit"))
+    expect(drawing).to_have_attribute("aria-label", re.compile("^Kite flies"))  # the profile is that row's
+    expect(profile).to_contain_text(re.compile(r"at \d+\.\d\skm"))
+    expect(profile).to_contain_text(re.compile(r"\d+\sm above (take-off|sea level)"))
+    expect(strip.locator(".strip-cursor")).to_have_attribute("visibility", "visible")
+    chart = drawing.bounding_box()
+    assert chart and abs(chart["x"] - box["x"]) < 1  # one axis
+    picture(page, "plan-profile")
+
+    page.mouse.move(0, 0)
+    expect(profile).not_to_contain_text(re.compile(r"at \d+\.\d\skm"))
+    page.locator("#target-list .what").filter(has_text="Tower").first.hover()
+    expect(page.locator(".strip-target.lit")).to_have_count(1)
+    name = row.get_by_role("button", name=re.compile("^B Kite"))
+    name.click()
+    expect(name).to_have_attribute("aria-pressed", "true")
+    page.mouse.move(0, 0)
+    expect(drawing).to_have_attribute("aria-label", re.compile("^Kite flies"))  # a chosen route stays
+    page.keyboard.press("Escape")
+
+
+def test_a_target_that_is_not_reached_says_why_and_what_would_help(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Too far", more=[{"position": FAR_AWAY}])
+    notice = page.locator("#notices .notice").filter(has_text="is not reached")
+    expect(notice).to_contain_text("It is more than 10 km from the network.")
+    notice.get_by_role("button", name="Why?").click()
+    why = page.get_by_role("complementary", name=re.compile("Why .* is not reached"))
+    expect(why).to_contain_text(re.compile(r"The nearest line, railway or bridge is \d+\.\d\skm away"))
+    expect(why.get_by_role("row").filter(has_text="Heron")).to_contain_text("no way")
+    picture(page, "plan-why-light")
+    why.get_by_role("button", name="Remove it").click()
+    expect(page.locator("#target-list .target")).to_have_count(8)
+    expect(why).to_be_hidden()
+
+
+def test_a_route_says_where_its_kilometres_come_from(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Why this way")
+    opener = page.get_by_role("button", name="Why does Kite fly this route?")
+    opener.focus()
+    page.keyboard.press("Enter")
+    why = page.get_by_role("complementary", name="Why Kite flies this way")
+    expect(why.get_by_role("heading", name="Why Kite flies this way")).to_be_focused()
+    expect(why).to_contain_text("Straight from target to target")
+    expect(why).to_contain_text("What limits the plan.")
+    expect(why).to_contain_text(re.compile(r"Kite, not Heron\. With .* as well, Heron would fly \d+\.\d\skm"))
+    page.keyboard.press("Escape")
+    expect(why).to_be_hidden()
+    expect(opener).to_be_focused()
+
+
+def test_a_plan_is_set_against_the_last_one(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Against the last")
+    page.locator("#target-list .what").first.focus()
+    page.keyboard.press("Delete")
+    expect(page.locator("#target-list .target")).to_have_count(7)
+    page.keyboard.press("p")
+    expect(page.locator("#plan-facts")).to_contain_text("all 7 targets")
+    page.get_by_role("button", name="Compare with the last plan").click()
+    compared = page.get_by_role("complementary", name="Against the last plan")
+    expect(compared).to_contain_text(re.compile(r"(less|more|sooner|later|As long).*\d target"))
+    expect(compared.get_by_role("row").filter(has_text="Heron")).to_contain_text("km")
+    expect(compared.get_by_role("list", name="Targets that have changed")).to_contain_text("not in the mission")
+    expect(page.locator(".strip.pale").first).to_be_visible()
+    picture(page, "plan-compare")
+    page.get_by_role("button", name="Close", exact=True).click()
+    expect(compared).to_be_hidden()
+    expect(page.locator(".strip.pale")).to_have_count(0)
+
+
+def test_a_uav_that_is_dragged_starts_elsewhere(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Another start")
+    square = page.get_by_role("button", name="Heron starts here")
+    box = square.bounding_box()
+    assert box
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 60, box["y"] + 40, steps=5)
+    page.mouse.up()
+    expect(page.locator("#mission-facts")).to_contain_text("changed since it was planned")
+    moved = square.bounding_box()
+    assert moved and moved["x"] > box["x"] + 30
+    was = place_of(page, WEST)
+    assert abs(moved["x"] + moved["width"] / 2 - was["x"]) > 30
+    page.keyboard.press("Control+z")
+    expect(page.locator("#mission-facts")).not_to_contain_text("changed since it was planned")
+
+
+def test_a_long_plan_that_is_stopped_keeps_the_best_until_then(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Many towers", targets=40)
+    page.get_by_role("button", name="Plan P").click()
+    expect(page.get_by_role("progressbar", name="Planning")).to_be_visible()
+    stop = page.get_by_role("button", name="Stop, keep the best")
+    expect(stop).to_be_visible()
+    expect(page.locator("#job-how-far")).to_contain_text(re.compile("km"))  # a first plan is found
+    stop.click()
+    expect(page.get_by_text("Stopped. The best plan so far is kept.")).to_be_visible()
+    expect(page.get_by_role("list", name="Routes").get_by_role("listitem")).to_have_count(2)
+    expect(page.locator("#plan-facts")).to_contain_text("40 targets")
+
+
+def test_a_fleet_is_narrowed_by_sensor_and_base_and_several_are_chosen_at_once(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    kinds = {
+        name: sends(page, "uav-types", {"name": name, "max_range_m": 30_000, "sensors": sensors})["id"] for name, sensors in KINDS.items()
+    }
+    bases = {
+        name: sends(page, "bases", {"name": name, "position": place})["id"] for name, place in (("Gate west", WEST), ("Gate east", EAST))
+    }
+    for name, kind, base, state in FLEET:
+        body = {"name": name, "position": WEST, "type": kinds[kind], "base": bases[base], "battery_percent": 95, "state": state}
+        sends(page, "uavs", body)
+    page.goto("/missions/new")
+    wait_for_map(page)
+    fleet = page.get_by_role("list", name="UAVs")
+    box = fleet.get_by_role("checkbox", name="Sparrow 1")
+    expect(box).not_to_be_checked()
+    row = fleet.get_by_role("listitem").filter(has_text="Sparrow 1")
+    expect(row).to_contain_text("95\u00a0%")
+    expect(row).to_contain_text("range 30.0\u00a0km")
+    expect(row).to_contain_text("Lidar of the test")
+    expect(fleet).not_to_contain_text("Sparrow 5")  # retired
+    expect(fleet.get_by_role("checkbox", name="Sparrow 4")).to_be_disabled()  # in maintenance
+
+    page.get_by_role("combobox", name="Sensor", exact=True).select_option("Lidar of the test")
+    expect(fleet.get_by_role("listitem")).to_have_count(2)
+    page.get_by_role("combobox", name="Base", exact=True).select_option("Gate west")
+    expect(fleet.get_by_role("listitem")).to_have_count(1)
+    page.get_by_role("combobox", name="Base", exact=True).select_option("Every base")
+    page.get_by_role("button", name="Choose all 2").click()
+    expect(box).to_be_checked()
+    expect(fleet.get_by_role("checkbox", name="Sparrow 2")).to_be_checked()
+    page.locator("#map canvas").focus()
+    page.keyboard.press("Control+z")
+    expect(box).not_to_be_checked()
+
+
+KINDS = {"Test quad": ["Lidar of the test"], "Test wing": ["Camera of the test"]}
+FLEET = (
+    ("Sparrow 1", "Test quad", "Gate west", "active"),
+    ("Sparrow 2", "Test quad", "Gate east", "active"),
+    ("Sparrow 3", "Test wing", "Gate west", "active"),
+    ("Sparrow 4", "Test wing", "Gate east", "maintenance"),
+    ("Sparrow 5", "Test wing", "Gate east", "retired"),
+)
