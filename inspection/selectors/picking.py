@@ -151,11 +151,12 @@ def stretch_along_lines(start: Asset, end: Asset) -> Stretch:
     """The way from a support to another along lines, if it can on the circuit of both. Raises NoWayAlongLines."""
     (a, b), (c, d) = start.centre.coords, end.centre.coords
     west, south, east, north = min(a, c), min(b, d), max(a, c), max(b, d)
-    for reach in REACHES_DEG:
-        reach = max(reach, 0.25 * (east - west), 0.25 * (north - south))
+    circuit = _circuit_of(start, end)
+    least = 0.25 * max(east - west, north - south)
+    for reach in dict.fromkeys(max(reach, least) for reach in REACHES_DEG):  # of supports far apart both are one
         box = (max(west - reach, -180.0), max(south - reach, -90.0), min(east + reach, 180.0), min(north + reach, 90.0))
         supports, lines = supports_and_lines(box)
-        stretch = stretch_between(supports, lines, start.pk, end.pk, _circuit_of(start, end))
+        stretch = stretch_between(supports, lines, start.pk, end.pk, circuit)
         if stretch is not None:
             return stretch
     raise NoWayAlongLines
