@@ -107,7 +107,7 @@ def _proxied(location: str, name: str, headers: str, scheme: str, *, compression
             proxy_http_version 1.1;
             proxy_set_header Connection "";
             proxy_set_header Host $http_host;
-            proxy_set_header X-Forwarded-For $remote_addr;
+            proxy_set_header X-Forwarded-For $visitor;
             proxy_set_header X-Forwarded-Proto {scheme};
             proxy_connect_timeout 5s;
             proxy_read_timeout 120s;
@@ -127,6 +127,10 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
     headers = _headers(os.environ.get(name, "") for name in ("SPANWISE_BASE_MAP_TILES", "SPANWISE_SATELLITE_TILES"))
     is_behind_https = os.environ.get("SPANWISE_HTTPS", "0").lower() in {"1", "true", "yes", "on"}
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
+    # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
+    visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
+    if not is_behind_https:
+        visitor = "map $remote_addr $visitor { default $remote_addr; }"
     media_types = "\n".join(f"        {kind} {endings};" for kind, endings in MEDIA_TYPES.items())
     temporary = "\n".join(
         f"    {kind}_temp_path {_quoted(folder / kind)};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
@@ -166,11 +170,12 @@ http {{
     charset utf-8;
     charset_types text/css text/plain text/javascript image/svg+xml;
 {temporary}
-    # A link to a new password, and an invitation, let their holder in: they are written into no log, nor is a fault of the application at them.
+    # A link to a new password, and an invitation, let their holder in: no log has them, nor faults of the application at them.
     map $request $told_request {{
         "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
         default $request;
     }}
+    {visitor}
     log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
     access_log /dev/stdout line;
     server_tokens off;

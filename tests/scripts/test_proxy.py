@@ -45,3 +45,11 @@ def test_behind_a_tls_proxy_its_word_on_the_scheme_is_passed_on(tmp_path: Path, 
     assert "X-Forwarded-Proto $scheme;" in configuration(Places(tmp_path), tmp_path, 8000)
     monkeypatch.setenv("SPANWISE_HTTPS", "1")
     assert "X-Forwarded-Proto $http_x_forwarded_proto;" in configuration(Places(tmp_path), tmp_path, 8000)
+
+
+def test_behind_a_tls_proxy_the_visitors_address_is_the_one_that_it_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SPANWISE_HTTPS", raising=False)
+    assert "$http_x_forwarded_for" not in configuration(Places(tmp_path), tmp_path, 8000)
+    monkeypatch.setenv("SPANWISE_HTTPS", "1")
+    assert "default $http_x_forwarded_for;" in configuration(Places(tmp_path), tmp_path, 8000)
+    test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path)
