@@ -12,7 +12,7 @@ from redis.exceptions import RedisError
 
 from workspace.models import User
 
-FORGOTTEN_AFTER_S = 40  # a page reports every 12 s
+FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at
 MOST_PAGES = 20  # of one user, the last that reported
 CACHE_AWAY = (RedisError, OSError)
 

@@ -92,6 +92,7 @@ def test_a_new_mission_stores_itself_with_its_first_plan_and_then_each_change(vi
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Name").fill("Osprey")
     dialog.get_by_role("button", name="Add").click()
+    expect(page.get_by_role("checkbox", name="Osprey")).to_be_checked()
     page.keyboard.press("p")
     expect(page.get_by_text(re.compile("is saved. From now on it saves itself"))).to_be_visible()
     expect(page).to_have_url(re.compile(r"/missions/[0-9a-f-]{36}"))

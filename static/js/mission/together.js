@@ -3,7 +3,7 @@
 import { get, post } from "../api.js";
 
 const POLL_MS = 3000;
-const PRESENCE_MS = 12_000;
+const PRESENCE_MS = 6000;
 
 /** editor: the name of this page; take(mission): see conflicts.js. */
 export function watchMission(store, { editor, take, connectedAgain, tellDeleted }) {
