@@ -3,6 +3,7 @@
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
 import { durationText, lengthText } from "../units.js";
+import { inWords } from "./plan_words.js";
 import { basisOf } from "./selection.js";
 
 const REASONS = {
@@ -54,7 +55,7 @@ export function unreachedOf(plan) {
   return plan.result.unassigned.map((entry) => ({
     target: plan.targets[entry.target],
     reason: entry.reason,
-    sentence: entry.message || REASONS[entry.reason] || t("No route visits it."),
+    sentence: inWords(entry.message, REASONS[entry.reason]) || t("No route visits it."),
   }));
 }
 

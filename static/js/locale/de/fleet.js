@@ -6,7 +6,7 @@ export default {
   "Add one": "Neu anlegen",
   "Add the first one, then plan a mission with it.": "Das erste anlegen, dann eine Mission damit planen.",
   "age not known": "Alter unbekannt",
-  "All but retired": "Alle außer ausgemusterten",
+  "All but retired": "Alle aktiven",
   "All of them": "Alle",
   "Any base": "Jede Basis",
   "Any type": "Jeder Typ",

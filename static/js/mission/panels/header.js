@@ -6,6 +6,7 @@ import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
+import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
 
 const STATE_WORDS = { draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"), failed: t("Failed") };
@@ -123,7 +124,7 @@ function noticesOf(state, actions, { canPlan, showPlace, askWhy }) {
   }
   if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) notices.push(staleNotice(state.mission, actions, { canPlan, showPlace }));
   if (isPlanCurrent(state)) {
-    for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", warning.message));
+    for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", inWords(warning.message)));
     const unreached = unreachedOf(state.plan);
     for (const { target, sentence } of unreached.slice(0, 3)) {
       const why = { label: t("Why?"), act: () => askWhy({ target: target.key }) };

@@ -3,11 +3,12 @@
 import { h } from "../../dom.js";
 import { t } from "../../text.js";
 import { heightText, lengthText } from "../../units.js";
+import { inWords } from "../plan_words.js";
 
 /** said: see TargetExplanationSerializer; entry: of the plan's unassigned. */
 export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {
   const target = plan.targets[said.target];
-  return [h("p", { class: "why-sentence" }, reasonWords(said) || entry.message), facts(said), canPlan && changes(said, { target, store, actions })].filter(Boolean);
+  return [h("p", { class: "why-sentence" }, reasonWords(said) || inWords(entry.message)), facts(said), canPlan && changes(said, { target, store, actions })].filter(Boolean);
 }
 
 export function reasonWords(said) {

@@ -1,0 +1,21 @@
+/** Sentences of a plan in the reader's language. A plan is stored in English: what was put into a sentence is put into the translated one. */
+
+import { language, t } from "../text.js";
+
+const zoneOf = (words) => (/^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words);
+const SENTENCES = [
+  [/^It stands inside (.+)\.$/, (zone) => t("It stands inside {zones}.", { zones: zoneOf(zone) })],
+  [/^It runs through (.+)\.$/, (zone) => t("It runs through {zones}.", { zones: zoneOf(zone) })],
+  [/^(.+) stands inside (.+) and cannot take off\.$/, (name, zone) => t("{name} stands inside {zone} and cannot take off.", { name, zone: zoneOf(zone) })],
+  [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
+];
+
+/** `fallback` where a language has no sentence for it; English as it is stored. */
+export function inWords(message, fallback = message) {
+  if (language === "en" || !message) return message || fallback;
+  for (const [pattern, say] of SENTENCES) {
+    const found = pattern.exec(message);
+    if (found) return say(...found.slice(1));
+  }
+  return fallback;
+}
