@@ -8,6 +8,7 @@ from django.contrib.auth.forms import PasswordChangeForm, PasswordResetForm, Set
 from django.core.exceptions import ValidationError
 from django.http import HttpResponse
 from django.urls import reverse_lazy
+from django.utils import translation
 from django.utils.translation import gettext as _
 
 from workspace.known_browsers import remember
@@ -31,8 +32,9 @@ class LostPasswordForm(PasswordResetForm):
         return email
 
     def send_mail(self, *args: Any, **options: Any) -> None:
-        """Beside the answer: how long a mail server takes would tell who has an account."""
-        Thread(target=super().send_mail, args=args, kwargs=options, name="mail with a link", daemon=True).start()
+        """Beside the answer: how long a mail server takes would tell who has an account. In the language of the page that asked."""
+        in_its_language = translation.override(translation.get_language())(super().send_mail)
+        Thread(target=in_its_language, args=args, kwargs=options, name="mail with a link", daemon=True).start()
 
 
 class LostPasswordPage(views.PasswordResetView):

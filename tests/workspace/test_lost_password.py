@@ -47,6 +47,12 @@ def link_of_the_mail() -> str:
     return found[1]
 
 
+def test_the_mail_is_in_the_language_of_the_page_that_asked_for_it(client: Client, vera: User) -> None:
+    client.post("/lost-password", {"email": "vera@example.org"}, headers={"Accept-Language": "de"})
+    assert mails(1)
+    assert mail.outbox[-1].subject == "Ein neues Passwort für Spanwise"
+
+
 def test_the_link_of_the_mail_sets_a_new_password_once(client: Client, vera: User) -> None:
     assert "Look into your mail" in ask(client, "vera@example.org")
     link = link_of_the_mail()
