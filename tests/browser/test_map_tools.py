@@ -183,7 +183,7 @@ def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor
     expect(notice).to_be_visible()
     operator.unroute("**/api/v1/tiles/**", away)
     operator.get_by_role("button", name="Try now").click()
-    expect(notice).to_be_hidden()
+    expect(notice).to_be_hidden(timeout=20_000)
     heard = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint and not complaint.startswith("map: ")]
     assert heard == []
     visitor.complaints.clear()
