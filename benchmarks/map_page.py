@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 import osmium
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, Request, sync_playwright
 
 from benchmarks.large_region import tile_of, write_region
 from scripts.places import Places
@@ -137,24 +137,22 @@ def sign_in(browser: Browser, site: Installation) -> dict[str, Any]:
     return state  # type: ignore[return-value]
 
 
-def open_map(browser: Browser, site: Installation, state: dict[str, Any], view: str = "") -> tuple[Page, list[tuple[str, float]]]:
-    """The page, and what it fetched with the bytes that came over the wire."""
+def open_map(browser: Browser, site: Installation, state: dict[str, Any], view: str = "") -> tuple[Page, list[Request]]:
+    """The page, and what it fetched."""
     context = browser.new_context(base_url=site.address, storage_state=state, viewport={"width": 1440, "height": 900})  # type: ignore[arg-type]
     context.add_init_script(WATCH)
     page = context.new_page()
-    wire = context.new_cdp_session(page)
-    wire.send("Network.enable")
-    addresses: dict[str, str] = {}
-    fetched: list[tuple[str, float]] = []
-    wire.on("Network.responseReceived", lambda event: addresses.update({event["requestId"]: event["response"]["url"]}))
-    wire.on("Network.loadingFinished", lambda event: fetched.append((addresses.get(event["requestId"], ""), _kilobytes(event))))
+    fetched: list[Request] = []
+    page.on("requestfinished", fetched.append)  # those of workers too
     page.goto(f"/missions/new{view}")
     page.wait_for_function("() => watched.usable !== null && watched.drawn !== null", timeout=60_000)
     return page, fetched
 
 
-def _kilobytes(event: dict[str, Any]) -> float:
-    return float(event["encodedDataLength"]) / 1_000
+def _kilobytes(request: Request) -> float:
+    """As they came over the wire, compressed."""
+    sizes = request.sizes()
+    return (sizes["responseHeadersSize"] + sizes["responseBodySize"]) / 1_000
 
 
 def measure_first_load(browser: Browser, site: Installation, state: dict[str, Any]) -> None:
@@ -164,9 +162,10 @@ def measure_first_load(browser: Browser, site: Installation, state: dict[str, An
         times = page.evaluate("({ usable: watched.usable, drawn: watched.drawn })")
         usable.append(times["usable"])
         drawn.append(times["drawn"])
-        library = sum(size for address, size in fetched if "/maplibre-gl/" in address)
-        tiles = sum(size for address, size in fetched if "/api/v1/tiles/" in address)
-        own = sum(size for _, size in fetched) - library - tiles
+        sizes = [(request.url, _kilobytes(request)) for request in fetched]
+        library = sum(size for address, size in sizes if "/maplibre-gl/" in address)
+        tiles = sum(size for address, size in sizes if "/api/v1/tiles/" in address)
+        own = sum(size for _, size in sizes) - library - tiles
         files = len(fetched)
         page.context.close()
     print(f"first load: {files} files; {own:.0f} kB and {tiles:.0f} kB of tiles besides {library:.0f} kB of MapLibre, all as sent")

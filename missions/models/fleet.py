@@ -87,6 +87,7 @@ class Uav(models.Model):
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
     max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")
     cruise_speed_mps = models.FloatField(null=True, blank=True, help_text="empty = its type's, else the usual speed")
+    heading_deg = models.FloatField(null=True, blank=True, help_text="degrees from true north, clockwise; empty = not known")
     battery_percent = models.FloatField(null=True, blank=True)
     sensor = models.CharField(max_length=100, blank=True)
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
@@ -102,6 +103,7 @@ class Uav(models.Model):
             models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
             models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
             models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
+            models.CheckConstraint(condition=Q(heading_deg=None) | Q(heading_deg__gte=0, heading_deg__lt=360), name="uav_heading_degrees"),
             models.CheckConstraint(condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="uav_battery_percent"),
             models.CheckConstraint(condition=Q(state__in=UavState.values), name="uav_state_known"),
             models.CheckConstraint(condition=Q(mavlink_system_id=None) | Q(mavlink_system_id__range=(1, 254)), name="uav_system_id_range"),

@@ -9,7 +9,7 @@ from missions.fleet_selectors import bases_of_organisation, types_of_organisatio
 from missions.models import CredentialKind, EndAction, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS, above_zero
 
-OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "battery_percent", "sensor", "end_action")
+OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "heading_deg", "battery_percent", "sensor", "end_action")
 FROM_TYPE = ("max_range_m", "cruise_speed_mps")
 
 
@@ -30,6 +30,9 @@ class UavPropertiesSerializer(serializers.Serializer):
     )
     cruise_speed_mps = FiniteFloatField(
         allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual"
+    )
+    heading_deg = FiniteFloatField(
+        allow_null=True, required=False, min_value=0, max_value=359.999999, help_text="degrees from true north, clockwise; null: not known"
     )
     battery_percent = FiniteFloatField(allow_null=True, required=False, min_value=0, max_value=100)
     sensor = serializers.CharField(max_length=100, allow_blank=True, required=False, help_text="besides those of its type")

@@ -196,3 +196,15 @@ def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
     place = look_at(page, [-83.02, 39.9495], 14)
     page.touchscreen.tap(place["x"], place["y"])
     expect(page.get_by_role("tooltip")).to_contain_text("Greenlawn heliport")
+
+
+def test_a_uav_points_along_its_heading_and_nowhere_without_one(operator: Page) -> None:
+    token = next(cookie["value"] for cookie in operator.context.cookies() if cookie["name"] == "csrftoken")
+    for name, place, more in (("Whimbrel", RIVER, {"heading_deg": 90}), ("Godwit", [RIVER[0] + 0.02, RIVER[1]], {})):
+        answer = operator.request.post("/api/v1/uavs", data={"name": name, "position": place, **more}, headers={"X-CSRFToken": token})
+        assert answer.status == 201, answer.text()
+    opens_at(operator, RIVER, 12)
+    map_region = operator.get_by_role("region", name="Map")
+    dart = map_region.get_by_role("button", name="Whimbrel, not in this mission, heading 090°")
+    expect(dart.locator("svg")).to_have_css("rotate", "90deg")
+    expect(map_region.get_by_role("button", name="Godwit, not in this mission", exact=True).locator("svg circle")).to_be_visible()

@@ -59,6 +59,12 @@ def test_a_change_touches_only_what_it_names(client: Client) -> None:
     assert AuditEntry.objects.get(action="change", subject_type="uav").before["battery_percent"] is None
 
 
+def test_a_heading_is_kept_and_not_known_until_it_is_said(client: Client) -> None:
+    uav = post(client, "uavs", FEATURE).json()
+    assert uav["properties"]["heading_deg"] is None
+    assert patch(client, f"uavs/{uav['id']}", {"heading_deg": 271.5}, **ANY).json()["properties"]["heading_deg"] == 271.5
+
+
 @pytest.mark.parametrize(
     ("body", "place"),
     [
@@ -67,6 +73,7 @@ def test_a_change_touches_only_what_it_names(client: Client) -> None:
         ({"name": "Tern", "position": [10, 96]}, "position"),
         ({"name": "Tern", "position": [10, 56], "max_range_m": -5}, "max_range_m"),
         ({"name": "Tern", "position": [10, 56], "battery_percent": 101}, "battery_percent"),
+        ({"name": "Tern", "position": [10, 56], "heading_deg": 360}, "heading_deg"),
         ({"name": "Tern", "position": [10, 56], "cruise_speed_mps": 0}, "cruise_speed_mps"),
         ({"name": "", "position": [10, 56]}, "name"),
         (FEATURE | {"geometry": {"type": "Polygon", "coordinates": []}}, "position"),

@@ -88,10 +88,10 @@ export function withTask(selection, keys, { kind, hold_s = null }) {
 }
 
 export function uavOf(feature) {
-  const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent } = feature.properties;
+  const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent, heading_deg } = feature.properties;
   return {
     id: feature.id, name, base: base ?? null, base_name: base_name ?? "", position: feature.geometry.coordinates.slice(0, 2), max_range_m, cruise_speed_mps, end_action,
-    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null,
+    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null, heading_deg: heading_deg ?? null,
   };
 }
 
