@@ -94,6 +94,7 @@ export default {
   "not limited": "nicht begrenzt",
   "Not loaded.": "Nicht geladen.",
   "Not part of the flying network": "Nicht Teil des Flugnetzes",
+  "not reached": "nicht erreicht",
   "Not saved.": "Nicht gespeichert.",
   "not stated": "nicht angegeben",
   "Not stopped.": "Nicht angehalten.",

@@ -95,7 +95,6 @@ export default {
   "not planned": "nicht geplant",
   "Not planned yet": "Noch nicht geplant",
   "Not reached": "Nicht erreicht",
-  "not reached": "nicht erreicht",
   "Not saved yet": "Noch nicht gespeichert",
   "Not saved: see below": "Nicht gespeichert: siehe unten",
   "Not saved: the server cannot be reached": "Nicht gespeichert: Der Server ist nicht erreichbar",

@@ -1,6 +1,7 @@
 /** Target pills: HTML up to 200, a layer beyond. Pills of one UAV that would overlap are merged: "C3–4". */
 
 import { h } from "../../dom.js";
+import { t, tn } from "../../text.js";
 import { maplibre } from "../maplibre.js";
 import { routeNumber } from "../palette.js";
 import { mergePills } from "../pills.js";
@@ -15,7 +16,8 @@ const lookOf = (pill) => (pill.isMissed ? "missed" : pill.sequence === null ? "w
 function namesOf(members) {
   const names = members.slice(0, MOST_NAMES).map((pill) => pill.name);
   const rest = members.length - names.length;
-  return `${names.join("; ")}${rest > 0 ? ` and ${rest} more` : ""}${members[0].isMissed ? ": not reached" : ""}`;
+  const more = rest > 0 ? ` ${tn(rest, "and {count} more", "and {count} more")}` : "";
+  return `${names.join("; ")}${more}${members[0].isMissed ? `: ${t("not reached")}` : ""}`;
 }
 
 export function createTargets(map, { onPick, onHover }) {
@@ -33,7 +35,7 @@ export function createTargets(map, { onPick, onHover }) {
       {
         type: "button",
         class: `map-pill ${lookOf(first)}`,
-        "aria-label": `Target ${label}: ${names}`,
+        "aria-label": t("Target {label}: {names}", { label, names }),
         title: names,
         tabindex: "-1",
         onclick: (event) => (event.stopPropagation(), onPick(first.key)),
