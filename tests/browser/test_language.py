@@ -18,7 +18,10 @@ SAID = """() => {
     const roots = [document.body, ...[...document.querySelectorAll("template")].map((template) => template.content)];
     for (const root of roots) {
         const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
-        while (walker.nextNode()) if (!walker.currentNode.parentElement?.closest("script, style, code, kbd, [translate=no]")) add(walker.currentNode.data);
+        while (walker.nextNode()) {
+            const { data, parentElement } = walker.currentNode;
+            if (!parentElement?.closest("script, style, code, kbd, [translate=no]")) add(data);
+        }
         for (const element of root.querySelectorAll("*")) {
             for (const name of ["aria-label", "title", "placeholder", "alt"]) add(element.getAttribute(name));
         }
