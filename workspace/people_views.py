@@ -30,7 +30,7 @@ from workspace.people_serializers import (
     SignInSerializer,
     with_secret,
 )
-from workspace.permissions import AdministratorsAlone
+from workspace.permissions import AdministratorsAlone, AdministratorsInTheBrowser
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import NoAdministratorLeft
@@ -100,7 +100,7 @@ class PersonList(APIView):
 
 
 class PersonDetail(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(operation_id="get_person", summary="One person", responses=PersonSerializer)
     def get(self, request: Request, user_id: int) -> Response:
@@ -166,7 +166,7 @@ class PersonTokens(APIView):
 class InvitationList(APIView):
     """A link is answered once and not kept, so that the same request sent again makes another one."""
 
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="list_invitations",

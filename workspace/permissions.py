@@ -42,12 +42,6 @@ class RolePermission(BasePermission):
             people=SEVERAL[Role(user.role)], wanted=_(" or ").join(str(ONE[role]) for role in wanted)
         )
         return False
-        write_roles = getattr(view, "write_roles", PLANNERS)
-        if request.method in SAFE_METHODS or user.role in write_roles:
-            return True
-        wanted = " or ".join(role.label.lower() for role in Role if role in write_roles and role != Role.ADMINISTRATOR)
-        self.message = f"{Role(user.role).label}s cannot do this. Ask an administrator for the {wanted or 'administrator'} role."
-        return False
 
 
 class AdministratorsAlone(RolePermission):
@@ -60,6 +54,16 @@ class AdministratorsAlone(RolePermission):
 
 class InTheBrowserAlone(RolePermission):
     """What could outlive a lost token: no token makes another one, changes a password or ends sessions."""
+
+    def has_permission(self, request: Request, view: Any) -> bool:
+        if request.auth is not None and request.method not in SAFE_METHODS:
+            self.message = _("A token cannot do this. Sign in with a browser.")
+            return False
+        return super().has_permission(request, view)
+
+
+class AdministratorsInTheBrowser(AdministratorsAlone):
+    """Who gives somebody a role could make an account that outlives a lost token: reading is for tokens, too, giving is not."""
 
     def has_permission(self, request: Request, view: Any) -> bool:
         if request.auth is not None and request.method not in SAFE_METHODS:

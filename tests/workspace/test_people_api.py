@@ -121,6 +121,17 @@ def test_whoever_is_kept_out_is_out_at_once_with_session_and_token(client: Clien
     assert Client(headers={"Authorization": f"Bearer {token}"}).get("/api/v1/account").status_code == 200
 
 
+def test_a_token_gives_nobody_a_role(administrator: User, person: User) -> None:
+    token = create_api_token(user=administrator, name="api", expires_at=timezone.now() + timedelta(days=1))
+    program = Client(headers={"Authorization": f"Bearer {token}", "If-Match": "*"})
+    assert program.get(f"/api/v1/people/{person.pk}").status_code == 200
+    answer = program.patch(f"/api/v1/people/{person.pk}", {"role": "administrator"}, content_type="application/json")
+    assert (answer.status_code, answer.json()["error"]["message"]) == (403, "A token cannot do this. Sign in with a browser.")
+    assert program.post("/api/v1/invitations", {"role": "administrator"}, content_type="application/json").status_code == 403
+    person.refresh_from_db()
+    assert person.role == Role.OPERATOR
+
+
 def test_an_administrator_ends_somebodys_sessions_and_tokens(client: Client, administrator: User, person: User) -> None:
     create_api_token(user=person, name="api", expires_at=timezone.now() + timedelta(days=1))
     at_work = client_of(person)
