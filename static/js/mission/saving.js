@@ -168,8 +168,7 @@ export function createSaving({ store, history, selection, change, problem, faile
   });
 
   /** The server answers again: what waited is saved now. */
-  function connectedAgain() {
-    const hasWaited = store.state.isAway;
+  function connectedAgain(hasWaited = store.state.isAway) {
     clearTimeout(retry);
     if (hasWaited) refused = null;
     store.update({ isAway: false });

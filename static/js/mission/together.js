@@ -29,9 +29,9 @@ export function watchMission(store, { editor, take, connectedAgain, tellDeleted 
     try {
       const answer = await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } });
       toldDeleted = null;
-      if (store.state.isAway) connectedAgain();
-      const { mission: now, saving: isSaving } = store.state;
+      const { mission: now, saving: isSaving, isAway: wasAway } = store.state;
       if (answer.data && !isSaving && now.id === mission.id && answer.data.revision > now.revision) await take(answer.data);
+      if (wasAway) connectedAgain(wasAway); // after theirs came in: what waits is saved on top of it
       if (Date.now() - reportedAt > PRESENCE_MS) await report();
     } catch (error) {
       failed(error);
