@@ -1,4 +1,6 @@
-"""./check: private servers, then one step after the other, and a summary. All steps run, even when one has failed.
+"""./check: private servers, then one step after the other, the browser tests beside them, and a summary.
+
+All steps run, even when one has failed.
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
 """
@@ -24,6 +26,8 @@ from scripts.programs import Program, database_server, queue_server
 from scripts.supervision import Supervisor
 
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
+POLL_S = 0.5
+STOP_S = 60
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,7 @@ class Step:
     name: str
     command: list[str]
     environment: dict[str, str] = field(default_factory=dict)
+    runs_beside: bool = False  # has its own servers and waits a lot: it starts first, is told last, and spares a third of the whole time
 
 
 def _python(*arguments: str) -> list[str]:
@@ -63,7 +68,7 @@ def steps(arguments: list[str]) -> list[Step]:
     if scripts := sorted(str(path) for path in (PROJECT_DIR / "tests" / "javascript").glob("**/*.test.*js")):
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
     if not is_fast:
-        found.append(Step("browser tests", _pytest(f"browser{without_long}", [])))
+        found.append(Step("browser tests", _pytest(f"browser{without_long}", []), runs_beside=True))
     return found
 
 
@@ -105,9 +110,63 @@ def private_servers(state: Path) -> Iterator[dict[str, str]]:
             remove_sockets(state)
 
 
-def run(step: Step, environment: dict[str, str]) -> int:
+@dataclass(frozen=True)
+class Result:
+    """How a step ended."""
+
+    name: str
+    code: int
+    duration_s: float
+
+
+def _headline(step: Step) -> None:
     print(f"\n── {step.name} {'─' * max(0, shutil.get_terminal_size((100, 24)).columns - len(step.name) - 4)}", flush=True)
-    return subprocess.run(step.command, cwd=PROJECT_DIR, env={**os.environ, **environment, **step.environment}, check=False).returncode
+
+
+def _run_here(step: Step, environment: dict[str, str]) -> Result:
+    _headline(step)
+    began = time.monotonic()
+    code = subprocess.run(step.command, cwd=PROJECT_DIR, env={**os.environ, **environment, **step.environment}, check=False).returncode
+    return Result(step.name, code, time.monotonic() - began)
+
+
+def _tell(step: Step, log: Path, process: subprocess.Popen[bytes]) -> None:
+    """What a step beside the others has written so far, and then what it writes until it ends."""
+    _headline(step)
+    with log.open("rb") as written:
+        is_over = False
+        while not is_over:
+            is_over = process.poll() is not None  # before the last look, or its last words were lost
+            while part := written.read(65_536):
+                sys.stdout.buffer.write(part)
+            sys.stdout.flush()
+            if not is_over:
+                time.sleep(POLL_S)
+
+
+def run_all(to_run: list[Step], environment: dict[str, str], log: Path) -> list[Result]:
+    """One step after the other; at most one of them beside the others, its output kept in `log` until they are done."""
+    beside = next((step for step in to_run if step.runs_beside), None)
+    if beside is None:
+        return [_run_here(step, environment) for step in to_run]
+    began = time.monotonic()
+    with log.open("wb") as written:
+        process = subprocess.Popen(
+            beside.command,
+            cwd=PROJECT_DIR,
+            env={**os.environ, **environment, **beside.environment},
+            stdout=written,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # an interrupt reaches it once, from here, or it would not stop its site
+        )
+    try:
+        results = [_run_here(step, environment) for step in to_run if step is not beside]
+        _tell(beside, log, process)
+    except KeyboardInterrupt:
+        process.send_signal(signal.SIGINT)
+        process.wait(STOP_S)
+        raise
+    return [*results, Result(beside.name, process.returncode, time.monotonic() - began)]
 
 
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
@@ -117,15 +176,12 @@ def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
 def main(arguments: list[str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
-    results: list[tuple[str, int, float]] = []
+    results: list[Result] = []
     began = time.monotonic()
     try:
         with private_servers(state_directory() / "check") as environment:
             print(f"servers … {time.monotonic() - began:.1f} s", flush=True)
-            for step in steps(arguments):
-                began_step = time.monotonic()
-                code = run(step, environment)
-                results.append((step.name, code, time.monotonic() - began_step))
+            results = run_all(steps(arguments), environment, state_directory() / "check" / "beside.log")
     except CannotStart as error:
         print(f"The servers for the tests could not start: {error}", file=sys.stderr)
         return 1
@@ -133,10 +189,10 @@ def main(arguments: list[str]) -> int:
         return 130
     if len(results) > 1:
         print("\nSummary")
-        for name, code, duration_s in results:
-            print(f"  {'ok' if code == 0 else f'FAILED ({code})':<12} {duration_s:7.1f} s  {name}")
+        for result in results:
+            print(f"  {'ok' if result.code == 0 else f'FAILED ({result.code})':<12} {result.duration_s:7.1f} s  {result.name}")
         print(f"  {'':<12} {time.monotonic() - began:7.1f} s  in all", flush=True)
-    return next((code for _, code, _ in results if code), 0)
+    return next((result.code for result in results if result.code), 0)
 
 
 if __name__ == "__main__":

@@ -21,6 +21,8 @@ CHROMIUM_FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync",
 ]  # fmt: skip
+PATIENCE_MS = 20_000  # ./check runs other tests beside these
+expect.set_options(timeout=PATIENCE_MS)
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
 PASSWORD = "inspect-the-lines"
 USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator", "ada": "administrator"}
@@ -106,7 +108,7 @@ class Visitor:
         if cookies:
             context.add_cookies(cookies)
         page = context.new_page()
-        page.set_default_timeout(20_000)
+        page.set_default_timeout(PATIENCE_MS)
         page.on("console", self._heard)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self._asked(request.url))
@@ -120,7 +122,7 @@ class Visitor:
             page.get_by_label("User name").fill(name)
             page.get_by_label("Password").fill(PASSWORD)
             page.get_by_role("button", name="Sign in").click()
-        expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible(timeout=20_000)
+        expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
         page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to keys
         self.site.cookies[name] = page.context.cookies()
         return page

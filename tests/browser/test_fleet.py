@@ -33,8 +33,8 @@ def writes(page: Page, method: str, path: str, body: Any = None) -> Any:
 
 
 def is_saved(page: Page, name: str) -> None:
-    expect(page.get_by_text(f"{name} is saved.")).to_be_visible(timeout=20_000)
-    expect(details(page).get_by_role("heading", name=name, exact=True)).to_be_visible(timeout=20_000)
+    expect(page.get_by_text(f"{name} is saved.")).to_be_visible()
+    expect(details(page).get_by_role("heading", name=name, exact=True)).to_be_visible()
 
 
 def forgives(visitor: Visitor, *words: str) -> None:

@@ -45,14 +45,6 @@ def written(folder: Path, name: str, content: bytes) -> Path:
     return path
 
 
-@pytest.fixture(scope="module", autouse=True)
-def patience() -> Iterator[None]:
-    """A worker reads and applies what is waited for here: on a busy machine that takes longer than a page."""
-    expect.set_options(timeout=20_000)
-    yield
-    expect.set_options(timeout=5_000)
-
-
 @pytest.fixture(scope="module")
 def session() -> list[Any]:
     """Cora's cookies, once she has signed in."""

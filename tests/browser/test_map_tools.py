@@ -160,7 +160,7 @@ def test_the_coordinates_of_a_place_are_copied_latitude_first(operator: Page) ->
 
 @pytest.mark.parametrize("words", ["39.9612, -82.9988", "39°57'40.3\"N 82°59'55.7\"W"])
 def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -> None:
-    find = operator.get_by_role("combobox")
+    find = operator.get_by_role("combobox", name="Find an asset or a line")
     find.fill(words)
     expect(operator.get_by_role("option").first).to_contain_text("39.9612, −82.9988")
     find.press("Enter")
@@ -168,7 +168,7 @@ def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -
 
 
 def test_a_zone_is_found_by_name_and_gone_to(operator: Page) -> None:
-    operator.get_by_role("combobox").fill("Greenlawn")
+    operator.get_by_role("combobox", name="Find an asset or a line").fill("Greenlawn")
     operator.get_by_role("option", name="Greenlawn heliport").click()
     expect(operator).to_have_url(re.compile(r"#map=1[2-6][\d.]*/39\.9[45]\d*/-83\.0[12]\d*$"))
 
@@ -183,7 +183,7 @@ def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor
     expect(notice).to_be_visible()
     operator.unroute("**/api/v1/tiles/**", away)
     operator.get_by_role("button", name="Try now").click()
-    expect(notice).to_be_hidden(timeout=20_000)
+    expect(notice).to_be_hidden()
     heard = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint and not complaint.startswith("map: ")]
     assert heard == []
     visitor.complaints.clear()
@@ -200,11 +200,11 @@ def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
 
 def test_a_uav_points_along_its_heading_and_nowhere_without_one(operator: Page) -> None:
     token = next(cookie["value"] for cookie in operator.context.cookies() if cookie["name"] == "csrftoken")
-    for name, place, more in (("Whimbrel", RIVER, {"heading_deg": 90}), ("Godwit", [RIVER[0] + 0.02, RIVER[1]], {})):
+    for name, place, more in (("Sandpiper", RIVER, {"heading_deg": 90}), ("Turnstone", [RIVER[0] + 0.02, RIVER[1]], {})):
         answer = operator.request.post("/api/v1/uavs", data={"name": name, "position": place, **more}, headers={"X-CSRFToken": token})
         assert answer.status == 201, answer.text()
     opens_at(operator, RIVER, 12)
     map_region = operator.get_by_role("region", name="Map")
-    dart = map_region.get_by_role("button", name="Whimbrel, not in this mission, heading 090°")
+    dart = map_region.get_by_role("button", name="Sandpiper, not in this mission, heading 090°")
     expect(dart.locator("svg")).to_have_css("rotate", "90deg")
-    expect(map_region.get_by_role("button", name="Godwit, not in this mission", exact=True).locator("svg circle")).to_be_visible()
+    expect(map_region.get_by_role("button", name="Turnstone, not in this mission", exact=True).locator("svg circle")).to_be_visible()

@@ -11,7 +11,6 @@ from tests.browser.test_unsaved_changes import forgives, opens_mission, picks_fr
 
 pytestmark = pytest.mark.browser
 
-POLLED_MS = 20_000  # who is there is asked every 6 s, what is saved every 3 s
 SAVED = re.compile(r"^Saved \d\d:\d\d$")
 
 
@@ -31,18 +30,18 @@ def test_what_one_changes_arrives_at_the_other_by_itself(visitor: Visitor) -> No
     address = stores_mission(visitor.signs_in("opal"), "Seen by two")
     mine, theirs = both_open(visitor, address)
     expect(theirs.locator("#others")).to_have_text("Also open: opal")
-    expect(mine.locator("#others")).to_have_text("Also open: rory", timeout=POLLED_MS)
+    expect(mine.locator("#others")).to_have_text("Also open: rory")
     removes_first_target(mine)
     expect(mine.locator("#save-state")).to_have_text(SAVED)
-    expect(theirs.locator("#target-list .target")).to_have_count(1, timeout=POLLED_MS)
+    expect(theirs.locator("#target-list .target")).to_have_count(1)
     expect(theirs.get_by_text("opal: 1 target removed.")).to_be_visible()
     picks_from_the_search(theirs, "138 kV")
-    expect(mine.locator("#target-list .target")).to_have_count(2, timeout=POLLED_MS)
+    expect(mine.locator("#target-list .target")).to_have_count(2)
     mine.get_by_role("button", name="Undo", exact=True).click()  # one's own step alone
     expect(mine.locator("#target-list .target")).to_have_count(3)
-    expect(theirs.locator("#target-list .target")).to_have_count(3, timeout=POLLED_MS)
+    expect(theirs.locator("#target-list .target")).to_have_count(3)
     mine.goto("/")
-    expect(theirs.locator("#others")).to_be_hidden(timeout=POLLED_MS)
+    expect(theirs.locator("#others")).to_be_hidden()
 
 
 def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visitor) -> None:
@@ -56,7 +55,7 @@ def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visi
     mine.unroute("**/api/v1/missions/**")
     expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("Different parts, checked")
     expect(mine.locator("#save-state")).to_have_text(SAVED)
-    expect(theirs.locator("#target-list .target")).to_have_count(1, timeout=POLLED_MS)
+    expect(theirs.locator("#target-list .target")).to_have_count(1)
     stored = asks(mine, address)
     assert (stored["name"], len(stored["targets"])) == ("Different parts, checked", 1)
     visitor.complaints.clear()  # of the requests that were cut
@@ -74,7 +73,7 @@ def test_where_both_changed_the_same_the_operator_sees_both_and_decides(visitor:
     expect(theirs.locator("#save-state")).to_have_text(SAVED)
     expect(theirs.locator("#target-list .target")).to_have_count(1)
     mine.unroute("**/api/v1/missions/**")
-    expect(mine.get_by_text(re.compile(r"Your changes are from before rory’s save at \d\d:\d\d\."))).to_be_visible(timeout=POLLED_MS)
+    expect(mine.get_by_text(re.compile(r"Your changes are from before rory’s save at \d\d:\d\d\."))).to_be_visible()
     assert asks(mine, address)["name"] == "Theirs"  # nothing was overwritten
 
     mine.get_by_role("button", name="See both").click()
@@ -164,7 +163,7 @@ def test_a_zone_over_a_leg_is_told_to_the_open_page_with_a_way_out(visitor: Visi
     zone = curator.request.post("/api/v1/zones", data={"name": "Fire brigade", "geometry": polygon}, headers=headers)
     assert zone.status == 201, zone.text()
     try:
-        expect(page.get_by_text("A zone changed since this was planned.")).to_be_visible(timeout=POLLED_MS)
+        expect(page.get_by_text("A zone changed since this was planned.")).to_be_visible()
         expect(page.locator(".causes")).to_contain_text(re.compile(r"Fire brigade touches the (leg|route)"))
         page.locator("#notices").get_by_role("button", name="See the place").first.click()
         expect(page).to_have_url(re.compile(r"#map=1[4-9]"))

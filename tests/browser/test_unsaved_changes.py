@@ -69,7 +69,7 @@ def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) 
     mine.get_by_role("textbox", name="Name of the mission").fill("River crossing, mine")
     is_kept_here(mine)
     saves_as(theirs, "River crossing, checked")
-    expect(mine.get_by_text(BEHIND)).to_be_visible(timeout=20_000)
+    expect(mine.get_by_text(BEHIND)).to_be_visible()
     visitor.complaints.clear()  # of the saves that were cut
     assert len(targets(mine)) == 1
     mine.reload()
@@ -110,9 +110,7 @@ def test_a_save_in_one_window_leaves_the_changes_of_another(visitor: Visitor) ->
     removes_first_target(second)
     is_kept_here(second)
     saves_as(first, "Two windows, renamed")
-    expect(second.get_by_role("textbox", name="Name of the mission")).to_have_value(
-        "Two windows, renamed", timeout=20_000
-    )  # theirs came in
+    expect(second.get_by_role("textbox", name="Name of the mission")).to_have_value("Two windows, renamed")  # theirs came in
     assert len(targets(second)) == 1
     second.reload()
     wait_for_map(second)
