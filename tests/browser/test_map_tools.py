@@ -162,14 +162,14 @@ def test_the_coordinates_of_a_place_are_copied_latitude_first(operator: Page) ->
 def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -> None:
     find = operator.get_by_role("combobox", name="Find an asset or a line")
     find.fill(words)
-    expect(operator.get_by_role("option").first).to_contain_text("39.9612, −82.9988")
+    expect(operator.get_by_role("listbox").get_by_role("option").first).to_contain_text("39.9612, −82.9988")
     find.press("Enter")
     expect(operator).to_have_url(re.compile(r"#map=[\d.]+/39\.961\d*/-82\.998\d*$"))
 
 
 def test_a_zone_is_found_by_name_and_gone_to(operator: Page) -> None:
     operator.get_by_role("combobox", name="Find an asset or a line").fill("Greenlawn")
-    operator.get_by_role("option", name="Greenlawn heliport").click()
+    operator.get_by_role("listbox").get_by_role("option", name="Greenlawn heliport").click()
     expect(operator).to_have_url(re.compile(r"#map=1[2-6][\d.]*/39\.9[45]\d*/-83\.0[12]\d*$"))
 
 

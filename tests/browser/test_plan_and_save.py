@@ -73,8 +73,9 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     expect(page.locator("#save-state")).to_have_text(re.compile(r"^Saved \d\d:\d\d$"))
     address = page.url.split("#")[0]
 
-    page.get_by_role("button", name="Theme: system").click()
-    page.get_by_role("button", name="Theme: light").click()
+    page.get_by_role("button", name="Theme: as the system").click()
+    with page.expect_response(lambda answer: answer.url.endswith("/account") and "dark" in (answer.request.post_data or "")):
+        page.get_by_role("button", name="Theme: light").click()
     expect(page.locator("html")).to_have_attribute("data-theme", "dark")
     page.goto(address)
     wait_for_map(page)
@@ -83,13 +84,15 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     page.goto("/")
     expect(page.get_by_role("row").filter(has_text="South belt, autumn")).to_be_visible()
     picture(page, "missions-dark")
+    with page.expect_response(lambda answer: answer.url.endswith("/account") and "system" in (answer.request.post_data or "")):
+        page.get_by_role("button", name="Theme: dark").click()
 
     row = page.get_by_role("row").filter(has_text="South belt, autumn")
     row.get_by_role("button", name="More for South belt, autumn").click()
     page.get_by_role("button", name="Delete").click()
     expect(page.get_by_text("“South belt, autumn” is deleted.")).to_be_visible()
     expect(page.get_by_role("row").filter(has_text="South belt, autumn")).to_have_count(0)
-    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("button", name="Undo", exact=True).click()
     expect(page.get_by_role("row").filter(has_text="South belt, autumn")).to_be_visible()
 
 
@@ -119,11 +122,11 @@ def test_what_is_picked_can_be_undone_and_survives_a_reload(visitor: Visitor) ->
     expect(find).to_be_focused()
     expect(page.get_by_role("listbox").get_by_role("option").first).to_be_visible()  # empty: what is in view
     find.fill("138 kV")
-    expect(page.get_by_role("option").first).to_have_attribute("aria-selected", "true")
+    expect(page.get_by_role("listbox").get_by_role("option").first).to_have_attribute("aria-selected", "true")
     page.keyboard.press("Enter")
     expect(page.locator("#target-list .target")).to_have_count(1)
     find.fill("bridge")
-    page.get_by_role("option").nth(1).click()
+    page.get_by_role("listbox").get_by_role("option").nth(1).click()
     expect(page.locator("#target-list .target")).to_have_count(2)
     page.locator("#map canvas").focus()
 

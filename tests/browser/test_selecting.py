@@ -26,7 +26,7 @@ def rows(page: Page) -> Locator:
 def searches(page: Page, text: str) -> None:
     page.keyboard.press("/")
     page.get_by_role("combobox", name="Find an asset or a line").fill(text)
-    expect(page.get_by_role("option").first).to_have_attribute("aria-selected", "true")  # no longer what is in view
+    expect(page.get_by_role("listbox").get_by_role("option").first).to_have_attribute("aria-selected", "true")  # no longer what is in view
 
 
 def adds_all(page: Page, text: str) -> int:
@@ -101,7 +101,7 @@ def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> N
         if found["bridges"] and found["sections"] > 1
     )
     searches(page, railway["properties"]["osm"])
-    page.get_by_role("option").filter(has_text="section").click()
+    page.get_by_role("listbox").get_by_role("option").filter(has_text="section").click()
     page.get_by_role("button", name=re.compile("^Task of ")).click()
     page.get_by_role("button", name="Add every bridge of it").click()
     expect(rows(page)).to_have_count(1 + len(bridges))
@@ -121,7 +121,8 @@ def test_a_search_takes_all_that_match_and_is_filtered(visitor: Visitor) -> None
     page.get_by_role("button", name="Towers", exact=True).click()
     expect(page.get_by_role("button", name="Towers", exact=True)).to_have_attribute("aria-pressed", "true")
     expect(page.locator("#found-head")).to_have_text(re.compile(r"\d+ assets? in view"))
-    kinds = page.get_by_role("option").locator(".icon use").evaluate_all("uses => uses.map(use => use.getAttribute('href').split('#')[1])")
+    icons = page.get_by_role("listbox").get_by_role("option").locator(".icon use")
+    kinds = icons.evaluate_all("uses => uses.map(use => use.getAttribute('href').split('#')[1])")
     assert set(kinds) == {"tower"}
     page.get_by_role("combobox", name="Find an asset or a line").fill("no such thing")
     expect(page.get_by_text("No asset matches “no such thing” with these filters.")).to_be_visible()
@@ -131,7 +132,7 @@ def test_enter_waits_for_what_has_been_typed(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     line, _ = longest_line(page)
     page.keyboard.press("/")
-    expect(page.get_by_role("option").first).to_be_visible()  # what is in view
+    expect(page.get_by_role("listbox").get_by_role("option").first).to_be_visible()  # what is in view
     page.keyboard.type(line["properties"]["osm"])
     page.keyboard.press("Enter")
     expect(rows(page)).to_have_count(1)

@@ -31,7 +31,7 @@ def picks_from_the_search(page: Page, text: str) -> None:
     before = page.locator("#target-list .target").count()
     page.keyboard.press("/")
     page.get_by_role("combobox", name="Find an asset or a line").fill(text)
-    page.get_by_role("option", selected=True).click()  # the best match of the text, not what is in view
+    page.get_by_role("listbox").get_by_role("option", selected=True).click()  # the best match of the text, not what is in view
     expect(page.locator("#target-list .target")).to_have_count(before + 1)
     page.locator("#map canvas").focus()
 
