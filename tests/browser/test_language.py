@@ -1,6 +1,7 @@
 """The program in German: no English is left on any page, for the eye and for a screen reader."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -104,7 +105,7 @@ def _stores_mission(page: Page, **rest: Any) -> str:
     return str(answer.json()["id"])
 
 
-def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor) -> None:
+def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     reader = Reader()
     stranger = _german(visitor)
     for path in ("/sign-in", "/lost-password", "/lost-password/sent", "/new-password/x/y", "/invitation/unknown"):
@@ -127,6 +128,7 @@ def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor) -> Non
     reader.opens(page, f"/missions/{mission}")
     wait_for_map(page)
     reader.reads(page, "a planned mission")
+    picture(page, "plan-german")
     page.keyboard.press("?")
     expect(page.get_by_role("dialog", name="Tastatur")).to_be_visible()
     reader.reads(page, "the keys of the mission")

@@ -1,6 +1,7 @@
 """What the map offers to look with: tooltips, layers, measuring, coordinates, places to go to, and what is said when it cannot be read."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -90,7 +91,7 @@ def test_a_zone_under_the_pointer_tells_its_heights_times_source_and_whether_it_
         removes_zone(curator, number)
 
 
-def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(operator: Page) -> None:
+def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(operator: Page, picture: Callable[[Page, str], None]) -> None:
     line = asks(operator, "/assets?kind=line&text=138&limit=1")["features"][0]
     look_at(operator, line["properties"]["centre"], 13)
     legend = operator.get_by_role("list", name="Legend")
@@ -101,6 +102,7 @@ def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(opera
     expect(legend).not_to_contain_text("100 to 199 kV")
     expect(operator.get_by_role("button", name="Layers: some are hidden")).to_be_visible()
     menu.get_by_label("Railways").uncheck()
+    picture(operator, "map-layers")
     expect(legend).not_to_contain_text("Railway")
     menu.get_by_role("button", name="Show everything").click()
     expect(legend).to_contain_text("100 to 199 kV")

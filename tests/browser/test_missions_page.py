@@ -1,6 +1,7 @@
 """The list of missions: found, sorted, renamed, copied, deleted and brought back, without leaving it."""
 
 import re
+from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
@@ -32,7 +33,7 @@ def names(page: Page) -> list[str]:
     return page.locator("#rows .name a").all_text_contents()
 
 
-def test_missions_are_found_by_name_and_target_and_sorted_by_a_column(visitor: Visitor) -> None:
+def test_missions_are_found_by_name_and_target_and_sorted_by_a_column(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     for name in ("Zebra ford", "Aspen ford", "Maple ford"):
         stores_mission(page, name)
@@ -53,6 +54,7 @@ def test_missions_are_found_by_name_and_target_and_sorted_by_a_column(visitor: V
     expect(page.get_by_role("searchbox")).to_have_value(target)
     seeks(page, "nothing is called this")
     expect(page.get_by_text("No mission matches “nothing is called this”")).to_be_visible()
+    picture(page, "missions-none")
     page.get_by_role("button", name="Clear the filters").last.click()
     expect(row(page, "Aspen ford")).to_be_visible()
 

@@ -1,6 +1,7 @@
 """Picking what is inspected: by lasso, stretch, railway, search and list; tasks, several at once, undo, saved selections."""
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -139,7 +140,9 @@ def test_enter_waits_for_what_has_been_typed(visitor: Visitor) -> None:
     assert targets(page) == [line["properties"]["label"]]
 
 
-def test_a_pasted_list_says_what_is_found_what_is_unclear_and_what_is_unknown(visitor: Visitor) -> None:
+def test_a_pasted_list_says_what_is_found_what_is_unclear_and_what_is_unknown(
+    visitor: Visitor, picture: Callable[[Page, str], None]
+) -> None:
     page = opens_new_mission(visitor)
     towers = asks(page, "/assets?kind=tower&flyable=true&limit=3")["features"]
     name, shared = shared_name(page)
@@ -153,6 +156,7 @@ def test_a_pasted_list_says_what_is_found_what_is_unclear_and_what_is_unknown(vi
     expect(dialog.get_by_role("region", name="Not known")).to_contain_text("nowhere 7")
     expect(dialog.get_by_role("button", name="Add 3 targets")).to_be_enabled()
     dialog.get_by_label(name).select_option(index=2)
+    picture(page, "select-pasted-list")
     dialog.get_by_role("button", name="Add 4 targets").click()
     expect(rows(page)).to_have_count(4)
     assert targets(page)[:3] == [feature["properties"]["label"] for feature in towers]
@@ -174,7 +178,7 @@ def tasks(page: Page) -> list[str]:
     return [str(button.get_attribute("title")) for button in buttons.all()]
 
 
-def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: Visitor) -> None:
+def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = opens_new_mission(visitor)
     _, supports = longest_line(page)
     page.keyboard.press("i")
@@ -204,6 +208,7 @@ def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: 
     wait_for_map(page)
     assert tasks(page) == ["Hold over it, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
     page.get_by_role("button", name=re.compile("^Task of ")).first.click()
+    picture(page, "select-task")
     page.get_by_role("button", name="Take photos", exact=True).click()
     assert tasks(page)[0] == usual
     page.keyboard.press("Control+z")

@@ -1,6 +1,7 @@
 """Two people in one mission: they see each other, their changes come together, and nobody overwrites what they have not seen."""
 
 import re
+from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -62,7 +63,9 @@ def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visi
 
 
 @pytest.mark.parametrize("way", ["top", "theirs", "copy", "both"])
-def test_where_both_changed_the_same_the_operator_sees_both_and_decides(visitor: Visitor, way: str) -> None:
+def test_where_both_changed_the_same_the_operator_sees_both_and_decides(
+    visitor: Visitor, picture: Callable[[Page, str], None], way: str
+) -> None:
     address = stores_mission(visitor.signs_in("opal"), "Contested")
     mine, theirs = both_open(visitor, address)
     mine.route("**/api/v1/missions/**", lambda route: route.abort())
@@ -81,6 +84,7 @@ def test_where_both_changed_the_same_the_operator_sees_both_and_decides(visitor:
     expect(dialog.get_by_role("row", name="Name")).to_contain_text("Mine")
     expect(dialog.get_by_role("row", name="Name")).to_contain_text("Theirs")
     expect(dialog.get_by_role("row", name="Targets")).to_contain_text("removed: ")
+    picture(mine, "together-both-versions")
     name = mine.get_by_role("textbox", name="Name of the mission")
     if way == "top":
         dialog.get_by_role("button", name="Put mine on top").click()
@@ -119,7 +123,7 @@ def test_a_mission_that_somebody_deletes_can_be_brought_back_from_the_open_page(
     visitor.complaints.clear()
 
 
-def test_the_history_says_in_words_who_did_what(visitor: Visitor) -> None:
+def test_the_history_says_in_words_who_did_what(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, stores_mission(page, "Told later"))
     removes_first_target(page)
@@ -132,6 +136,7 @@ def test_the_history_says_in_words_who_did_what(visitor: Visitor) -> None:
     expect(lines.nth(0)).to_contain_text("1 target removed: ")
     expect(lines.nth(1)).to_contain_text("Planned opal")
     expect(lines.nth(2)).to_contain_text("2 targets, 2 UAVs")
+    picture(page, "mission-history")
 
 
 def test_the_address_to_share_leads_to_the_same_mission_and_place(visitor: Visitor) -> None:
@@ -149,7 +154,7 @@ def test_the_address_to_share_leads_to_the_same_mission_and_place(visitor: Visit
     expect(other).to_have_url(re.compile(r"#map=13\.5/39\.9"))
 
 
-def test_a_zone_over_a_leg_is_told_to_the_open_page_with_a_way_out(visitor: Visitor) -> None:
+def test_a_zone_over_a_leg_is_told_to_the_open_page_with_a_way_out(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     address = stores_mission(page, "Under a new zone")
     opens_mission(page, address)
@@ -168,6 +173,7 @@ def test_a_zone_over_a_leg_is_told_to_the_open_page_with_a_way_out(visitor: Visi
         page.locator("#notices").get_by_role("button", name="See the place").first.click()
         expect(page).to_have_url(re.compile(r"#map=1[4-9]"))
         expect(page.locator("#notices").get_by_role("button", name="Plan again")).to_be_visible()
+        picture(page, "mission-stale")
         assert asks(page, address)["stale_causes"][0]["what"] == "zone"
     finally:
         curator.request.delete(f"/api/v1/zones/{zone.json()['id']}", headers=headers | {"If-Match": "*"})
