@@ -149,7 +149,7 @@ def open_map(browser: Browser, site: Installation, state: dict[str, Any], view: 
     context.add_init_script(WATCH)
     page = context.new_page()
     fetched: list[Request] = []
-    page.on("requestfinished", fetched.append)  # those of workers too
+    page.on("requestfinished", lambda request: fetched.append(request))  # those of workers too
     page.goto(f"/missions/new{view}")
     page.wait_for_function("() => watched.usable !== null && watched.drawn !== null", timeout=60_000)
     return page, fetched
