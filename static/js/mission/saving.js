@@ -34,6 +34,7 @@ export function createSaving({ store, history, selection, change, problem, faile
   const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.basisOf(picked), name, plan?.basis ?? null]);
 
   function shownAs(mission, stored, plan) {
+    refused = null; // what was refused may go on top of this revision
     store.update({
       mission,
       stored: { name: mission.name, selection: stored },
@@ -126,6 +127,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       }
       unsure = refused = null;
       drafts.dropOwn(draftOf);
+      if (isNew && store.state.name === asked.name) store.update({ name: saved.name }); // a mission without a name is given one
       keepOpen(saved, asked);
       if (isNew) addressNow(saved);
       settleDraft();
@@ -134,8 +136,8 @@ export function createSaving({ store, history, selection, change, problem, faile
     } catch (error) {
       const lost = unsure?.asked ?? null; // what an earlier try may have stored after all
       unsure = error.isAway ? { asked, body, key, isNew, asCopy } : null;
-      refused = whatIsThere(store.state);
       if (draftId) await get(`/missions/${draftId}`).then(({ data }) => keepOpen(data, asked), () => {});
+      refused = whatIsThere(store.state);
       await saveFailed(error, asCopy, lost);
     } finally {
       running.stopping = null;
