@@ -28,6 +28,7 @@ from playwright.sync_api import Browser, Page, Request, sync_playwright
 
 from benchmarks.large_region import tile_of, write_region
 from scripts.places import Places
+from scripts.system_packages import BROWSERS
 from tests.browser.conftest import CHROMIUM_FLAGS
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
@@ -227,7 +228,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--assets", type=int, default=200_000)
     parser.add_argument("--state", type=Path, help="folder that keeps the installation for another run")
-    parser.add_argument("--chromium", default="/usr/bin/chromium")
+    parser.add_argument("--chromium", default=next(filter(None, map(shutil.which, BROWSERS)), None))
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         state = options.state or Path(folder) / "state"

@@ -14,6 +14,7 @@ import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_playwright
 
 from scripts.places import Places
+from scripts.system_packages import BROWSERS
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 # findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
@@ -72,7 +73,7 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
-    program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
     assert program, "Chromium is missing; ./check installs it"
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=CHROMIUM_FLAGS)

@@ -205,7 +205,7 @@ def test_what_was_typed_stays_when_the_network_is_gone_and_comes_back_when_it_wa
     page.get_by_role("button", name="Save", exact=True).click()
     is_saved(page, "Curlew")
     assert asks(page, f"/uavs/{uav}")["properties"]["serial_number"] == "SN-2"
-    forgives(visitor, "ERR_INTERNET_DISCONNECTED")
+    forgives(visitor, "ERR_INTERNET_DISCONNECTED", "map: ")  # a tile of the map may have been on its way
 
 
 def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
