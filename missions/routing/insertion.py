@@ -26,8 +26,8 @@ class ArcTable:
         self.arc_m = np.full((uavs + visits, visits + uavs), np.inf)
         self.arc_m[:uavs, :visits] = problem.from_start_m
         self.arc_m[uavs:, :visits] = problem.between_m
-        for uav, start in enumerate(problem.uavs):
-            self.arc_m[uavs:, visits + uav] = problem.to_start_m[:, uav] if start.returns else 0.0
+        for uav in range(uavs):
+            self.arc_m[uavs:, visits + uav] = problem.end_m[:, uav]
             self.arc_m[uav, visits + uav] = 0.0
         self.limit_m = np.array([start.limit_m for start in problem.uavs], dtype=np.float64)
 

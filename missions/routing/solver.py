@@ -96,7 +96,8 @@ def searched_plan(
 
 def _solution(problem: Problem, routes: Routes, needed_m: NDArray[np.float64]) -> Solution:
     lengths_m = [problem.route_length_m(uav, route) for uav, route in enumerate(routes)]
-    return Solution(routes, reasons(problem, needed_m, routes), sum(lengths_m), max(lengths_m, default=0.0))
+    longest_s = max((problem.route_duration_s(uav, route) for uav, route in enumerate(routes)), default=0.0)
+    return Solution(routes, reasons(problem, needed_m, routes), sum(lengths_m), max(lengths_m, default=0.0), longest_s, 0.0, 1.0, False, "")
 
 
 def _progress_message(problem: Problem, routes: Routes) -> str:

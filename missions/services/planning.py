@@ -15,7 +15,7 @@ from missions.flight_plan.flyable_graph import flyable_graph, node_heights_m
 from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
 from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
 from missions.models import EndAction
-from missions.routing.problem import Problem, UavStart, Visit
+from missions.routing.problem import End, Problem, UavStart, Visit
 from missions.routing.solver import OnProgress, Stop, never, no_report, solve
 from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
@@ -55,7 +55,7 @@ def make_plan(
         rules=scene.access,
     )
     problem = Problem(
-        uavs=tuple(UavStart(request.uavs[uav].max_range_m, end_action(request, uav) is EndAction.RETURN) for uav in uavs),
+        uavs=tuple(UavStart(request.uavs[uav].max_range_m, route_end(request, uav), request.uavs[uav].cruise_speed_mps) for uav in uavs),
         visits=tuple(visits),
         target_count=len(places),
         from_start_m=ways.from_start_m,
@@ -106,15 +106,19 @@ def end_action(request: PlanRequest, uav: int) -> EndAction:
     return EndAction.RETURN if request.return_to_start else request.uavs[uav].end_action
 
 
+def route_end(request: PlanRequest, uav: int) -> End:
+    return End.RETURN if end_action(request, uav) is EndAction.RETURN else End.OPEN
+
+
 def visits_of_places(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
     """The ways of doing each place, with the course of each: a stretch can be flown from either end."""
     visits, courses = [], []
     for number, place in enumerate(places):
         length_m = path_length_m(np.array(place.course))
-        visits.append(Visit(number, is_reversed=False, length_m=length_m))
+        visits.append(Visit(number, is_reversed=False, length_m=length_m, service_s=place.task.hold_s))
         courses.append(place.course)
         if place.is_stretch:
-            visits.append(Visit(number, is_reversed=True, length_m=length_m))
+            visits.append(Visit(number, is_reversed=True, length_m=length_m, service_s=place.task.hold_s))
             courses.append(tuple(reversed(place.course)))
     return visits, courses
 

@@ -18,7 +18,7 @@ from missions.routing.problem import Objective, Problem, UavStart
 from missions.routing.reach import needed_range_m
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene, end_action, visits_of_places
+from missions.services.planning import current_scene, route_end, visits_of_places
 from missions.services.refusals import Scene, grounded_reason, place_height_m
 from missions.services.requests import PlanRequest, UavRequest
 from workspace.models import Organisation
@@ -152,7 +152,7 @@ def _needs(request: PlanRequest, asked: list[UavRequest], place: Place, scene: S
     )
     fleet = PlanRequest(tuple(asked), request.targets, request.objective, request.return_to_start)
     problem = Problem(
-        uavs=tuple(UavStart(uav.max_range_m, end_action(fleet, number) is EndAction.RETURN) for number, uav in enumerate(asked)),
+        uavs=tuple(UavStart(uav.max_range_m, route_end(fleet, number)) for number, uav in enumerate(asked)),
         visits=tuple(visits),
         target_count=1,
         from_start_m=ways.from_start_m,

@@ -16,12 +16,11 @@ from inspection.geodesy import distance_m, path_length_m
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.selectors import zones_in_force
 from inspection.services import import_osm
-from missions.models import EndAction
 from missions.routing.problem import Problem, UavStart, Visit
 from missions.routing.terminals import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
 from missions.services import PlanRequest, make_plan
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene
+from missions.services.planning import current_scene, route_end
 from missions.services.refusals import Scene
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones
@@ -135,8 +134,7 @@ class _Model:
         self.ways: Ways = ways_between(scene.graph, scene.zones, self.starts, self.entries, self.exits, scene.access)
         self.problem = Problem(
             uavs=tuple(
-                UavStart(request.uavs[uav].max_range_m, request.return_to_start or request.uavs[uav].end_action is EndAction.RETURN)
-                for uav in self.uavs
+                UavStart(request.uavs[uav].max_range_m, route_end(request, uav), request.uavs[uav].cruise_speed_mps) for uav in self.uavs
             ),
             visits=tuple(self.visits),
             target_count=len(self.open),

@@ -5,7 +5,7 @@ from itertools import permutations, product
 
 import numpy as np
 
-from missions.routing.problem import Objective, Problem, UavStart, Visit, merit
+from missions.routing.problem import End, Objective, Problem, UavStart, Visit, merit
 
 
 def random_problem(
@@ -49,7 +49,7 @@ def random_problem(
         return np.where(joined, straight * draw.uniform(1.0, 1.4, straight.shape), np.inf)
 
     return Problem(
-        uavs=tuple(UavStart(range_m, returns) for _ in range(uavs)),
+        uavs=tuple(UavStart(range_m, End.RETURN if returns else End.OPEN) for _ in range(uavs)),
         visits=tuple(visits),
         target_count=targets,
         from_start_m=ways(list(starts), entries, start_networks, visit_networks),

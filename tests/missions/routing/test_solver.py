@@ -8,7 +8,7 @@ import pytest
 
 from missions.routing.exact import best_plan
 from missions.routing.insertion import insertion_plans, ruin_and_recreate
-from missions.routing.problem import Objective, Problem, Reason, Routes, UavStart, Visit, merit
+from missions.routing.problem import End, Objective, Problem, Reason, Routes, UavStart, Visit, merit
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.solver import never, no_report, searched_plan, solve
 from tests.missions.routing.random_problems import best_merit, random_problem
@@ -116,7 +116,7 @@ def test_a_stretch_is_flown_from_the_end_that_is_nearer() -> None:
 
 def test_a_target_that_the_range_just_reaches_is_visited() -> None:
     assert solve(on_a_line([10], (UavStart(10_001.0),))).unassigned == ()
-    assert solve(on_a_line([10], (UavStart(20_001.0, returns=True),))).unassigned == ()
+    assert solve(on_a_line([10], (UavStart(20_001.0, end=End.RETURN),))).unassigned == ()
 
 
 def test_a_target_beyond_every_range_says_how_much_is_missing() -> None:
@@ -134,7 +134,7 @@ def test_the_missing_range_is_that_of_a_uav_that_has_a_way() -> None:
 
 
 def test_the_way_back_counts_for_a_uav_that_returns() -> None:
-    (left_out,) = solve(on_a_line([10], (UavStart(15_000.0, returns=True),))).unassigned
+    (left_out,) = solve(on_a_line([10], (UavStart(15_000.0, end=End.RETURN),))).unassigned
     assert left_out.reason is Reason.BEYOND_RANGE
     assert left_out.message.startswith("It is 20.0 km there and back, 5.0 km more")
 
