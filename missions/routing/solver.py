@@ -10,7 +10,8 @@ from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
 from missions.routing import exact
 from missions.routing.insertion import ArcTable, insertion_plans, ruin_and_recreate, with_missing_inserted
-from missions.routing.problem import Objective, Problem, Routes, Solution, merit
+from missions.routing.locks import reduced
+from missions.routing.problem import Objective, Problem, Routes, Solution, Unassigned, merit
 from missions.routing.reach import needed_range_m, reachable, reasons
 
 CM_PER_M = 100
@@ -49,16 +50,21 @@ def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_
     seed alone as long as `search_s` is 0; with it a guided search goes on for about so many seconds. `stop` is asked several times a
     second while OR-tools searches; once it is true, the best plan so far is returned.
     """
-    needed_m = needed_range_m(problem)
-    usable = reachable(problem, needed_m)
+    whole = reduced(problem) if problem.locks else None
+    solved = problem if whole is None else whole.problem
+    needed_m = needed_range_m(solved)
+    usable = reachable(solved, needed_m)
     empty: Routes = ((),) * len(problem.uavs)
     if not usable.any():
-        return _solution(problem, empty, needed_m)
-    if problem.target_count <= exact.MAX_TARGETS:
-        routes = exact.best_plan(problem)
+        routes = empty
+    elif solved.target_count <= exact.MAX_TARGETS:
+        routes = exact.best_plan(solved)
     else:
-        routes = searched_plan(problem, usable, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
-    return _solution(problem, routes, needed_m)
+        routes = searched_plan(solved, usable, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+    left_out = reasons(solved, needed_m, routes)
+    if whole is not None:
+        routes, left_out = whole.expanded(routes), whole.expanded_reasons(left_out)
+    return _solution(problem, routes, left_out)
 
 
 def searched_plan(
@@ -94,10 +100,10 @@ def searched_plan(
     return best
 
 
-def _solution(problem: Problem, routes: Routes, needed_m: NDArray[np.float64]) -> Solution:
+def _solution(problem: Problem, routes: Routes, left_out: tuple[Unassigned, ...]) -> Solution:
     lengths_m = [problem.route_length_m(uav, route) for uav, route in enumerate(routes)]
     longest_s = max((problem.route_duration_s(uav, route) for uav, route in enumerate(routes)), default=0.0)
-    return Solution(routes, reasons(problem, needed_m, routes), sum(lengths_m), max(lengths_m, default=0.0), longest_s, 0.0, 1.0, False, "")
+    return Solution(routes, left_out, sum(lengths_m), max(lengths_m, default=0.0), longest_s, 0.0, 1.0, False, "")
 
 
 def _progress_message(problem: Problem, routes: Routes) -> str:
