@@ -9,8 +9,8 @@ from scipy.spatial import cKDTree
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.edges import component_labels
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.legs import Attachment
 from inspection.graph.nearness import chord, on_unit_sphere
-from inspection.graph.shortest_paths import Attachment
 from inspection.graph.zone_index import ZoneIndex
 
 

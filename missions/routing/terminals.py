@@ -11,8 +11,9 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.access import clear_legs, node_locator
 from inspection.graph.inspection_graph import InspectionGraph, NodeKind
+from inspection.graph.legs import Attachment, DirectLeg
 from inspection.graph.nearness import chord, on_unit_sphere
-from inspection.graph.shortest_paths import Attachment, DirectLeg, Travel, travel_between
+from inspection.graph.ways import Travel, travel_between
 from inspection.graph.zone_index import ZoneIndex
 
 FloatArray = NDArray[np.float64]

@@ -1,0 +1,155 @@
+"""The graph without its chains: junctions and ends of lines are the core, what lies between two of them is one chain.
+
+In graphs of power lines 90 to 98 % of the nodes have two neighbours. A chain keeps its nodes in order with the sums of cost and
+length from its first node on, so that the way from any node on it to either end, or to another node on it, is a subtraction.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+NumberArray = NDArray[np.int32]
+
+CORE = -1  # in place of a chain's number, for a node of the core
+
+
+@dataclass(frozen=True, eq=False)
+class CondensedGraph:
+    """k core nodes and c chains; p places on chains, both ends of each included; n nodes.
+
+    core_node     int32 (k,)      the graph's number of each core node
+    node_chain    int32 (n,)      the chain that a node lies within, CORE for a core node
+    node_place    int32 (n,)      its place on the chain; for a core node its number in the core
+    chain_first   int32 (c + 1,)  where each chain's places begin
+    chain_tail, chain_head  int32 (c,)  core nodes at its ends; one and the same for a loop
+    place_node    int32 (p,)      the graph's number of the node at each place
+    place_cost    float64 (p,)    from the chain's first place
+    place_m       float64 (p,)    from the chain's first place
+    """
+
+    core_node: NumberArray
+    node_chain: NumberArray
+    node_place: NumberArray
+    chain_first: NumberArray
+    chain_tail: NumberArray
+    chain_head: NumberArray
+    place_node: NumberArray
+    place_cost: FloatArray
+    place_m: FloatArray
+
+    @property
+    def core_count(self) -> int:
+        return len(self.core_node)
+
+    @property
+    def chain_cost(self) -> FloatArray:
+        cost: FloatArray = self.place_cost[self.chain_first[1:] - 1]
+        return cost
+
+    @property
+    def chain_m(self) -> FloatArray:
+        length_m: FloatArray = self.place_m[self.chain_first[1:] - 1]
+        return length_m
+
+
+def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, length_m: FloatArray) -> CondensedGraph:
+    """Chains and core of an undirected graph with edges (m, 2); several between two nodes are allowed, loops at a node are left out.
+
+    The core is every node that has not exactly two edges, and of a ring that meets no such node the one with the lowest number.
+    """
+    tail, head = np.array(edge[:, 0], dtype=np.int32), np.array(edge[:, 1], dtype=np.int32)
+    arrays = _condense(node_count, tail, head, np.array(cost, dtype=np.float64), np.array(length_m, dtype=np.float64))
+    for array in arrays:
+        array.setflags(write=False)
+    return CondensedGraph(*arrays)
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _condense(
+    node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray
+) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, FloatArray, FloatArray]:
+    first = np.zeros(node_count + 1, dtype=np.int32)
+    for edge in range(len(tail)):
+        if tail[edge] != head[edge]:
+            first[tail[edge] + 1] += 1
+            first[head[edge] + 1] += 1
+    for node in range(node_count):
+        first[node + 1] += first[node]
+    edge_at = np.empty(first[node_count], dtype=np.int32)
+    filled = first[:-1].copy()
+    for edge in range(len(tail)):
+        if tail[edge] != head[edge]:
+            for node in (tail[edge], head[edge]):
+                edge_at[filled[node]] = edge
+                filled[node] += 1
+
+    node_chain = np.full(node_count, -2, dtype=np.int32)
+    node_place = np.full(node_count, -1, dtype=np.int32)
+    core_node = np.empty(node_count, dtype=np.int32)
+    core_count = 0
+    for node in range(node_count):
+        if first[node + 1] - first[node] != 2:
+            node_chain[node] = -1
+            node_place[node] = core_count
+            core_node[core_count] = node
+            core_count += 1
+
+    most_chains = len(tail)
+    chain_first = np.empty(most_chains + 1, dtype=np.int32)
+    chain_tail = np.empty(most_chains, dtype=np.int32)
+    chain_head = np.empty(most_chains, dtype=np.int32)
+    place_node = np.empty(2 * len(tail), dtype=np.int32)
+    place_cost = np.empty(2 * len(tail))
+    place_m = np.empty(2 * len(tail))
+    chain_first[0] = 0
+    chains, places = 0, 0
+    is_walked = np.zeros(len(tail), dtype=np.bool_)
+    # First the chains that begin at a core node, then rings, of which the first node met joins the core.
+    for pick in range(core_count + node_count):
+        if pick < core_count:
+            begin = core_node[pick]
+        else:
+            begin = pick - core_count
+            if node_chain[begin] != -2:
+                continue
+            node_chain[begin] = -1
+            node_place[begin] = core_count
+            core_node[core_count] = begin
+            core_count += 1
+        for at in range(first[begin], first[begin + 1]):
+            edge = edge_at[at]
+            if is_walked[edge]:
+                continue
+            node, walked_cost, walked_m = begin, 0.0, 0.0
+            place_node[places], place_cost[places], place_m[places] = node, 0.0, 0.0
+            places += 1
+            while True:
+                is_walked[edge] = True
+                node = head[edge] if tail[edge] == node else tail[edge]
+                walked_cost += cost[edge]
+                walked_m += length_m[edge]
+                place_node[places], place_cost[places], place_m[places] = node, walked_cost, walked_m
+                places += 1
+                if node_chain[node] == -1:
+                    break
+                node_chain[node] = chains
+                node_place[node] = places - 1
+                edge = edge_at[first[node]] if edge_at[first[node]] != edge else edge_at[first[node] + 1]
+            chain_tail[chains] = node_place[begin]
+            chain_head[chains] = node_place[node]
+            chains += 1
+            chain_first[chains] = places
+    return (
+        core_node[:core_count].copy(),
+        node_chain,
+        node_place,
+        chain_first[: chains + 1].copy(),
+        chain_tail[:chains].copy(),
+        chain_head[:chains].copy(),
+        place_node[:places].copy(),
+        place_cost[:places].copy(),
+        place_m[:places].copy(),
+    )

@@ -1,0 +1,324 @@
+"""Exact distances over the core from hub labels: each core node knows the way to a few hubs, and two nodes meet at one of them.
+
+Pruned landmark labelling (Akiba, Iwata and Yoshida 2013): Dijkstra's search from one node after the other, which turns back wherever
+the hubs of earlier searches know a way that is not worse. The order decides how few hubs are enough; as in Delling, Goldberg, Pajor
+and Werneck 2014, the next hub is the node that covers the most pairs of sampled trees of shortest ways that are not covered yet.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.graph.condensed import CondensedGraph, FloatArray, NumberArray
+
+SAMPLED_TREES = 48
+MOST_SAMPLED_NODES = 4_000_000  # in all trees together
+FEWEST_TREES = 4
+SEED = 20_130_622  # of the sample; the same graph always gives the same labels
+
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class HubLabels:
+    """k core nodes, e entries; the entries of a node are sorted by hub.
+
+    label_first  int64 (k + 1,)  where each core node's entries begin
+    label_hub    int32 (e,)      the hub's place in the order
+    label_chain  int32 (e,)      the first chain on the way to the hub, -1 at the hub itself
+    label_cost   float64 (e,)    of the way to the hub
+    label_m      float64 (e,)    metres of it
+    component    int32 (k,)      number of the connected component
+    """
+
+    label_first: IntArray
+    label_hub: NumberArray
+    label_chain: NumberArray
+    label_cost: FloatArray
+    label_m: FloatArray
+    component: NumberArray
+
+
+def label(condensed: CondensedGraph) -> HubLabels:
+    """Labels of the core's nodes by the cost of the chains."""
+    tail, head, cost, length_m = condensed.chain_tail, condensed.chain_head, condensed.chain_cost, condensed.chain_m
+    first, chain_at = _chains_of_nodes(condensed.core_count, tail, head)
+    trees = max(FEWEST_TREES, min(SAMPLED_TREES, MOST_SAMPLED_NODES // max(1, condensed.core_count)))
+    random = np.random.default_rng(SEED)
+    roots = np.empty((trees, condensed.core_count), dtype=np.int32)
+    for tree in range(trees):
+        roots[tree] = random.permutation(condensed.core_count)
+    order, component = _order(first, chain_at, tail, head, cost, roots)
+    arrays = (*_label(first, chain_at, tail, head, cost, length_m, order), component)
+    for array in arrays:
+        array.setflags(write=False)
+    return HubLabels(*arrays)
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _chains_of_nodes(core_count: int, tail: NumberArray, head: NumberArray) -> tuple[NumberArray, NumberArray]:
+    """The chains at each core node, one after another, and where each node's begin; loops lead nowhere and are left out."""
+    first = np.zeros(core_count + 1, dtype=np.int32)
+    for chain in range(len(tail)):
+        if tail[chain] != head[chain]:
+            first[tail[chain] + 1] += 1
+            first[head[chain] + 1] += 1
+    for node in range(core_count):
+        first[node + 1] += first[node]
+    chain_at = np.empty(first[core_count], dtype=np.int32)
+    filled = first[:-1].copy()
+    for chain in range(len(tail)):
+        if tail[chain] != head[chain]:
+            chain_at[filled[tail[chain]]] = chain
+            filled[tail[chain]] += 1
+            chain_at[filled[head[chain]]] = chain
+            filled[head[chain]] += 1
+    return first, chain_at
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _push(heap_key: FloatArray, heap_node: NumberArray, size: int, key: float, node: int) -> int:
+    """Add to a binary heap whose least key comes first; returns the new size."""
+    at = size
+    while at > 0:
+        above = (at - 1) >> 1
+        if heap_key[above] <= key:
+            break
+        heap_key[at], heap_node[at] = heap_key[above], heap_node[above]
+        at = above
+    heap_key[at], heap_node[at] = key, node
+    return size + 1
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _drop_first(heap_key: FloatArray, heap_node: NumberArray, size: int) -> int:
+    """Take the first out of a binary heap; returns the new size."""
+    size -= 1
+    key, node = heap_key[size], heap_node[size]
+    at = 0
+    while True:
+        below = 2 * at + 1
+        if below >= size:
+            break
+        if below + 1 < size and heap_key[below + 1] < heap_key[below]:
+            below += 1
+        if heap_key[below] >= key:
+            break
+        heap_key[at], heap_node[at] = heap_key[below], heap_node[below]
+        at = below
+    heap_key[at], heap_node[at] = key, node
+    return size
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _order(
+    first: NumberArray, chain_at: NumberArray, tail: NumberArray, head: NumberArray, cost: FloatArray, roots: NumberArray
+) -> tuple[NumberArray, NumberArray]:
+    """The core's nodes, the best hub first, and the component of each.
+
+    roots has a row for each sample: in each component the tree grows from the node that the row names first.
+    """
+    trees, nodes = roots.shape
+    component = np.full(nodes, -1, dtype=np.int32)
+    parent = np.empty((trees, nodes), dtype=np.int32)
+    child = np.full((trees, nodes), -1, dtype=np.int32)  # the first of each node
+    sibling = np.full((trees, nodes), -1, dtype=np.int32)  # the next child of the same parent
+    below = np.ones((trees, nodes), dtype=np.int32)  # nodes of the subtree that are not covered yet
+    heap_key = np.empty(2 * len(chain_at) + nodes + 1)
+    heap_node = np.empty(2 * len(chain_at) + nodes + 1, dtype=np.int32)
+    reached = np.empty(nodes)
+    settled = np.empty(nodes, dtype=np.int32)
+    components = 0
+    for tree in range(trees):
+        reached[:] = np.inf
+        is_settled = np.zeros(nodes, dtype=np.bool_)
+        count = 0
+        for root in roots[tree]:
+            if is_settled[root]:
+                continue
+            reached[root] = 0.0
+            parent[tree, root] = -1
+            size = _push(heap_key, heap_node, 0, 0.0, root)
+            while size:
+                node = heap_node[0]
+                size = _drop_first(heap_key, heap_node, size)
+                if is_settled[node]:
+                    continue
+                is_settled[node] = True
+                settled[count] = node
+                count += 1
+                if tree == 0:
+                    component[node] = components
+                for at in range(first[node], first[node + 1]):
+                    chain = chain_at[at]
+                    other = head[chain] if tail[chain] == node else tail[chain]
+                    key = reached[node] + cost[chain]
+                    if key < reached[other]:
+                        reached[other] = key
+                        parent[tree, other] = node
+                        size = _push(heap_key, heap_node, size, key, other)
+            components += 1
+        for place in range(nodes - 1, -1, -1):
+            node = settled[place]
+            above = parent[tree, node]
+            if above >= 0:
+                below[tree, above] += below[tree, node]
+                sibling[tree, node] = child[tree, above]
+                child[tree, above] = node
+
+    # Greedy cover. A node's worth only falls: one that has fallen since it was put on the heap goes back with what it is worth now.
+    worth = np.zeros(nodes, dtype=np.int64)
+    for tree in range(trees):
+        for node in range(nodes):
+            worth[node] += below[tree, node]
+    tie = np.empty(nodes)  # of nodes that are worth the same, the one with more chains comes first
+    size = 0
+    for node in range(nodes):
+        tie[node] = 0.5 - 0.5 / (1.0 + first[node + 1] - first[node])
+        size = _push(heap_key, heap_node, size, -(worth[node] + tie[node]), node)
+    order = np.empty(nodes, dtype=np.int32)
+    ordered = 0
+    stack = np.empty(nodes + 1, dtype=np.int32)
+    while size:
+        key, node = heap_key[0], heap_node[0]
+        size = _drop_first(heap_key, heap_node, size)
+        if -key != worth[node] + tie[node]:
+            size = _push(heap_key, heap_node, size, -(worth[node] + tie[node]), node)
+            continue
+        order[ordered] = node
+        ordered += 1
+        for tree in range(trees):
+            covered = below[tree, node]
+            if covered == 0:
+                continue
+            above = parent[tree, node]
+            while above >= 0:
+                below[tree, above] -= covered
+                worth[above] -= covered
+                above = parent[tree, above]
+            stack[0] = node
+            height = 1
+            while height:
+                height -= 1
+                inner = stack[height]
+                if below[tree, inner] == 0:
+                    continue
+                worth[inner] -= below[tree, inner]
+                below[tree, inner] = 0
+                inner = child[tree, inner]
+                while inner >= 0:
+                    stack[height] = inner
+                    height += 1
+                    inner = sibling[tree, inner]
+    return order, component
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _label(
+    first: NumberArray,
+    chain_at: NumberArray,
+    tail: NumberArray,
+    head: NumberArray,
+    cost: FloatArray,
+    length_m: FloatArray,
+    order: NumberArray,
+) -> tuple[IntArray, NumberArray, NumberArray, FloatArray, FloatArray]:
+    nodes = len(order)
+    # Each node's entries lie together in a pool; a node that runs out of room moves to the pool's end and gets twice as much.
+    room = 8
+    pool = 2 * room * (nodes + 1)
+    used = 0
+    hub, chain_of = np.empty(pool, dtype=np.int32), np.empty(pool, dtype=np.int32)
+    entry_cost, entry_m = np.empty(pool), np.empty(pool)
+    begin = np.empty(nodes, dtype=np.int64)
+    count = np.zeros(nodes, dtype=np.int32)
+    space = np.full(nodes, room, dtype=np.int32)
+    for node in range(nodes):
+        begin[node] = used
+        used += room
+
+    heap_key = np.empty(len(chain_at) + 2)
+    heap_node = np.empty(len(chain_at) + 2, dtype=np.int32)
+    reached = np.full(nodes, np.inf)
+    flown_m = np.empty(nodes)
+    by_chain = np.empty(nodes, dtype=np.int32)
+    is_settled = np.zeros(nodes, dtype=np.bool_)
+    touched = np.empty(nodes, dtype=np.int32)
+    of_root = np.full(nodes, np.inf)  # the root's cost to each hub
+    for rank in range(nodes):
+        root = order[rank]
+        for entry in range(begin[root], begin[root] + count[root]):
+            of_root[hub[entry]] = entry_cost[entry]
+        reached[root], flown_m[root], by_chain[root] = 0.0, 0.0, -1
+        touched[0] = root
+        touches = 1
+        size = _push(heap_key, heap_node, 0, 0.0, root)
+        while size:
+            node = heap_node[0]
+            size = _drop_first(heap_key, heap_node, size)
+            if is_settled[node]:
+                continue
+            is_settled[node] = True
+            is_known = False
+            for entry in range(begin[node], begin[node] + count[node]):
+                if of_root[hub[entry]] + entry_cost[entry] <= reached[node]:
+                    is_known = True
+                    break
+            if is_known:
+                continue
+            if count[node] == space[node]:
+                wanted = 2 * space[node]
+                if used + wanted > pool:
+                    pool = 2 * pool + wanted
+                    hub, chain_of = _grown(hub, pool), _grown(chain_of, pool)
+                    entry_cost, entry_m = _grown(entry_cost, pool), _grown(entry_m, pool)
+                old, kept = begin[node], count[node]
+                hub[used : used + kept] = hub[old : old + kept]
+                chain_of[used : used + kept] = chain_of[old : old + kept]
+                entry_cost[used : used + kept] = entry_cost[old : old + kept]
+                entry_m[used : used + kept] = entry_m[old : old + kept]
+                begin[node], space[node] = used, wanted
+                used += wanted
+            entry = begin[node] + count[node]
+            hub[entry], chain_of[entry], entry_cost[entry], entry_m[entry] = rank, by_chain[node], reached[node], flown_m[node]
+            count[node] += 1
+            for at in range(first[node], first[node + 1]):
+                chain = chain_at[at]
+                other = head[chain] if tail[chain] == node else tail[chain]
+                key = reached[node] + cost[chain]
+                if key < reached[other]:
+                    if np.isinf(reached[other]):
+                        touched[touches] = other
+                        touches += 1
+                    reached[other] = key
+                    flown_m[other] = flown_m[node] + length_m[chain]
+                    by_chain[other] = chain
+                    size = _push(heap_key, heap_node, size, key, other)
+        for at in range(touches):
+            reached[touched[at]] = np.inf
+            is_settled[touched[at]] = False
+        for entry in range(begin[root], begin[root] + count[root]):
+            of_root[hub[entry]] = np.inf
+
+    label_first = np.zeros(nodes + 1, dtype=np.int64)
+    for node in range(nodes):
+        label_first[node + 1] = label_first[node] + count[node]
+    total = label_first[nodes]
+    out_hub, out_chain = np.empty(total, dtype=np.int32), np.empty(total, dtype=np.int32)
+    out_cost, out_m = np.empty(total), np.empty(total)
+    for node in range(nodes):
+        left, right, old, end = label_first[node], label_first[node + 1], begin[node], begin[node] + count[node]
+        out_hub[left:right] = hub[old:end]
+        out_chain[left:right] = chain_of[old:end]
+        out_cost[left:right] = entry_cost[old:end]
+        out_m[left:right] = entry_m[old:end]
+    return label_first, out_hub, out_chain, out_cost, out_m
+
+
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _grown(array: NDArray[np.generic], size: int) -> NDArray[np.generic]:
+    larger = np.empty(size, dtype=array.dtype)
+    larger[: len(array)] = array
+    return larger
