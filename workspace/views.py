@@ -38,7 +38,7 @@ class JobList(APIView):
                 message = f"Known states are {', '.join(JobState.values)}."
                 raise ApiProblem(400, "invalid", f"state: {message}", details={"state": [message]})
             jobs = jobs.filter(state=state)
-        page = page_of(request, jobs.defer("result", "parameters"), order=("-created_at", "-pk"))
+        page = page_of(request, jobs.defer("best", "result", "parameters"), order=("-created_at", "-pk"))
         return Response({"results": ListedJobSerializer(page.rows, many=True).data, "next": page.next})
 
 

@@ -10,7 +10,8 @@ from django.utils import timezone
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
-from missions.routing.solver import OnProgress, Stop
+from missions.routing.solver import Stop
+from missions.services.best_so_far import OnPlanProgress
 from missions.services.missions import drop_plan, lock_mission, request_of_mission
 from missions.services.planning import make_plan
 from missions.services.requests import PlanRequest, request_from_json
@@ -61,7 +62,7 @@ def plannable_request(*, mission: Mission) -> PlanRequest:
     return request
 
 
-def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnProgress, search_s: float, message: Callable[[], str]) -> None:
+def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], str]) -> None:
     """Plan the job's mission, and store the plan and the job's end together: neither is ever there without the other.
 
     Once the user stops it, the best plan found until then is stored; `message` says at the end how it went. Raises JobCancelled if

@@ -1,6 +1,6 @@
 """One plan from request to answer: places, ways, assignment, waypoints, heights, and the last look at the zones."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -16,8 +16,10 @@ from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heig
 from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
 from missions.models import EndAction
 from missions.routing.problem import End, Problem, UavStart, Visit
-from missions.routing.solver import OnProgress, Stop, never, no_report, solve
+from missions.routing.progress import Progress
+from missions.routing.solver import Stop, never, solve
 from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
+from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch, unheard
 from missions.services.places import Place, places_of
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import Scene, asset_gone, grounded_reason, place_height_m, refused_place, unreached_place
@@ -32,10 +34,10 @@ class GraphOutdated(Exception):
 
 
 def make_plan(
-    *, request: PlanRequest, stop: Stop = never, on_progress: OnProgress = no_report, seed: int = 7, search_s: float = 0.0
+    *, request: PlanRequest, stop: Stop = never, on_progress: OnPlanProgress = unheard, seed: int = 7, search_s: float = 0.0
 ) -> dict[str, Any]:
     """The plan in the shape of the API. Raises InvalidRequest, NoGraph or GraphOutdated."""
-    on_progress(0.0, "Looking up the targets")
+    on_progress(PlanProgress(0.0, "Looking up the targets"))
     every_place, gone = places_of(request.targets)
     scene = current_scene()
     refusals = {place.target: refused_place(place, scene) for place in every_place}
@@ -44,7 +46,7 @@ def make_plan(
     grounded = {number: reason for number, uav in enumerate(request.uavs) if (reason := grounded_reason(uav, scene)) is not None}
     uavs = [number for number in range(len(request.uavs)) if number not in grounded]
 
-    on_progress(0.05, "Measuring the ways between the targets")
+    on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
     visits, courses = visits_of_places(places)
     ways = ways_between(
         scene.graph,
@@ -63,13 +65,12 @@ def make_plan(
         to_start_m=ways.to_start_m,
         objective=request.objective,
     )
-    solution = solve(
-        problem, stop=stop, on_progress=lambda share, message: on_progress(0.1 + 0.85 * share, message), seed=seed, search_s=search_s
-    )
+    sketch = Sketch(problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], uavs, courses)
+    solution = solve(problem, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
     visits_of = problem.visits_of_target()
     left_out += [unreached_place(places[item.target], item, visits_of[item.target], ways, scene) for item in solution.unassigned]
 
-    on_progress(0.95, "Working out heights and checking every leg")
+    on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
     while True:
         ground_before = terrain_edition()
         drawing = _Drawing(request, scene, places, visits, courses, ways)
@@ -87,6 +88,17 @@ def make_plan(
         ground_revision=revision,
         has_terrain=drawing.ground is not None,
     )
+
+
+def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> Callable[..., None]:
+    """What the solver says of the search, in the words of the whole plan."""
+
+    def hear(progress: Progress | float, message: str = "") -> None:
+        told = progress if isinstance(progress, Progress) else Progress(progress, message)
+        draw = None if told.best_routes is None else lambda: sketch.of(told)
+        on_progress(PlanProgress(0.1 + 0.85 * told.share, told.message, draw))
+
+    return hear
 
 
 def current_scene() -> Scene:
