@@ -67,7 +67,7 @@ def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, lengt
     return CondensedGraph(*arrays)
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _condense(
     node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray
 ) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, FloatArray, FloatArray]:

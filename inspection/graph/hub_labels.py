@@ -6,6 +6,7 @@ and Werneck 2014, the next hub is the node that covers the most pairs of sampled
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -57,7 +58,7 @@ def label(condensed: CondensedGraph) -> HubLabels:
     return HubLabels(*arrays)
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _chains_of_nodes(core_count: int, tail: NumberArray, head: NumberArray) -> tuple[NumberArray, NumberArray]:
     """The chains at each core node, one after another, and where each node's begin; loops lead nowhere and are left out."""
     first = np.zeros(core_count + 1, dtype=np.int32)
@@ -78,7 +79,7 @@ def _chains_of_nodes(core_count: int, tail: NumberArray, head: NumberArray) -> t
     return first, chain_at
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _push(heap_key: FloatArray, heap_node: NumberArray, size: int, key: float, node: int) -> int:
     """Add to a binary heap whose least key comes first; returns the new size."""
     at = size
@@ -92,7 +93,7 @@ def _push(heap_key: FloatArray, heap_node: NumberArray, size: int, key: float, n
     return size + 1
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _drop_first(heap_key: FloatArray, heap_node: NumberArray, size: int) -> int:
     """Take the first out of a binary heap; returns the new size."""
     size -= 1
@@ -112,7 +113,7 @@ def _drop_first(heap_key: FloatArray, heap_node: NumberArray, size: int) -> int:
     return size
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _order(
     first: NumberArray, chain_at: NumberArray, tail: NumberArray, head: NumberArray, cost: FloatArray, roots: NumberArray
 ) -> tuple[NumberArray, NumberArray]:
@@ -215,7 +216,7 @@ def _order(
     return order, component
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _label(
     first: NumberArray,
     chain_at: NumberArray,
@@ -317,8 +318,8 @@ def _label(
     return label_first, out_hub, out_chain, out_cost, out_m
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _grown(array: NDArray[np.generic], size: int) -> NDArray[np.generic]:
+@njit(cache=True, nogil=True)
+def _grown(array: Any, size: int) -> Any:
     larger = np.empty(size, dtype=array.dtype)
     larger[: len(array)] = array
     return larger

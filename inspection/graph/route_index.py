@@ -1,14 +1,19 @@
-"""What planners ask of a graph, made once: the condensed graph and its hub labels."""
+"""What planners ask of a graph, made once: the condensed graph, its hub labels, its nodes by place, and where its assets are."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from threading import Lock
-from typing import Any
+from threading import RLock
+from typing import Any, Generic, TypeVar
 from weakref import WeakKeyDictionary
 
-from inspection.graph.condensed import CondensedGraph, condense
-from inspection.graph.hub_labels import HubLabels, label
+import numpy as np
+
+from inspection.graph.asset_places import build_asset_places
+from inspection.graph.condensed import CORE, CondensedGraph, condense
+from inspection.graph.hub_labels import HubLabels, IntArray, label
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.node_tree import build_node_tree
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +22,16 @@ class RouteIndex:
 
     condensed: CondensedGraph
     labels: HubLabels
+
+    @cached_property
+    def component_count(self) -> int:
+        return int(self.labels.component.max(initial=-1)) + 1
+
+    def component_of(self, nodes: IntArray) -> IntArray:
+        """The number of each node's connected component."""
+        chain, place = self.condensed.node_chain[nodes], self.condensed.node_place[nodes]
+        core = np.where(chain == CORE, place, self.condensed.chain_tail[chain]) if len(self.condensed.chain_tail) else place
+        return self.labels.component[core].astype(np.int64)
 
     @cached_property
     def query_arrays(self) -> tuple[Any, ...]:
@@ -53,26 +68,35 @@ class RouteIndex:
         )
 
 
+Part = TypeVar("Part")
+
+
 def build_route_index(graph: InspectionGraph) -> RouteIndex:
     condensed = condense(graph.node_count, graph.edge, graph.cost, graph.length_m)
     return RouteIndex(condensed, label(condensed))
 
 
-_index_of_graph: WeakKeyDictionary[InspectionGraph, RouteIndex] = WeakKeyDictionary()
-_one_build = Lock()
+class _OncePerGraph(Generic[Part]):
+    """A part of a graph's index: the one that it was stored with, or one made now."""
+
+    def __init__(self, make: Callable[[InspectionGraph], Part]) -> None:
+        self._make = make
+        self._made: WeakKeyDictionary[InspectionGraph, Part] = WeakKeyDictionary()
+        self._one_thread = RLock()
+
+    def __call__(self, graph: InspectionGraph) -> Part:
+        part = self._made.get(graph)
+        if part is None:
+            with self._one_thread:
+                part = self._made.get(graph)
+                if part is None:
+                    part = self._made[graph] = self._make(graph)
+        return part
+
+    def remember(self, graph: InspectionGraph, part: Part) -> None:
+        self._made[graph] = part
 
 
-def remember_route_index(graph: InspectionGraph, index: RouteIndex) -> None:
-    """For a graph that was stored with its index."""
-    _index_of_graph[graph] = index
-
-
-def route_index(graph: InspectionGraph) -> RouteIndex:
-    """The graph's index: the one it came with, or one made now, once per graph."""
-    index = _index_of_graph.get(graph)
-    if index is None:
-        with _one_build:
-            index = _index_of_graph.get(graph)
-            if index is None:
-                index = _index_of_graph[graph] = build_route_index(graph)
-    return index
+route_index = _OncePerGraph(build_route_index)
+node_tree = _OncePerGraph(lambda graph: build_node_tree(graph.position))
+asset_places = _OncePerGraph(build_asset_places)

@@ -93,7 +93,7 @@ def travel_of_legs(
     return Travel(length_m, cost, way, index, leg_node, entry_leg, entry_label)
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _between(
     leg_first: IntArray,
     leg_node: NumberArray,
@@ -267,7 +267,7 @@ def _between(
     return length_m, cost, way, entry_leg[:entries].copy(), entry_label[:entries].copy()
 
 
-@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+@njit(cache=True, nogil=True)
 def _path(
     out: int,
     back: int,

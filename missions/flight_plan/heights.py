@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
+from inspection.graph.flyable import UNTAGGED_HEIGHT_M
+from inspection.graph.inspection_graph import NodeKind
 from inspection.terrain.heights import amsl_m, counted_from
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import RoutePoint, Waypoint, point_between
@@ -17,7 +19,14 @@ GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres
 
 SAMPLE_SPACING_M = 50.0  # how densely the ground under a leg is looked at
 # Heights where no tag states one, towards the upper end of what is common, so that the error is on the safe side.
-DEFAULT_HEIGHT_M = {"pole": 14.0, "portal": 20.0, "tower": 45.0, "line": 45.0, "railway": 8.0, "bridge": 30.0}
+DEFAULT_HEIGHT_M = {
+    "pole": 14.0,
+    "portal": 20.0,
+    "tower": UNTAGGED_HEIGHT_M[NodeKind.SUPPORT],
+    "line": UNTAGGED_HEIGHT_M[NodeKind.LINE_VERTEX],
+    "railway": UNTAGGED_HEIGHT_M[NodeKind.RAILWAY],
+    "bridge": UNTAGGED_HEIGHT_M[NodeKind.BRIDGE],
+}
 LINE_HEIGHT_M = ((300_000, 60.0), (100_000, 45.0), (50_000, 30.0), (1, 14.0))  # supports of a line of so many volts or more
 
 

@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.access import clear_legs, node_locator
-from inspection.graph.inspection_graph import InspectionGraph, NodeKind
+from inspection.graph.access import clear_legs
+from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.legs import Attachment, DirectLeg
 from inspection.graph.nearness import chord, on_unit_sphere
+from inspection.graph.route_index import asset_places, node_tree
 from inspection.graph.ways import Travel, travel_between
 from inspection.graph.zone_index import ZoneIndex
 
@@ -38,34 +38,11 @@ class AccessRules:
     zone_clearance_m: float
 
 
-class _AssetPlaces:
-    """Which node stands for a tower or bridge, and which edges for a line or railway."""
-
-    def __init__(self, graph: InspectionGraph) -> None:
-        single = np.flatnonzero(np.isin(graph.node_kind, (NodeKind.SUPPORT, NodeKind.BRIDGE)))
-        self.node_of = dict(zip(graph.node_asset[single].tolist(), single.tolist(), strict=True))
-        self._edges_by_asset = np.argsort(graph.edge_asset, kind="stable")
-        self._assets = graph.edge_asset[self._edges_by_asset]
-
-    def edges_of(self, asset: int) -> NDArray[np.int64]:
-        first, last = np.searchsorted(self._assets, [asset, asset + 1])
-        return self._edges_by_asset[first:last]
-
-
-_places_of_graph: WeakKeyDictionary[InspectionGraph, _AssetPlaces] = WeakKeyDictionary()
-
-
-def _asset_places(graph: InspectionGraph) -> _AssetPlaces:
-    if graph not in _places_of_graph:
-        _places_of_graph[graph] = _AssetPlaces(graph)
-    return _places_of_graph[graph]
-
-
 def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> list[Attachment]:
     """How a terminal meets the network: at its own node, along its own line, else over access legs that are clear of zones."""
     if terminal.asset is not None:
-        places = _asset_places(graph)
-        node = places.node_of.get(terminal.asset)
+        places = asset_places(graph)
+        node = places.node_of(terminal.asset)
         if node is not None and tuple(graph.position[node]) == tuple(terminal.position):
             return [Attachment(node, 0.0, 0.0)]
         along = _along_own_line(graph, zones, terminal.position, places.edges_of(terminal.asset), rules)
@@ -82,11 +59,8 @@ def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, ru
 
 def is_near_network(graph: InspectionGraph, position: LonLat, radius_m: float) -> bool:
     """Whether any node lies within the radius, zones or not."""
-    tree = node_locator(graph).tree
-    if tree is None:
-        return False
-    _, nearest = tree.query(on_unit_sphere(np.array([position]))[0])
-    return float(distance_m(graph.position[nearest], np.array(position))[0]) <= radius_m
+    nearest = node_tree(graph).nearest(position, 1)
+    return bool(len(nearest)) and float(distance_m(graph.position[nearest], np.array([position]))[0]) <= radius_m
 
 
 def _along_own_line(
@@ -115,7 +89,7 @@ def _along_own_line(
 
 def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLat]) -> float:
     """The greatest tagged height among the supports at the vertices of a line's stretch; 0 if none is tagged."""
-    nodes = np.unique(graph.edge[_asset_places(graph).edges_of(asset)])
+    nodes = np.unique(graph.edge[asset_places(graph).edges_of(asset)])
     tagged = nodes[graph.node_height_m[nodes] > 0]
     vertices = {tuple(position) for position in course}
     heights_m = [float(graph.node_height_m[node]) for node in tagged if tuple(graph.position[node].tolist()) in vertices]

@@ -29,6 +29,7 @@ from missions.services.plan_json import FLAT_GROUND, TERRAIN_MODEL
 from missions.services.planning import GraphOutdated, make_plan
 from missions.services.requests import InvalidRequest, PlanRequest, TargetRequest, UavRequest, request_from_json, request_to_json
 from missions.services.uavs import change_uav, create_uav, delete_uav, restore_uav
+from missions.services.warming_up import warm_up
 from missions.services.why_route import explain_route
 from missions.services.why_target import explain_unreached_target
 
@@ -81,4 +82,5 @@ __all__ = [
     "revoke_credential",
     "store_plan",
     "take_plan",
+    "warm_up",
 ]

@@ -8,10 +8,11 @@ import numpy as np
 from django.conf import settings
 
 from inspection.geodesy import LonLat, path_length_m
+from inspection.graph.flyable import node_heights_m
 from inspection.selectors import current_graph, ground_heights_m, ground_revision, has_terrain, terrain_edition, zones_in_force
 from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
 from missions.flight_plan.duration import duration_s
-from missions.flight_plan.flyable_graph import flyable_graph, node_heights_m
+from missions.flight_plan.flyable_graph import flyable_graph
 from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
 from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
 from missions.models import EndAction
@@ -154,7 +155,6 @@ class _Drawing:
         self.courses = courses
         self.ways = ways
         self.ground = ground_heights_m if has_terrain() else None
-        self.node_height_m = node_heights_m(scene.graph)
 
     def route(self, uav: int, start: int, order: Sequence[int]) -> PlannedRoute:
         """uav is the UAV's number in the request, start its number among those that fly."""
@@ -194,7 +194,11 @@ class _Drawing:
 
     def _passed(self, nodes: np.ndarray) -> list[PassedNode]:
         graph = self.scene.graph
-        positions, assets, heights_m = graph.position[nodes].tolist(), graph.node_asset[nodes].tolist(), self.node_height_m[nodes].tolist()
+        positions, assets, heights_m = (
+            graph.position[nodes].tolist(),
+            graph.node_asset[nodes].tolist(),
+            node_heights_m(graph, nodes).tolist(),
+        )
         return [
             PassedNode(LonLat(*position), pass_agl_m(height_m, self.scene.flight), asset if asset >= 0 else None)
             for position, asset, height_m in zip(positions, assets, heights_m, strict=True)

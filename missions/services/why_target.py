@@ -8,8 +8,7 @@ from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.graph.access import node_locator
-from inspection.graph.nearness import on_unit_sphere
+from inspection.graph.route_index import node_tree
 from inspection.graph.zone_index import widen
 from missions.fleet_selectors import uavs_of_organisation
 from missions.flight_plan.heights import is_above_limit
@@ -86,12 +85,11 @@ def _reason(place: Place, uavs: list[dict[str, Any]], ways: Ways, scene: Scene) 
 
 def _network_m(place: Place, scene: Scene) -> float:
     """Metres to the nearest node of the network from the nearer end."""
-    tree = node_locator(scene.graph).tree
-    if tree is None:
-        return float("inf")
-    ends = np.array([place.course[0], place.course[-1]])
-    _, nearest = tree.query(on_unit_sphere(ends))
-    return float(distance_m(ends, scene.graph.position[nearest]).min())
+    gaps_m = []
+    for end in (place.course[0], place.course[-1]):
+        nearest = node_tree(scene.graph).nearest(end, 1)
+        gaps_m += distance_m(np.array([end]), scene.graph.position[nearest]).tolist()
+    return min(gaps_m, default=float("inf"))
 
 
 def _zones_at(place: Place, scene: Scene) -> list[dict[str, Any]]:
