@@ -37,6 +37,11 @@ class NodeTree:
         nodes: IntArray = _around(_point(position), within * within, self.order, self.point, self.axis)
         return np.sort(nodes)
 
+    def nearest_of_each(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
+        """For each position (q, 2) the nearest node, and how far away it is as a chord on the unit sphere; the tree has nodes."""
+        node, chord = _nearest_of_each(on_unit_sphere(positions), self.order, self.point, self.axis)
+        return node, chord
+
 
 def build_node_tree(position: FloatArray) -> NodeTree:
     """The tree of nodes at positions (n, 2), lon, lat [deg]."""
@@ -168,3 +173,37 @@ def _around(here: FloatArray, within_2: float, order: NumberArray, point: FloatA
                 ranges[height, 0], ranges[height, 1] = middle + 1, end
                 height += 1
     return nodes[:found].copy()
+
+
+@njit(cache=True, nogil=True)
+def _nearest_of_each(here: FloatArray, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]) -> tuple[IntArray, FloatArray]:
+    node = np.empty(len(here), dtype=np.int64)
+    chord = np.empty(len(here))
+    ranges = np.empty((128, 2), dtype=np.int64)
+    away_2 = np.empty(128)
+    for number in range(len(here)):
+        x, y, z = here[number]
+        best_2, best = np.inf, -1
+        ranges[0, 0], ranges[0, 1], away_2[0] = 0, len(order), 0.0
+        height = 1
+        while height:
+            height -= 1
+            begin, end, least_2 = ranges[height, 0], ranges[height, 1], away_2[height]
+            if least_2 >= best_2:
+                continue
+            middle = (begin + end) // 2
+            is_leaf = end - begin <= LEAF
+            for at in range(begin, end) if is_leaf else range(middle, middle + 1):
+                gap_2 = (point[at, 0] - x) ** 2 + (point[at, 1] - y) ** 2 + (point[at, 2] - z) ** 2
+                if gap_2 < best_2:
+                    best_2, best = gap_2, at
+            if not is_leaf:
+                over = here[number, axis[middle]] - point[middle, axis[middle]]
+                far, near = (0, 1) if over > 0 else (1, 0)
+                for side, bound in ((far, max(least_2, over * over)), (near, least_2)):
+                    ranges[height, 0] = begin if side == 0 else middle + 1
+                    ranges[height, 1] = middle if side == 0 else end
+                    away_2[height] = bound
+                    height += 1
+        node[number], chord[number] = order[best], np.sqrt(best_2)
+    return node, chord

@@ -45,6 +45,17 @@ class Travel:
         nodes: IntArray = _path(out, back, self.leg_node, self.entry_leg, self.entry_label, *self.index.path_arrays)
         return nodes
 
+    def paths(self, legs: IntArray) -> tuple[IntArray, IntArray]:
+        """Nodes of several legs (k, 2), source and sink, one after another, and where each leg's begin (k + 1,).
+
+        No leg may be without a way or direct.
+        """
+        ways = self.way[legs[:, 0], legs[:, 1]]
+        if (ways[:, 0] == NO_WAY).any() or (ways[:, 0] == DIRECT).any():
+            raise NoWay(legs.tolist())
+        nodes, first = _paths(ways, self.leg_node, self.entry_leg, self.entry_label, *self.index.path_arrays)
+        return nodes, first
+
 
 def travel_between(
     graph: InspectionGraph,
@@ -343,3 +354,48 @@ def _path(
     turned = nodes[begin[1] :][::-1].copy()
     nodes[begin[1] : there - 1] = turned[1:]
     return nodes[: there - 1].copy()
+
+
+@njit(cache=True, nogil=True)
+def _paths(
+    ways: NumberArray,
+    leg_node: NumberArray,
+    entry_leg: NumberArray,
+    entry_label: IntArray,
+    node_chain: NumberArray,
+    node_place: NumberArray,
+    chain_first: NumberArray,
+    chain_tail: NumberArray,
+    chain_head: NumberArray,
+    place_node: NumberArray,
+    label_first: IntArray,
+    label_hub: NumberArray,
+    label_chain: NumberArray,
+) -> tuple[IntArray, IntArray]:
+    nodes = np.empty(1024, dtype=np.int64)
+    first = np.zeros(len(ways) + 1, dtype=np.int64)
+    for leg in range(len(ways)):
+        path = _path(
+            ways[leg, 0],
+            ways[leg, 1],
+            leg_node,
+            entry_leg,
+            entry_label,
+            node_chain,
+            node_place,
+            chain_first,
+            chain_tail,
+            chain_head,
+            place_node,
+            label_first,
+            label_hub,
+            label_chain,
+        )
+        begin, end = first[leg], first[leg] + len(path)
+        if end > len(nodes):
+            larger = np.empty(2 * end, dtype=np.int64)
+            larger[:begin] = nodes[:begin]
+            nodes = larger
+        nodes[begin:end] = path
+        first[leg + 1] = end
+    return nodes[: first[len(ways)]].copy(), first

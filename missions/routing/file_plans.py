@@ -1,0 +1,193 @@
+"""Plans on a graph from a file: targets are nodes, UAVs join at their nearest node, and a plan leaves as JSON.
+
+A graph file is an npz with lat, lon float64 (n,) [deg], u, v int32 (m,) node indices and w float64 (m,) metres.
+"""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any, BinaryIO
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.graph.condensed import condense
+from inspection.graph.hub_labels import label
+from inspection.graph.nearness import EARTH_RADIUS_M
+from inspection.graph.node_tree import NodeTree, build_node_tree
+from inspection.graph.route_index import RouteIndex
+from inspection.graph.ways import travel_of_legs
+from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
+from missions.routing.exact import MAX_TARGETS, best_routes
+from missions.routing.problem import FloatArray, Objective, Problem, Routes, UavStart, Visit
+from missions.routing.solver import solve
+
+PHASES = ("nearest", "matrix", "assign", "expand")
+
+Clock = Callable[[], float]  # seconds from any moment on
+
+
+class InvalidFile(ValueError):
+    """The graph or the missions are not in the format."""
+
+
+@dataclass(frozen=True, eq=False)
+class FileGraph:
+    """A graph as planners of a file need it: its index, and its nodes by place."""
+
+    index: RouteIndex
+    tree: NodeTree
+    node_count: int
+
+
+@dataclass(frozen=True, eq=False)
+class FileMission:
+    uavs: FloatArray  # (u, 2) lon, lat [deg]
+    targets: IntArray  # (t,) nodes
+
+
+def read_graph(file: BinaryIO) -> FileGraph:
+    """The graph of an npz with its index. Raises InvalidFile."""
+    try:
+        with np.load(file, allow_pickle=False) as stored:
+            lat, lon, u, v, w = (stored[name] for name in ("lat", "lon", "u", "v", "w"))
+    except (KeyError, ValueError, OSError, EOFError) as error:
+        raise InvalidFile(f"not a graph: {error}") from error
+    position = np.column_stack([lon, lat]).astype(np.float64)
+    edge, length_m = np.column_stack([u, v]).astype(np.int64), np.asarray(w, dtype=np.float64)
+    if not len(position) or not np.isfinite(position).all():
+        raise InvalidFile("not a graph: it needs nodes, each with a place")
+    if len(length_m) != len(edge) or not (np.isfinite(length_m).all() and (length_m >= 0).all()):
+        raise InvalidFile("not a graph: each edge needs a length of 0 m or more")
+    if edge.size and not (edge.min() >= 0 and edge.max() < len(position)):
+        raise InvalidFile("not a graph: an edge leads to a node that is not there")
+    condensed = condense(len(position), edge, length_m, length_m)
+    return FileGraph(RouteIndex(condensed, label(condensed)), build_node_tree(position), len(position))
+
+
+def read_mission(graph: FileGraph, mission: Mapping[str, Any]) -> FileMission:
+    """A mission with UAVs at lat, lon and nodes as targets. Raises InvalidFile."""
+    try:
+        uavs = np.array(mission["uavs"], dtype=np.float64).reshape(-1, 2)[:, ::-1]
+        targets = np.array(mission["targets"], dtype=np.int64).reshape(-1)
+    except (KeyError, TypeError, ValueError) as error:
+        raise InvalidFile(f"not a mission: {error}") from error
+    if not np.isfinite(uavs).all() or (len(targets) and not (targets.min() >= 0 and targets.max() < graph.node_count)):
+        raise InvalidFile("not a mission: a UAV without a place, or a target that is no node")
+    return FileMission(uavs, targets)
+
+
+def plan_json(graph: FileGraph, mission: Mapping[str, Any], objective: Objective, clock: Clock) -> bytes:
+    """One plan as JSON, with the milliseconds of each phase; `ms.total` is from the positions to the finished bytes before it."""
+    began = [clock()]
+    asked = read_mission(graph, mission)
+    uavs, targets = len(asked.uavs), len(asked.targets)
+    joined, chord = graph.tree.nearest_of_each(asked.uavs)
+    leg_m = np.zeros(uavs + targets)
+    leg_m[:uavs] = 2.0 * EARTH_RADIUS_M * np.arcsin(np.minimum(chord / 2.0, 1.0))
+    leg_node = np.concatenate([joined, asked.targets]).astype(np.int32)
+    began.append(clock())
+    places = np.arange(uavs + targets + 1)
+    travel = travel_of_legs(graph.index, places, leg_node, leg_m, leg_m, places[:-1], places[uavs:-1])
+    began.append(clock())
+    routes = _routes(travel.length_m, uavs, objective)
+    began.append(clock())
+
+    # Of the sources the UAVs come first, then the targets.
+    legs = [leg for uav, route in enumerate(routes) for leg in pairwise((uav - uavs, *route))]
+    pairs = np.array(legs, dtype=np.int64).reshape(-1, 2)
+    pairs[:, 0] += uavs
+    nodes, first = travel.paths(pairs)
+    counts = np.array([len(route) for route in routes], dtype=np.int64)
+    waypoints = _as_json(nodes, first, counts).tobytes().decode("ascii")
+    lengths_m = _lengths_m(travel.length_m[pairs[:, 0], pairs[:, 1]].tolist(), counts.tolist())
+    content = (
+        f'{{"cost_m": {sum(lengths_m)!r}, "makespan_m": {max(lengths_m, default=0.0)!r}, '
+        f'"routes": {json.dumps(routes)}, "waypoints": {waypoints}, "ms": '
+    ).encode()
+    began.append(clock())
+    ms = {phase: round((end - begin) * 1e3, 4) for phase, (begin, end) in zip(PHASES, pairwise(began), strict=True)}
+    return content + json.dumps(ms | {"total": round((began[-1] - began[0]) * 1e3, 4)}).encode() + b"}"
+
+
+def _routes(length_m: FloatArray, uavs: int, objective: Objective) -> Routes:
+    """Targets in order for each UAV; proven up to MAX_TARGETS."""
+    targets = length_m.shape[1]
+    if not uavs or not targets:
+        return ((),) * uavs
+    if targets <= MAX_TARGETS:
+        ways_m = np.minimum(length_m, NO_WAY_M)
+        return best_routes(_arcs(ways_m[:uavs], ways_m[uavs:], objective))
+    problem = Problem(
+        uavs=(UavStart(),) * uavs,
+        visits=tuple(Visit(target) for target in range(targets)),
+        target_count=targets,
+        from_start_m=length_m[:uavs],
+        between_m=length_m[uavs:],
+        to_start_m=np.zeros((targets, uavs)),
+        objective=objective,
+    )
+    return solve(problem).routes
+
+
+def _arcs(first_m: FloatArray, onward_m: FloatArray, objective: Objective) -> Arcs:
+    uavs, targets = first_m.shape
+    return Arcs(first_m=first_m, onward_m=onward_m, is_makespan=objective is Objective.MAKESPAN, **_plain(uavs, targets))
+
+
+@lru_cache(maxsize=64)
+def _plain(uavs: int, targets: int) -> dict[str, NDArray[Any]]:
+    """The arrays of a problem without limits, in which UAVs end anywhere. They are shared: nobody writes to them."""
+    return {
+        "end_m": np.zeros((uavs, targets)),
+        "target": np.arange(targets, dtype=np.int64),
+        "service_s": np.zeros(targets),
+        "done": np.ones(targets, dtype=np.int64),
+        "limit_m": np.full(uavs, NO_WAY_M / 2),
+        "speed_mps": np.ones(uavs),
+        "most": np.full(uavs, targets, dtype=np.int64),
+        "allowed": np.ones((uavs, targets), dtype=np.bool_),
+        "weight": np.ones(targets),
+    }
+
+
+def _lengths_m(leg_m: Sequence[float], counts: Sequence[int]) -> list[float]:
+    ends = np.cumsum([0, *counts]).tolist()
+    return [sum(leg_m[begin:end]) for begin, end in pairwise(ends)]
+
+
+@njit(cache=True, nogil=True)
+def _as_json(nodes: IntArray, first: IntArray, counts: IntArray) -> NDArray[np.uint8]:
+    """The nodes of each route as a list of lists; counts (u,) says how many legs a route has. Where legs meet, the node counts once."""
+    text = np.empty(20 * len(nodes) + 4 * len(counts) + 4, dtype=np.uint8)
+    text[0] = 91  # [
+    size, leg = 1, 0
+    digits = np.empty(20, dtype=np.uint8)
+    for route in range(len(counts)):
+        if route:
+            text[size] = 44  # ,
+            size += 1
+        text[size] = 91
+        size += 1
+        for number in range(counts[route]):
+            for at in range(first[leg] + (1 if number else 0), first[leg + 1]):
+                if text[size - 1] != 91:
+                    text[size] = 44
+                    size += 1
+                node, count = nodes[at], 0
+                while count == 0 or node:
+                    digits[count] = 48 + node % 10
+                    node //= 10
+                    count += 1
+                while count:
+                    count -= 1
+                    text[size] = digits[count]
+                    size += 1
+            leg += 1
+        text[size] = 93  # ]
+        size += 1
+    text[size] = 93
+    return text[: size + 1].copy()
