@@ -56,11 +56,13 @@ def read_graph(file: BinaryIO) -> FileGraph:
             lat, lon, u, v, w = (stored[name] for name in ("lat", "lon", "u", "v", "w"))
     except (KeyError, ValueError, OSError, EOFError) as error:
         raise InvalidFile(f"not a graph: {error}") from error
+    if not len(lon) == len(lat) or not len(u) == len(v) == len(w) or any(array.dtype.kind not in "fiu" for array in (lat, lon, u, v, w)):
+        raise InvalidFile("not a graph: lat and lon, and u, v and w, must be numbers and as many as each other")
     position = np.column_stack([lon, lat]).astype(np.float64)
     edge, length_m = np.column_stack([u, v]).astype(np.int64), np.asarray(w, dtype=np.float64)
     if not len(position) or not np.isfinite(position).all():
         raise InvalidFile("not a graph: it needs nodes, each with a place")
-    if len(length_m) != len(edge) or not (np.isfinite(length_m).all() and (length_m >= 0).all()):
+    if not (np.isfinite(length_m).all() and (length_m >= 0).all()):
         raise InvalidFile("not a graph: each edge needs a length of 0 m or more")
     if edge.size and not (edge.min() >= 0 and edge.max() < len(position)):
         raise InvalidFile("not a graph: an edge leads to a node that is not there")
