@@ -130,6 +130,8 @@ DATABASES = {
         conn_health_checks=True,
     ),
 }
+# For workspace/prepared.py alone: Django's own statements go as text.
+DATABASES["default"].setdefault("OPTIONS", {})["prepare_threshold"] = 0
 DEFAULT_AUTO_FIELD = "django.db.models.BigAutoField"
 
 REDIS_URL = os.environ.get("REDIS_URL") or private_redis_url(STATE_DIR)

@@ -32,18 +32,21 @@ _zones: tuple[tuple[int, datetime | None], ZoneIndex] | None = None
 
 def current_graph() -> InspectionGraph:
     """The newest snapshot. Costs one small query once the process has it."""
-    return _graph_of(GraphSnapshot.objects.values_list("version", "ground_revision", "arrays_sha256").first())
+    return graph_of_row(GraphSnapshot.objects.values_list("version", "ground_revision", "arrays_sha256").first())
 
 
 def graph_of_version(version: int) -> InspectionGraph:
-    return _graph_of(GraphSnapshot.objects.filter(version=version).values_list("version", "ground_revision", "arrays_sha256").first())
+    return graph_of_row(GraphSnapshot.objects.filter(version=version).values_list("version", "ground_revision", "arrays_sha256").first())
 
 
 def zones_in_force() -> ZoneIndex:
     """The zones of the ground as it is now, whatever graph is in use. Costs one small query until they change."""
+    return zones_of_edition(ground_edition())
+
+
+def zones_of_edition(key: tuple[int, datetime | None]) -> ZoneIndex:
+    """The zones of an edition of the ground that has just been read: they are at least as new as that."""
     global _zones
-    # The revision is read before the zones: they are at least as new as what they are remembered under.
-    key = ground_edition()
     remembered = _zones
     if remembered is None or remembered[0] != key:
         zones = zones_of_the_ground()
@@ -52,7 +55,8 @@ def zones_in_force() -> ZoneIndex:
     return remembered[1]
 
 
-def _graph_of(row: tuple[int, int, str] | None) -> InspectionGraph:
+def graph_of_row(row: tuple[int, int, str] | None) -> InspectionGraph:
+    """The graph of a snapshot's version, ground_revision and arrays_sha256; raises NoGraph for None."""
     if row is None:
         raise NoGraph
     version, ground_revision, content_sha256 = row

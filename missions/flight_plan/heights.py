@@ -62,7 +62,7 @@ def with_heights(
     Where the ground between two points bulges or sags by more than the tolerance, waypoints are put in on the straight lon/lat line
     between them. If the ground is unknown in even one place, nothing is put in and no height above sea level is given.
     """
-    flat = tuple(Waypoint(point, None, point.agl_m) for point in points)
+    flat = tuple([Waypoint(point, None, point.agl_m) for point in points])
     if ground_heights_m is None or not points:
         return flat, bool(points)
     position = np.array([point.position for point in points])

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,7 @@ from missions.routing.problem import Task
 SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
 
 
-@dataclass(frozen=True)
-class PassedNode:
+class PassedNode(NamedTuple):
     """A node of the graph on the way, and the height above ground at which it is passed."""
 
     position: LonLat
@@ -71,8 +71,12 @@ class _Route:
         self.points: list[RoutePoint] = []
 
     def add_way(self, way: Sequence[PassedNode]) -> None:
-        for node in way:
-            self.add(RoutePoint(node.position, WaypointKind.PASS, node.agl_m, node.asset))
+        for position, agl_m, asset in way:
+            before = self.points[-1]
+            if before.agl_m >= self.transit_agl_m and not _same_place(position, before.position):  # as nearly all are
+                self.points.append(RoutePoint(position, WaypointKind.PASS, agl_m, asset))
+            else:
+                self.add(RoutePoint(position, WaypointKind.PASS, agl_m, asset))
 
     def add_target(self, points: TargetPoints) -> None:
         entry = points.positions[0]
@@ -102,14 +106,15 @@ def with_short_legs(points: Sequence[RoutePoint], longest_leg_m: float) -> list[
     divided: list[RoutePoint] = list(points[:1])
     position = np.array([point.position for point in points])
     for (left, right), length_m in zip(pairwise(points), distance_m(position[:-1], position[1:]).tolist(), strict=True):
-        parts = math.ceil(length_m / longest_leg_m)
-        divided += [point_between(left, right, part / parts) for part in range(1, parts)]
+        if length_m > longest_leg_m:
+            parts = math.ceil(length_m / longest_leg_m)
+            divided += [point_between(left, right, part / parts) for part in range(1, parts)]
         divided.append(right)
     return divided
 
 
 def _same_place(left: LonLat, right: LonLat) -> bool:
-    return abs(left.lon - right.lon) <= SAME_PLACE_DEG and abs(left.lat - right.lat) <= SAME_PLACE_DEG
+    return abs(left[0] - right[0]) <= SAME_PLACE_DEG and abs(left[1] - right[1]) <= SAME_PLACE_DEG
 
 
 def line_of(points: Sequence[RoutePoint]) -> NDArray[np.float64]:

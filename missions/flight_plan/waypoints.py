@@ -1,7 +1,7 @@
 """The points of a route, without and with heights above sea level and take-off."""
 
-from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 from inspection.geodesy import LonLat
 from missions.routing.problem import Task
@@ -14,8 +14,7 @@ class WaypointKind(StrEnum):
     END = "end"
 
 
-@dataclass(frozen=True)
-class RoutePoint:
+class RoutePoint(NamedTuple):
     """A point of a route at its planned height above ground.
 
     asset is the primary key of the asset that is passed or inspected here; target the index of the target that is being done.
@@ -29,8 +28,7 @@ class RoutePoint:
     task: Task | None = None
 
 
-@dataclass(frozen=True)
-class Waypoint:
+class Waypoint(NamedTuple):
     """A route point and its height over the other two references; above sea level only where the ground's height is known."""
 
     point: RoutePoint

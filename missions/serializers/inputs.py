@@ -11,10 +11,8 @@ from missions.fleet_selectors import uavs_of_organisation
 from missions.models import EndAction, Objective, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
+from missions.serializers.limits import FARTHEST_RANGE_M, FASTEST_MPS, LARGEST_KEY, LONGEST_UAV_NAME
 from missions.services import PlanRequest, TargetRequest, UavRequest
-
-FARTHEST_RANGE_M = 1e7
-FASTEST_MPS = 100.0
 
 
 class TaskSerializer(serializers.Serializer):
@@ -32,7 +30,7 @@ class UavInputSerializer(serializers.Serializer):
     """A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position."""
 
     id = serializers.IntegerField(required=False, allow_null=True)
-    name = serializers.CharField(max_length=100, required=False)
+    name = serializers.CharField(max_length=LONGEST_UAV_NAME, required=False)
     position = PositionField(required=False)
     max_range_m = FiniteFloatField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")
     cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
@@ -60,7 +58,7 @@ def above_zero(value: float | None) -> float | None:
 class TargetInputSerializer(serializers.Serializer):
     """An asset, a point (`position`) or `stretch` on one, or a bare `position`."""
 
-    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=2**63 - 1)
+    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=LARGEST_KEY)
     position = PositionField(required=False, allow_null=True)
     stretch = serializers.ListField(child=PositionField(), min_length=2, max_length=2, required=False, allow_null=True)
     task = TaskSerializer(required=False, allow_null=True)

@@ -70,14 +70,14 @@ def plan_to_json(
 
 
 def waypoint_to_json(waypoint: Waypoint) -> dict[str, Any]:
-    point = waypoint.point
+    (position, kind, agl_m, asset, target, task), amsl_m, relative_m = waypoint
     return {
-        "position": list(point.position),
-        "kind": point.kind.value,
-        "asset": point.asset,
-        "target": point.target,
-        "task": task_to_json(point.task) if point.task else None,
-        "altitude_agl_m": round(point.agl_m, 2),
-        "altitude_amsl_m": None if waypoint.amsl_m is None else round(waypoint.amsl_m, 2),
-        "altitude_relative_m": round(waypoint.relative_m, 2),
+        "position": list(position),
+        "kind": kind.value,
+        "asset": asset,
+        "target": target,
+        "task": task_to_json(task) if task else None,
+        "altitude_agl_m": round(agl_m, 2),
+        "altitude_amsl_m": None if amsl_m is None else round(amsl_m, 2),
+        "altitude_relative_m": round(relative_m, 2),
     }

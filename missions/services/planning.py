@@ -9,7 +9,9 @@ from django.conf import settings
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.graph.flyable import node_heights_m
-from inspection.selectors import current_graph, ground_heights_m, ground_revision, has_terrain, terrain_edition, zones_in_force
+from inspection.selectors import ground_heights_m, ground_revision, terrain_edition
+from inspection.selectors.graph import zones_of_edition
+from inspection.selectors.planning import Edition, edition_now, has_terrain_at, planning_ground
 from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
 from missions.flight_plan.duration import duration_s
 from missions.flight_plan.flyable_graph import flyable_graph
@@ -72,21 +74,23 @@ def make_plan(
     left_out += [unreached_place(places[item.target], item, visits_of[item.target], ways, scene) for item in solution.unassigned]
 
     on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
+    edition = scene.edition
     while True:
-        ground_before = terrain_edition()
-        drawing = _Drawing(request, scene, places, visits, courses, ways)
+        ground_before = terrain_edition() if edition != scene.edition else None
+        drawing = _Drawing(request, scene, places, visits, courses, ways, edition)
         flown = {uav: drawing.route(uav, number, solution.routes[number]) for number, uav in enumerate(uavs) if solution.routes[number]}
         routes = [flown.get(uav, PlannedRoute(end_action=end_action(request, uav))) for uav in range(len(request.uavs))]
-        revision = _look_at_zones_again(routes, scene)
-        if terrain_edition() == ground_before:  # else the heights belong to another ground than the revision says
-            break
+        now = _look_at_zones_again(routes, scene)
+        if now == edition or (ground_before is not None and terrain_edition() == ground_before):
+            break  # else the heights belong to another ground than the revision says
+        edition = now
     return plan_to_json(
         request,
         routes,
         left_out,
         [{"code": "uav_inside_zone", "uav": number, "message": reason} for number, reason in grounded.items()],
         graph_version=scene.graph.version,
-        ground_revision=revision,
+        ground_revision=now[0],
         has_terrain=drawing.ground is not None,
     )
 
@@ -104,7 +108,7 @@ def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> Callable[..., Non
 
 def current_scene() -> Scene:
     linking, routing, flight = settings.GRAPH_RULES, settings.ROUTING_RULES, settings.FLIGHT_RULES
-    graph = current_graph()
+    ground = planning_ground()
     access = AccessRules(
         access_leg_m=routing.access_leg_m,
         direct_leg_m=routing.direct_leg_m,
@@ -112,7 +116,7 @@ def current_scene() -> Scene:
         off_network_factor=linking.off_network_factor,
         zone_clearance_m=linking.zone_clearance_m,
     )
-    return Scene(graph, flyable_graph(graph, flight), zones_in_force(), access, flight)
+    return Scene(ground.graph, flyable_graph(ground.graph, flight), ground.zones, access, flight, ground.edition)
 
 
 def end_action(request: PlanRequest, uav: int) -> EndAction:
@@ -147,6 +151,7 @@ class _Drawing:
         visits: Sequence[Visit],
         courses: Sequence[tuple[LonLat, ...]],
         ways: Ways,
+        edition: Edition,
     ) -> None:
         self.request = request
         self.scene = scene
@@ -154,7 +159,7 @@ class _Drawing:
         self.visits = visits
         self.courses = courses
         self.ways = ways
-        self.ground = ground_heights_m if has_terrain() else None
+        self.ground = ground_heights_m if has_terrain_at(edition) else None
 
     def route(self, uav: int, start: int, order: Sequence[int]) -> PlannedRoute:
         """uav is the UAV's number in the request, start its number among those that fly."""
@@ -199,23 +204,24 @@ class _Drawing:
             graph.node_asset[nodes].tolist(),
             node_heights_m(graph, nodes).tolist(),
         )
+        passed_m = [pass_agl_m(height_m, self.scene.flight) for height_m in heights_m]
         return [
-            PassedNode(LonLat(*position), pass_agl_m(height_m, self.scene.flight), asset if asset >= 0 else None)
-            for position, asset, height_m in zip(positions, assets, heights_m, strict=True)
+            PassedNode(LonLat(lon, lat), agl_m, asset if asset >= 0 else None)
+            for (lon, lat), agl_m, asset in zip(positions, passed_m, assets, strict=True)
         ]
 
 
-def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> int:
-    """Check every leg against the zones in force at this moment; returns the ground's revision that they belong to."""
-    revision = ground_revision()
-    zones = zones_in_force()
+def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> Edition:
+    """Check every leg against the zones in force at this moment; returns the ground's edition that they belong to."""
+    now = edition_now()
+    zones = zones_of_edition(now)
     for route in routes:
         if route.line is None:
             continue
         try:
-            refuse_legs_in_zones(route.line, list(zones.polygons))
+            refuse_legs_in_zones(route.line, zones.polygons)
         except RouteMeetsZone as error:
-            if scene.graph.ground_revision < ground_revision():  # asked anew: the zones may be younger than `revision`
+            if scene.graph.ground_revision < ground_revision():  # asked anew: the zones may be younger than `now`
                 raise GraphOutdated(zones.names[error.zone]) from error
             raise
-    return revision
+    return now

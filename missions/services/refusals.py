@@ -7,6 +7,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.zone_index import ZoneIndex
+from inspection.selectors.planning import Edition
 from missions.flight_plan.heights import is_above_limit
 from missions.flight_plan.rules import FlightRules
 from missions.routing.problem import Reason, Unassigned
@@ -24,6 +25,7 @@ class Scene:
     zones: ZoneIndex
     access: AccessRules
     flight: FlightRules
+    edition: Edition  # of the ground, when the plan was begun
 
 
 @dataclass(frozen=True)

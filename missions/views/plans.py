@@ -12,11 +12,13 @@ from rest_framework.views import APIView
 
 from missions import services
 from missions.serializers.inputs import PlanInputSerializer
+from missions.serializers.plain_request import plain_request
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Job, JobState, User
+from workspace.renderers import FastJSONRenderer
 from workspace.services import TooManyJobs, create_job_within, refuse_jobs_beyond
 from workspace.stored_words import in_words
 from workspace.tasks import send_job_on_commit
@@ -43,6 +45,7 @@ PREFER = OpenApiParameter(
 
 
 class PlanList(APIView):
+    renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]
     throttle_scope = "plans"
 
@@ -63,17 +66,20 @@ class PlanList(APIView):
 
     @idempotent
     def _answer(self, request: Request) -> Response:
-        organisation = request.user.organisation
         if not is_small(_target_count(request.data)):
             refuse_too_many_jobs(request.user)
-        serializer = PlanInputSerializer(data=request.data, context={"organisation": organisation})
-        serializer.is_valid(raise_exception=True)
-        asked = serializer.to_request()
+        asked = plain_request(request.data) or _read(request)
         with api_problems():
             if is_small(len(asked.targets)):
                 return Response(services.make_plan(request=asked))
             services.places_of(asked.targets)  # says at once what a worker would find wrong later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
+
+
+def _read(request: Request) -> services.PlanRequest:
+    serializer = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
+    serializer.is_valid(raise_exception=True)
+    return serializer.to_request()
 
 
 def is_small(targets: int) -> bool:

@@ -1,0 +1,6 @@
+"""Bounds of what comes in."""
+
+FARTHEST_RANGE_M = 1e7
+FASTEST_MPS = 100.0
+LARGEST_KEY = 2**63 - 1
+LONGEST_UAV_NAME = 100
