@@ -1,0 +1,223 @@
+"""How fast small plans are beside the article's method on the same graph and missions, and what a million nodes cost.
+
+    python -m benchmarks.plan_speed [--write] [--near 100] [--anywhere 100] [--article-s 300]
+
+`manage.py plan_file` plans missions of 2 UAVs and 4 targets on a graph of 200,000 nodes, within 30 km and anywhere in a component; the
+article's method (benchmarks/paper_baseline.py) plans the same, anywhere as many as there is time for. No plan may be costlier. Then
+a graph of 1,000,000 nodes is indexed, and a planner's process maps the stored index and plans. With --write the table goes to
+docs/performance.md. Exits with 1 where a bar is missed.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from benchmarks.make_graph import make, missions
+from benchmarks.paper_baseline import build, plan
+from benchmarks.report import machine, table, write_section
+
+ROOT = Path(__file__).resolve().parent.parent
+UAVS, TARGETS = 2, 4
+NEAR_M = 30_000.0
+LEAST_RATIO = {"within 30 km": 50.0, "anywhere": 3_000.0}
+MOST_INDEX_S, MOST_PLANNER_MIB, MOST_PLAN_MS = 15.0, 400.0, 1.0
+SAME_M = 1e-6
+
+
+@dataclass(frozen=True)
+class Planned:
+    plans: list[dict[str, Any]]
+    index_s: float
+    peak_mib: float
+
+    @property
+    def median_ms(self) -> float:
+        return median(plan["ms"]["total"] for plan in self.plans)
+
+
+def plan_file(graph: Path, asked: list[dict[str, Any]], folder: Path) -> Planned:
+    """Run the command in a process of its own."""
+    (folder / "missions.json").write_text(json.dumps(asked))
+    command = [sys.executable, "manage.py", "plan_file", "--graph", str(graph)]
+    command += ["--missions", str(folder / "missions.json"), "--json", str(folder / "plans.json")]
+    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    said = process.stdout.read() if process.stdout else ""
+    _, status, usage = os.wait4(process.pid, 0)
+    if status:
+        raise SystemExit("plan_file has failed")
+    return Planned(json.loads((folder / "plans.json").read_bytes()), float(said.split(" in ")[1].split(" s;")[0]), usage.ru_maxrss / 1024)
+
+
+def article_ms(network: tuple[Any, Any], graph: Any, asked: list[dict[str, Any]], ours: Planned, limit_s: float) -> list[float]:
+    """Milliseconds of the article's method for as many missions as there is time for. Ends the run where ours is costlier."""
+    ends_s, times = time.monotonic() + limit_s, []
+    for number, mission in enumerate(asked):
+        if times and time.monotonic() > ends_s:
+            break
+        theirs = plan(*network, graph["lat"], graph["lon"], mission)
+        times.append(theirs["ms"]["total"])
+        if ours.plans[number]["cost_m"] > theirs["cost_m"] + SAME_M:
+            raise SystemExit(f"mission {number} is costlier than the article's: {ours.plans[number]['cost_m']} m, {theirs['cost_m']} m")
+    return times
+
+
+def compare(options: argparse.Namespace, folder: Path) -> tuple[list[list[str]], list[str]]:
+    """Rows of the table, and which bars are missed."""
+    graph = make(options.nodes)
+    np.savez(folder / "graph.npz", **graph)
+    network = build(graph["lat"], graph["lon"], graph["u"], graph["v"], graph["w"])
+    rows, missed = [], []
+    for name, radius_m, count in (("within 30 km", NEAR_M, options.near), ("anywhere", None, options.anywhere)):
+        asked = missions(graph, UAVS, TARGETS, count, radius_m=radius_m)
+        ours = plan_file(folder / "graph.npz", asked, folder)
+        theirs = article_ms(network, graph, asked, ours, options.article_s)
+        ratio = median(theirs) / median(plan["ms"]["total"] for plan in ours.plans[: len(theirs)])
+        if ratio < LEAST_RATIO[name]:
+            missed.append(f"{name}: {ratio:.0f} times as fast, less than {LEAST_RATIO[name]:.0f}")
+        compared = f"{len(theirs)} of {count}"
+        rows.append([name, f"{ours.median_ms:.3f} ms", f"{median(theirs):,.1f} ms", f"{ratio:,.0f}", compared, "0"])
+        print(*rows[-1], sep="  ", flush=True)
+    return rows, missed
+
+
+def large(options: argparse.Namespace, folder: Path) -> tuple[list[list[str]], list[str]]:
+    """The graph of a million nodes: rows of the table, and which bars are missed."""
+    graph = make(options.large_nodes)
+    np.savez(folder / "large.npz", **graph)
+    subprocess.run([sys.executable, "-m", "benchmarks.plan_speed", "--store", str(folder)], cwd=ROOT, check=True)
+    rows, missed = [], []
+    for name, radius_m in (("within 30 km", NEAR_M), ("anywhere", None)):
+        asked = missions(graph, UAVS, TARGETS, options.near, radius_m=radius_m)
+        ours = plan_file(folder / "large.npz", asked, folder)
+        (folder / "missions.json").write_text(json.dumps(asked))
+        child = [sys.executable, "-m", "benchmarks.plan_speed", "--planner", str(folder)]
+        said = json.loads(subprocess.run(child, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
+        rows.append([name, f"{ours.index_s:.2f} s", f"{ours.peak_mib:.0f} MiB", f"{ours.median_ms:.3f} ms", f"{said['peak_mib']:.0f} MiB"])
+        print(*rows[-1], sep="  ", flush=True)
+        if ours.index_s > MOST_INDEX_S or said["peak_mib"] > MOST_PLANNER_MIB or ours.median_ms > MOST_PLAN_MS:
+            missed.append(f"{options.large_nodes:,} nodes, {name}")
+    return rows, missed
+
+
+def planner(folder: Path) -> None:
+    """What a web worker does, in this process: map the stored graph and its index, and plan; prints the most memory it had."""
+    os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
+    import django  # noqa: PLC0415 (only this process is a planner)
+
+    django.setup()
+    import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
+    from inspection.geodesy import LonLat  # noqa: PLC0415
+    from inspection.graph.access import clear_legs  # noqa: PLC0415
+    from inspection.graph.snapshot_file import read_cache  # noqa: PLC0415
+    from inspection.graph.ways import travel_between  # noqa: PLC0415
+    from inspection.graph.zone_index import ZoneIndex  # noqa: PLC0415
+
+    content_sha256 = (folder / "content.sha256").read_text()
+    graph = read_cache(folder / "graphs", content_sha256=content_sha256, version=1, ground_revision=1)
+    if graph is None:
+        raise SystemExit("the stored graph cannot be read")
+    zones = ZoneIndex([], [], [])
+    for mission in json.loads((folder / "missions.json").read_bytes()):
+        places = [LonLat(lon, lat) for lat, lon in mission["uavs"]]
+        places += [LonLat(*graph.position[node].tolist()) for node in mission["targets"]]
+        legs = [clear_legs(graph, zones, place, radius_m=3_000.0, factor=2.0, clearance_m=5.0) for place in places]
+        travel = travel_between(graph, legs, legs[UAVS:])
+        for source in range(len(legs)):
+            for sink in range(TARGETS):
+                travel.path(source, sink)
+    print(json.dumps({"peak_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
+
+
+def store(folder: Path) -> None:
+    """Write the large graph with its index as the task that builds graphs does, in a process of its own."""
+    os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
+    import django  # noqa: PLC0415
+
+    django.setup()
+    from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: PLC0415
+    from inspection.graph.snapshot_file import to_bytes, write_cache  # noqa: PLC0415
+
+    stored = np.load(folder / "large.npz")
+    nodes, edges = len(stored["lat"]), len(stored["u"])
+    graph = InspectionGraph(
+        version=1,
+        ground_revision=1,
+        position=np.column_stack([stored["lon"], stored["lat"]]),
+        node_kind=np.array([NodeKind.SUPPORT, NodeKind.RAILWAY, NodeKind.BRIDGE], dtype=np.uint8)[stored["kind"]],
+        node_asset=np.arange(nodes, dtype=np.int64),
+        node_height_m=np.full(nodes, np.nan),
+        edge=np.sort(np.column_stack([stored["u"], stored["v"]]), axis=1),
+        length_m=stored["w"],
+        cost=stored["w"],
+        edge_kind=np.full(edges, EdgeKind.LINE, dtype=np.uint8),
+        edge_asset=np.arange(edges, dtype=np.int64) // 40,
+        zone_wkb=(),
+        zone_id=np.zeros(0, dtype=np.int64),
+        zone_name=(),
+    )
+    content = to_bytes(graph)
+    content_sha256 = sha256(content).hexdigest()
+    write_cache(folder / "graphs", content, content_sha256=content_sha256, version=1)
+    (folder / "content.sha256").write_text(content_sha256)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--nodes", type=int, default=200_000)
+    parser.add_argument("--large-nodes", type=int, default=1_000_000)
+    parser.add_argument("--near", type=int, default=100, help="missions within 30 km")
+    parser.add_argument("--anywhere", type=int, default=100, help="missions anywhere in a component")
+    parser.add_argument("--article-s", type=float, default=300.0, help="no mission of the article's method begins later than this")
+    parser.add_argument("--write", action="store_true", help="into docs/performance.md")
+    parser.add_argument("--planner", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--store", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.planner:
+        return planner(options.planner)
+    if options.store:
+        return store(options.store)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        rows, missed = compare(options, folder)
+        large_rows, large_missed = large(options, folder)
+    head = [
+        "2 UAVs, 4 targets, 200,000 nodes",
+        "Spanwise, median",
+        "the article's method",
+        "times as fast",
+        "missions compared",
+        "costlier",
+    ]
+    large_head = [
+        f"{options.large_nodes:,} nodes",
+        "index",
+        "plan_file, most memory",
+        "plan, median",
+        "planner with mapped index, most memory",
+    ]
+    text = (
+        f"`python -m benchmarks.plan_speed`: positions to finished JSON, one process, beside the article's method on the same missions. "
+        f"{machine('numba', 'numpy', 'networkx', 'ortools')}\n\n{table(head, rows)}\n\n{table(large_head, large_rows)}"
+    )
+    print(text)
+    if options.write:
+        write_section("Speed of small plans", text)
+    if missed or large_missed:
+        raise SystemExit("missed: " + "; ".join(missed + large_missed))
+    return None
+
+
+if __name__ == "__main__":
+    main()
