@@ -63,12 +63,12 @@ def reduced(problem: Problem) -> Reduced:
     between_m = problem.between_m[np.ix_(last, first)]
     allowed = np.ones((len(problem.uavs), len(problem.visits)), dtype=bool) if problem.allowed is None else problem.allowed
     allowed = np.array([allowed[:, list(run.visits)].all(axis=1) for run in ways], dtype=bool).reshape(len(ways), len(problem.uavs)).T
-    for index, lock in enumerate(owner):
-        if lock is not None:
-            allowed[:, index] &= np.arange(len(problem.uavs)) == lock.uav
-            if lock.at_start:
+    for index, wish in enumerate(owner):
+        if wish is not None:
+            allowed[:, index] &= np.arange(len(problem.uavs)) == wish.uav
+            if wish.at_start:
                 between_m[:, index] = np.inf
-            if lock.at_end:
+            if wish.at_end:
                 between_m[index, :] = np.inf
     targets_of = (*((target,) for target in free), *(lock.targets for lock in problem.locks))
     return Reduced(
