@@ -4,7 +4,8 @@ In graphs of power lines 90 to 98 % of the nodes have two neighbours. A chain ke
 length from its first node on, so that the way from any node on it to either end, or to another node on it, is a subtraction.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -60,16 +61,32 @@ def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, lengt
 
     The core is every node that has not exactly two edges, and of a ring that meets no such node the one with the lowest number.
     """
-    tail, head = np.array(edge[:, 0], dtype=np.int32), np.array(edge[:, 1], dtype=np.int32)
-    arrays = _condense(node_count, tail, head, np.array(cost, dtype=np.float64), np.array(length_m, dtype=np.float64))
+    return condense_columns(node_count, edge[:, 0], edge[:, 1], cost, length_m)
+
+
+def condense_columns(
+    node_count: int, tail: NDArray[np.integer], head: NDArray[np.integer], cost: FloatArray, length_m: FloatArray
+) -> CondensedGraph:
+    """The same with the edges' ends in columns. Where the cost is the length, one array serves as both."""
+    is_cost_length = cost is length_m
+    cost = _column(cost, np.float64)
+    length_m = cost if is_cost_length else _column(length_m, np.float64)
+    arrays = _condense(node_count, _column(tail, np.int32), _column(head, np.int32), cost, length_m, is_cost_length)
     for array in arrays:
         array.setflags(write=False)
-    return CondensedGraph(*arrays)
+    condensed = CondensedGraph(*arrays)
+    return replace(condensed, place_m=condensed.place_cost) if is_cost_length else condensed
+
+
+def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
+    """Contiguous and writable: to numba an array that is not would be of another type, and everything compiled twice."""
+    column = np.ascontiguousarray(values, dtype=dtype)
+    return column if column.flags.writeable else column.copy()
 
 
 @njit(cache=True, nogil=True)
 def _condense(
-    node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray
+    node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray, is_cost_length: bool
 ) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, FloatArray, FloatArray]:
     first = np.zeros(node_count + 1, dtype=np.int32)
     for edge in range(len(tail)):
@@ -124,14 +141,18 @@ def _condense(
             if is_walked[edge]:
                 continue
             node, walked_cost, walked_m = begin, 0.0, 0.0
-            place_node[places], place_cost[places], place_m[places] = node, 0.0, 0.0
+            place_node[places], place_cost[places] = node, 0.0
+            if not is_cost_length:
+                place_m[places] = 0.0
             places += 1
             while True:
                 is_walked[edge] = True
                 node = head[edge] if tail[edge] == node else tail[edge]
                 walked_cost += cost[edge]
-                walked_m += length_m[edge]
-                place_node[places], place_cost[places], place_m[places] = node, walked_cost, walked_m
+                place_node[places], place_cost[places] = node, walked_cost
+                if not is_cost_length:
+                    walked_m += length_m[edge]
+                    place_m[places] = walked_m
                 places += 1
                 if node_chain[node] == -1:
                     break
@@ -149,7 +170,7 @@ def _condense(
         chain_first[: chains + 1].copy(),
         chain_tail[:chains].copy(),
         chain_head[:chains].copy(),
-        place_node[:places].copy(),
-        place_cost[:places].copy(),
-        place_m[:places].copy(),
+        place_node[:places],  # what lies behind was never touched and takes no memory
+        place_cost[:places],
+        place_m[:places],
     )

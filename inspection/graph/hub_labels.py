@@ -17,6 +17,8 @@ from inspection.graph.condensed import CondensedGraph, FloatArray, NumberArray
 SAMPLED_TREES = 48
 MOST_SAMPLED_NODES = 4_000_000  # in all trees together
 FEWEST_TREES = 4
+BLOCK = 16  # entries that a node gets room for at a time
+FIRST_BLOCKS = 5  # for each node, before the pool grows
 SEED = 20_130_622  # of the sample; the same graph always gives the same labels
 
 IntArray = NDArray[np.int64]
@@ -227,18 +229,15 @@ def _label(
     order: NumberArray,
 ) -> tuple[IntArray, NumberArray, NumberArray, FloatArray, FloatArray]:
     nodes = len(order)
-    # Each node's entries lie together in a pool; a node that runs out of room moves to the pool's end and gets twice as much.
-    room = 8
-    pool = 2 * room * (nodes + 1)
+    # Each node's entries lie in a list of blocks of a pool. What the pool has not used yet takes no memory.
+    blocks = nodes * FIRST_BLOCKS + 1
     used = 0
-    hub, chain_of = np.empty(pool, dtype=np.int32), np.empty(pool, dtype=np.int32)
-    entry_cost, entry_m = np.empty(pool), np.empty(pool)
-    begin = np.empty(nodes, dtype=np.int64)
+    hub, chain_of = np.empty(blocks * BLOCK, dtype=np.int32), np.empty(blocks * BLOCK, dtype=np.int32)
+    entry_cost, entry_m = np.empty(blocks * BLOCK), np.empty(blocks * BLOCK)
+    next_block = np.empty(blocks, dtype=np.int32)
+    first_block = np.full(nodes, -1, dtype=np.int32)
+    last_block = np.full(nodes, -1, dtype=np.int32)
     count = np.zeros(nodes, dtype=np.int32)
-    space = np.full(nodes, room, dtype=np.int32)
-    for node in range(nodes):
-        begin[node] = used
-        used += room
 
     heap_key = np.empty(len(chain_at) + 2)
     heap_node = np.empty(len(chain_at) + 2, dtype=np.int32)
@@ -250,8 +249,12 @@ def _label(
     of_root = np.full(nodes, np.inf)  # the root's cost to each hub
     for rank in range(nodes):
         root = order[rank]
-        for entry in range(begin[root], begin[root] + count[root]):
-            of_root[hub[entry]] = entry_cost[entry]
+        block, left = first_block[root], count[root]
+        while left > 0:
+            for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
+                of_root[hub[entry]] = entry_cost[entry]
+            left -= BLOCK
+            block = next_block[block]
         reached[root], flown_m[root], by_chain[root] = 0.0, 0.0, -1
         touched[0] = root
         touches = 1
@@ -263,26 +266,30 @@ def _label(
                 continue
             is_settled[node] = True
             is_known = False
-            for entry in range(begin[node], begin[node] + count[node]):
-                if of_root[hub[entry]] + entry_cost[entry] <= reached[node]:
-                    is_known = True
-                    break
+            block, left = first_block[node], count[node]
+            while left > 0 and not is_known:
+                for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
+                    if of_root[hub[entry]] + entry_cost[entry] <= reached[node]:
+                        is_known = True
+                        break
+                left -= BLOCK
+                block = next_block[block]
             if is_known:
                 continue
-            if count[node] == space[node]:
-                wanted = 2 * space[node]
-                if used + wanted > pool:
-                    pool = 2 * pool + wanted
-                    hub, chain_of = _grown(hub, pool), _grown(chain_of, pool)
-                    entry_cost, entry_m = _grown(entry_cost, pool), _grown(entry_m, pool)
-                old, kept = begin[node], count[node]
-                hub[used : used + kept] = hub[old : old + kept]
-                chain_of[used : used + kept] = chain_of[old : old + kept]
-                entry_cost[used : used + kept] = entry_cost[old : old + kept]
-                entry_m[used : used + kept] = entry_m[old : old + kept]
-                begin[node], space[node] = used, wanted
-                used += wanted
-            entry = begin[node] + count[node]
+            if count[node] % BLOCK == 0:
+                if used == blocks:
+                    blocks *= 2
+                    hub, chain_of = _grown(hub, blocks * BLOCK), _grown(chain_of, blocks * BLOCK)
+                    entry_cost, entry_m = _grown(entry_cost, blocks * BLOCK), _grown(entry_m, blocks * BLOCK)
+                    next_block = _grown(next_block, blocks)
+                if count[node] == 0:
+                    first_block[node] = used
+                else:
+                    next_block[last_block[node]] = used
+                last_block[node] = used
+                next_block[used] = -1
+                used += 1
+            entry = last_block[node] * BLOCK + count[node] % BLOCK
             hub[entry], chain_of[entry], entry_cost[entry], entry_m[entry] = rank, by_chain[node], reached[node], flown_m[node]
             count[node] += 1
             for at in range(first[node], first[node + 1]):
@@ -300,8 +307,12 @@ def _label(
         for at in range(touches):
             reached[touched[at]] = np.inf
             is_settled[touched[at]] = False
-        for entry in range(begin[root], begin[root] + count[root]):
-            of_root[hub[entry]] = np.inf
+        block, left = first_block[root], count[root]
+        while left > 0:
+            for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
+                of_root[hub[entry]] = np.inf
+            left -= BLOCK
+            block = next_block[block]
 
     label_first = np.zeros(nodes + 1, dtype=np.int64)
     for node in range(nodes):
@@ -310,11 +321,14 @@ def _label(
     out_hub, out_chain = np.empty(total, dtype=np.int32), np.empty(total, dtype=np.int32)
     out_cost, out_m = np.empty(total), np.empty(total)
     for node in range(nodes):
-        left, right, old, end = label_first[node], label_first[node + 1], begin[node], begin[node] + count[node]
-        out_hub[left:right] = hub[old:end]
-        out_chain[left:right] = chain_of[old:end]
-        out_cost[left:right] = entry_cost[old:end]
-        out_m[left:right] = entry_m[old:end]
+        to = label_first[node]
+        block, left = first_block[node], count[node]
+        while left > 0:
+            for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
+                out_hub[to], out_chain[to], out_cost[to], out_m[to] = hub[entry], chain_of[entry], entry_cost[entry], entry_m[entry]
+                to += 1
+            left -= BLOCK
+            block = next_block[block]
     return label_first, out_hub, out_chain, out_cost, out_m
 
 

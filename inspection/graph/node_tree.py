@@ -45,9 +45,13 @@ class NodeTree:
 
 def build_node_tree(position: FloatArray) -> NodeTree:
     """The tree of nodes at positions (n, 2), lon, lat [deg]."""
-    point = on_unit_sphere(np.asarray(position, dtype=np.float64).reshape(-1, 2))
-    order, axis = _build(np.ascontiguousarray(point))
-    arrays = order, np.ascontiguousarray(point[order]), axis
+    position = np.asarray(position, dtype=np.float64).reshape(-1, 2)
+    return tree_of(np.ascontiguousarray(position[:, 0]), np.ascontiguousarray(position[:, 1]))
+
+
+def tree_of(lon: FloatArray, lat: FloatArray) -> NodeTree:
+    """The same from columns."""
+    arrays = _build(lon, lat)
     for array in arrays:
         array.setflags(write=False)
     return NodeTree(*arrays)
@@ -59,8 +63,12 @@ def _point(position: LonLat) -> FloatArray:
 
 
 @njit(cache=True, nogil=True)
-def _build(point: FloatArray) -> tuple[NumberArray, NDArray[np.uint8]]:
-    count = len(point)
+def _build(lon: FloatArray, lat: FloatArray) -> tuple[NumberArray, FloatArray, NDArray[np.uint8]]:
+    count = len(lon)
+    point = np.empty((count, 3))
+    for node in range(count):
+        x, y = np.radians(lon[node]), np.radians(lat[node])
+        point[node, 0], point[node, 1], point[node, 2] = np.cos(y) * np.cos(x), np.cos(y) * np.sin(x), np.sin(y)
     order = np.arange(count).astype(np.int32)
     axis = np.zeros(count, dtype=np.uint8)
     stack = np.empty((128, 2), dtype=np.int64)
@@ -104,7 +112,20 @@ def _build(point: FloatArray) -> tuple[NumberArray, NDArray[np.uint8]]:
         stack[height, 0], stack[height, 1] = begin, middle
         stack[height + 1, 0], stack[height + 1, 1] = middle + 1, end
         height += 2
-    return order, axis
+    # Points go to their nodes' places in the order one ring of exchanges after the other, in the memory that they have.
+    is_placed = np.zeros(count, dtype=np.bool_)
+    for begin in range(count):
+        if is_placed[begin]:
+            continue
+        x, y, z = point[begin]
+        at = begin
+        while order[at] != begin:
+            point[at] = point[order[at]]
+            is_placed[at] = True
+            at = order[at]
+        point[at, 0], point[at, 1], point[at, 2] = x, y, z
+        is_placed[at] = True
+    return order, point, axis
 
 
 @njit(cache=True, nogil=True)

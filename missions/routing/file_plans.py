@@ -14,10 +14,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.graph.condensed import condense
+from inspection.graph.condensed import condense_columns
 from inspection.graph.hub_labels import label
 from inspection.graph.nearness import EARTH_RADIUS_M
-from inspection.graph.node_tree import NodeTree, build_node_tree
+from inspection.graph.node_tree import NodeTree, tree_of
 from inspection.graph.route_index import RouteIndex
 from inspection.graph.ways import travel_of_legs
 from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
@@ -51,23 +51,31 @@ class FileMission:
 
 def read_graph(file: BinaryIO) -> FileGraph:
     """The graph of an npz with its index. Raises InvalidFile."""
+    # One array after the other, each let go before the next is made: a million nodes take less than 100 MiB.
     try:
         with np.load(file, allow_pickle=False) as stored:
-            lat, lon, u, v, w = (stored[name] for name in ("lat", "lon", "u", "v", "w"))
+            node_count = len(stored["lat"])
+            u, v, w = _column(stored["u"], np.int32), _column(stored["v"], np.int32), _column(stored["w"], np.float64)
+            if not len(u) == len(v) == len(w) or not (np.isfinite(w).all() and (w >= 0).all()):
+                raise InvalidFile("not a graph: each edge needs two ends and a length of 0 m or more")
+            if len(u) and not (min(u.min(), v.min()) >= 0 and max(u.max(), v.max()) < node_count):
+                raise InvalidFile("not a graph: an edge leads to a node that is not there")
+            condensed = condense_columns(node_count, u, v, w, w)
+            del u, v, w
+            labels = label(condensed)
+            lon, lat = _column(stored["lon"], np.float64), _column(stored["lat"], np.float64)
     except (KeyError, ValueError, OSError, EOFError) as error:
-        raise InvalidFile(f"not a graph: {error}") from error
-    if not len(lon) == len(lat) or not len(u) == len(v) == len(w) or any(array.dtype.kind not in "fiu" for array in (lat, lon, u, v, w)):
-        raise InvalidFile("not a graph: lat and lon, and u, v and w, must be numbers and as many as each other")
-    position = np.column_stack([lon, lat]).astype(np.float64)
-    edge, length_m = np.column_stack([u, v]).astype(np.int64), np.asarray(w, dtype=np.float64)
-    if not len(position) or not np.isfinite(position).all():
+        raise error if isinstance(error, InvalidFile) else InvalidFile(f"not a graph: {error}") from error
+    if not len(lon) == len(lat) > 0 or not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         raise InvalidFile("not a graph: it needs nodes, each with a place")
-    if not (np.isfinite(length_m).all() and (length_m >= 0).all()):
-        raise InvalidFile("not a graph: each edge needs a length of 0 m or more")
-    if edge.size and not (edge.min() >= 0 and edge.max() < len(position)):
-        raise InvalidFile("not a graph: an edge leads to a node that is not there")
-    condensed = condense(len(position), edge, length_m, length_m)
-    return FileGraph(RouteIndex(condensed, label(condensed)), build_node_tree(position), len(position))
+    return FileGraph(RouteIndex(condensed, labels), tree_of(lon, lat), node_count)
+
+
+def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
+    """Raises InvalidFile for what is no column of numbers."""
+    if values.ndim != 1 or values.dtype.kind not in "fiu":
+        raise InvalidFile("not a graph: its arrays are columns of numbers")
+    return values.astype(dtype, copy=False)
 
 
 def read_mission(graph: FileGraph, mission: Mapping[str, Any]) -> FileMission:
