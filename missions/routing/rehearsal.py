@@ -1,7 +1,10 @@
 """The compiled solvers run once, so that they are compiled, or loaded, before somebody waits for them."""
 
+import io
+
 import numpy as np
 
+from missions.routing.file_plans import plan_json, read_graph
 from missions.routing.problem import Objective, Problem, UavStart, Visit
 from missions.routing.solver import solve
 
@@ -20,3 +23,11 @@ def rehearse() -> None:
                 objective=objective,
             )
         )
+
+
+def rehearse_file_plans() -> None:
+    """Plan a mission of one UAV and one target on a graph of two nodes."""
+    file = io.BytesIO()
+    np.savez(file, lat=np.array([47.0, 47.1]), lon=np.array([9.0, 9.0]), u=np.array([0]), v=np.array([1]), w=np.array([11_000.0]))
+    file.seek(0)
+    plan_json(read_graph(file), {"uavs": [[47.0, 9.0]], "targets": [1]}, Objective.TOTAL, float)

@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from missions.routing.arcs import IntArray
+from missions.routing.crossing import cross, pick
 from missions.routing.plan_state import (
     NO_LIMIT_M,
     Ground,
@@ -32,6 +33,7 @@ SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
 KEEP_SHARE = 0.01  # how often one more of them is let go
 BLINK_SHARE = 0.01  # how often a place is overlooked
 AROUND_LONGEST_SHARE = 0.5
+CROSSING_SHARE = 0.7  # of all rounds
 EVENNESS = 1e-3  # what the mean route weighs beside the longest
 
 
@@ -97,17 +99,21 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
     for _ in range(rounds):
         temperature *= cooling
         work.is_saved[:] = False
-        count = _ruin(ground, work)
-        left_out = count
-        for target in range(len(plan.uav_of)):
-            if plan.uav_of[target] < 0 and not work.is_removed[target]:
-                work.waiting[count] = target
-                count += 1
-        for place in range(left_out):
-            work.is_removed[work.waiting[place]] = False
-        dice = draw(work.random)
-        kind = 0 if dice < 0.6 else (1 if dice < 0.85 else 2)
-        _recreate(ground, work, count, kind, power, scale)
+        count = 0
+        if draw(work.random) < CROSSING_SHARE:
+            if not _cross(ground, work):
+                continue
+        else:
+            count = _ruin(ground, work)
+            left_out = count
+            for target in range(len(plan.uav_of)):
+                if plan.uav_of[target] < 0 and not work.is_removed[target]:
+                    work.waiting[count] = target
+                    count += 1
+            for place in range(left_out):
+                work.is_removed[work.waiting[place]] = False
+            dice = draw(work.random)
+            _recreate(ground, work, count, 0 if dice < 0.6 else (1 if dice < 0.85 else 2), power, scale)
         now_missed, now_cost = np.inf, np.inf
         if _is_whole(ground, work):
             now_missed, now_cost = _cost(ground, plan, power, scale)
@@ -173,8 +179,11 @@ def _is_whole(ground: Ground, work: Workspace) -> bool:
     for uav in range(len(work.is_saved)):
         if work.is_saved[uav]:
             settle(ground, work.plan, uav)
-            if work.plan.length_m[uav] > ground.limit_m[uav]:
+            if work.plan.length_m[uav] > ground.limit_m[uav] or work.plan.done[uav] > ground.most[uav]:
                 return False
+            for place in range(work.plan.size[uav]):
+                if not ground.usable[uav, work.plan.visit[uav, place]]:
+                    return False
     return True
 
 
@@ -183,6 +192,35 @@ def _save(work: Workspace, uav: int) -> None:
     if not work.is_saved[uav]:
         work.is_saved[uav] = True
         copy_route(work.plan, work.saved, uav)
+
+
+@njit(cache=True, nogil=True)
+def _longest(ground: Ground, plan: Plan) -> int:
+    """The UAV that flies longest."""
+    longest, longest_s = 0, -1.0
+    for uav in range(len(plan.size)):
+        duration_s = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
+        if duration_s > longest_s and plan.size[uav]:
+            longest, longest_s = uav, duration_s
+    return longest
+
+
+@njit(cache=True, nogil=True)
+def _cross(ground: Ground, work: Workspace) -> bool:
+    """One move between two routes or within one; whether there is anything to judge."""
+    plan = work.plan
+    longest = -1
+    if ground.is_makespan and draw(work.random) < AROUND_LONGEST_SHARE:
+        longest = _longest(ground, plan)
+        if plan.size[longest] == 0:
+            return False
+    uav, other_uav, place, other = pick(ground, plan, work.random, longest)
+    if uav < 0:
+        return False
+    _save(work, uav)
+    _save(work, other_uav)
+    cross(ground, plan, work.saved, work.random, uav, other_uav, place, other)
+    return True
 
 
 @njit(cache=True, nogil=True)
@@ -201,11 +239,7 @@ def _ruin(ground: Ground, work: Workspace) -> int:
     strings = int(draw(random) * most_strings + 1.0)
     seed = draw_below(random, targets)
     if ground.is_makespan and draw(random) < AROUND_LONGEST_SHARE:
-        longest, longest_s = 0, -1.0
-        for uav in range(uavs):
-            duration_s = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
-            if duration_s > longest_s and plan.size[uav]:
-                longest, longest_s = uav, duration_s
+        longest = _longest(ground, plan)
         seed = ground.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
     waiting = 0
     for number in range(ground.near.shape[1]):

@@ -21,7 +21,7 @@ LOOK_INTERVAL_S = 0.1
 TARGET_ROUNDS_PER_STEP = 40_000  # rounds times targets, some tens of milliseconds
 FIXED_STEPS = 40  # of each chain in a search without a time, a second or less in all
 MOST_ROUNDS_PER_STEP = 600
-WARM, COLD = 0.3, 0.002  # temperatures, in mean arcs of the plan
+WARM, COLD = 5.0, 0.02  # temperatures, in mean arcs of the plan
 POWERS = (3, 3, 4, 5, 6)  # of 2, one after another: the longest route comes to count more and more
 
 
