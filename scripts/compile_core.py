@@ -23,6 +23,7 @@ def main() -> int:
 
     of_the_graph.rehearse()
     of_the_solvers.rehearse()
+    of_the_solvers.rehearse_file_plans()
     (folder / STAMP).write_text(compiled_stamp())
     return 0
 

@@ -29,12 +29,12 @@ class NodeTree:
 
     def nearest(self, position: LonLat, count: int, within: float = np.inf) -> IntArray:
         """Up to `count` nodes nearest to a position, no farther than the chord `within` on the unit sphere, the nearest first."""
-        nodes: IntArray = _nearest(_point(position), count, within * within, self.order, self.point, self.axis)
+        nodes: IntArray = _nearest(_point(position), count, float(within * within), self.order, self.point, self.axis)
         return nodes
 
     def around(self, position: LonLat, within: float) -> IntArray:
         """All nodes no farther from a position than the chord `within` on the unit sphere, sorted."""
-        nodes: IntArray = _around(_point(position), within * within, self.order, self.point, self.axis)
+        nodes: IntArray = _around(_point(position), float(within * within), self.order, self.point, self.axis)
         return np.sort(nodes)
 
     def nearest_of_each(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
