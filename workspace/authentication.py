@@ -27,7 +27,7 @@ class BearerTokenAuthentication(BaseAuthentication):
         scheme, *rest = get_authorization_header(request).strip().split(b" ", 1)
         if scheme.lower() != b"bearer":
             return None
-        found = self._valid_token(b"".join(rest).strip())
+        found = _valid_token(b"".join(rest).strip())
         if found is None:
             raise AuthenticationFailed(_("The token is not valid."))
         note_use(token=found)
@@ -36,12 +36,18 @@ class BearerTokenAuthentication(BaseAuthentication):
     def authenticate_header(self, request: Request) -> str:
         return "Bearer"
 
-    @staticmethod
-    def _valid_token(token: bytes) -> ApiToken | None:
-        if not token.isascii() or len(token) > LONGEST_TOKEN:
-            return None
-        rows = prepared_rows(_VALID_TOKEN, [hash_token(token.decode("ascii"))])
-        return _token_of(rows[0]) if rows else None
+
+def user_of_token(token: bytes) -> User | None:
+    """Whose token it is, if it is valid."""
+    found = _valid_token(token)
+    return found.user if found else None
+
+
+def _valid_token(token: bytes) -> ApiToken | None:
+    if not token.isascii() or len(token) > LONGEST_TOKEN:
+        return None
+    rows = prepared_rows(_VALID_TOKEN, [hash_token(token.decode("ascii"))])
+    return _token_of(rows[0]) if rows else None
 
 
 def _columns(model: type[Model], table: str) -> str:

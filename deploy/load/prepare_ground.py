@@ -209,10 +209,8 @@ def main() -> None:
     tokens = folder / "tokens.txt"
     tokens.touch(mode=0o600)
     tokens.write_text("\n".join(store_users(options.users)))
-    print(
-        f"graph {newest.version}: {newest.nodes:,} nodes, {newest.edges:,} edges; {Asset.objects.count():,} assets, {options.users:,} users,"
-    )
-    print(f"{len(bodies):,} missions, all in {perf_counter() - began_s:.0f} s; tokens.txt and missions.json are in {folder}")
+    print(f"graph {newest.version}: {newest.nodes:,} nodes, {newest.edges:,} edges; {Asset.objects.count():,} assets")
+    print(f"{options.users:,} users, {len(bodies):,} missions, in {perf_counter() - began_s:.0f} s")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.django_db
 
 ODD: list[Any] = [
     None, True, False, 0, 1, -1, 3, 12, 2**63 - 1, 2**63, 2**70, 0.0, -0.0, 0.5, 1e-320, 99.9, 100, 100.5, 1e7, 1.1e7, 3600, 3600.5,
-    "", " ", "Tern", " Tern", "T" * 100, "T" * 101, "Mäwe", "a\tb", "total", "makespan", "hover", "return", "land", "photo", "hold", "dance",
+    "", " ", "Tern", " Tern", "T" * 100, "T" * 101, "Mäwe", "a\tb", "total", "makespan", "hover", "return", "land", "hold", "dance",
     [], {}, [10, 56], [10.5, 56.25], [181, 0], [0, 91], [10, True], [10, "56"], [10, 56, 0], [180, -90], [[10, 56], [11, 56]],
     {"kind": "hold"}, {"kind": "photo", "hold_s": 3}, {"kind": "photo", "hold_s": None}, {"kind": "hold", "hold_s": 4e3}, {"kind": "x"},
     {"id": 1}, [TERN], [{}],
