@@ -4,6 +4,7 @@ A graph file is an npz with lat, lon float64 (n,) [deg], u, v int32 (m,) node in
 """
 
 import json
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -40,7 +41,11 @@ class FileGraph:
 
     index: RouteIndex
     tree: NodeTree
-    node_count: int
+    fragment: NDArray[np.uint64]  # (n, words) the text for each node in a list of nodes
+
+    @property
+    def node_count(self) -> int:
+        return len(self.fragment)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +73,9 @@ def read_graph(file: BinaryIO) -> FileGraph:
         raise error if isinstance(error, InvalidFile) else InvalidFile(f"not a graph: {error}") from error
     if not len(lon) == len(lat) > 0 or not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         raise InvalidFile("not a graph: it needs nodes, each with a place")
-    return FileGraph(RouteIndex(condensed, labels), tree_of(lon, lat), node_count)
+    tree = tree_of(lon, lat)
+    del lon, lat
+    return FileGraph(RouteIndex(condensed, labels), tree, _fragments(node_count).view(np.uint64))
 
 
 def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
@@ -112,15 +119,14 @@ def plan_json(graph: FileGraph, mission: Mapping[str, Any], objective: Objective
     pairs[:, 0] += uavs
     nodes, first = travel.paths(pairs)
     counts = np.array([len(route) for route in routes], dtype=np.int64)
-    waypoints = _as_json(nodes, first, counts).tobytes().decode("ascii")
+    waypoints = _as_json(nodes, first, counts, graph.fragment, BLANK_COMMA, MARKS).tobytes()
     lengths_m = _lengths_m(travel.length_m[pairs[:, 0], pairs[:, 1]].tolist(), counts.tolist())
     content = (
-        f'{{"cost_m": {sum(lengths_m)!r}, "makespan_m": {max(lengths_m, default=0.0)!r}, '
-        f'"routes": {json.dumps(routes)}, "waypoints": {waypoints}, "ms": '
-    ).encode()
+        f'{{"cost_m": {sum(lengths_m)!r}, "makespan_m": {max(lengths_m, default=0.0)!r}, "routes": {json.dumps(routes)}, "waypoints": '
+    ).encode() + waypoints
     began.append(clock())
     ms = {phase: round((end - begin) * 1e3, 4) for phase, (begin, end) in zip(PHASES, pairwise(began), strict=True)}
-    return content + json.dumps(ms | {"total": round((began[-1] - began[0]) * 1e3, 4)}).encode() + b"}"
+    return content + b', "ms": ' + json.dumps(ms | {"total": round((began[-1] - began[0]) * 1e3, 4)}).encode() + b"}"
 
 
 def _routes(length_m: FloatArray, uavs: int, objective: Objective) -> Routes:
@@ -169,35 +175,63 @@ def _lengths_m(leg_m: Sequence[float], counts: Sequence[int]) -> list[float]:
     return [sum(leg_m[begin:end]) for begin, end in pairwise(ends)]
 
 
+WORD = 8  # bytes; JSON may have blanks between its tokens, so that every node takes up as many words as any other
+
+
 @njit(cache=True, nogil=True)
-def _as_json(nodes: IntArray, first: IntArray, counts: IntArray) -> NDArray[np.uint8]:
-    """The nodes of each route as a list of lists; counts (u,) says how many legs a route has. Where legs meet, the node counts once."""
-    text = np.empty(20 * len(nodes) + 4 * len(counts) + 4, dtype=np.uint8)
-    text[0] = 91  # [
+def _fragments(node_count: int) -> NDArray[np.uint8]:
+    """A comma and the node's number, for each node, filled up with blanks to whole words."""
+    words = 1 if node_count <= 10_000_000 else 2
+    text = np.full((node_count, words * WORD), 32, dtype=np.uint8)
+    for node in range(node_count):
+        text[node, 0] = 44  # ,
+        digits, rest = 1, node
+        while rest >= 10:
+            rest //= 10
+            digits += 1
+        rest = node
+        for place in range(digits, 0, -1):
+            text[node, place] = 48 + rest % 10
+            rest //= 10
+    return text
+
+
+@njit(cache=True, nogil=True)
+def _as_json(
+    nodes: IntArray, first: IntArray, counts: IntArray, fragment: NDArray[np.uint64], blank_comma: np.uint64, marks: NDArray[np.uint64]
+) -> NDArray[np.uint64]:
+    """The nodes of each route as a list of lists; counts (u,) says how many legs a route has. Where legs meet, the node counts once.
+
+    fragment has a row of words for each node; blank_comma takes the comma from a row's first word; marks are the words for where the
+    list begins, where one route ends and the next begins, where the list ends, and for no route at all.
+    """
+    words = fragment.shape[1]
+    text = np.empty(words * len(nodes) + len(counts) + 2, dtype=np.uint64)
+    if not len(counts):
+        text[0] = marks[3]
+        return text[:1]
+    text[0] = marks[0]
     size, leg = 1, 0
-    digits = np.empty(20, dtype=np.uint8)
     for route in range(len(counts)):
         if route:
-            text[size] = 44  # ,
+            text[size] = marks[1]
             size += 1
-        text[size] = 91
-        size += 1
+        begin = size
         for number in range(counts[route]):
             for at in range(first[leg] + (1 if number else 0), first[leg + 1]):
-                if text[size - 1] != 91:
-                    text[size] = 44
-                    size += 1
-                node, count = nodes[at], 0
-                while count == 0 or node:
-                    digits[count] = 48 + node % 10
-                    node //= 10
-                    count += 1
-                while count:
-                    count -= 1
-                    text[size] = digits[count]
-                    size += 1
+                for word in range(words):
+                    text[size + word] = fragment[nodes[at], word]
+                size += words
             leg += 1
-        text[size] = 93  # ]
-        size += 1
-    text[size] = 93
-    return text[: size + 1].copy()
+        if size > begin:
+            text[begin] -= blank_comma
+    text[size] = marks[2]
+    return text[: size + 1]
+
+
+def _word(text: bytes) -> int:
+    return int.from_bytes(text.ljust(WORD), sys.byteorder)
+
+
+MARKS = np.array([_word(mark) for mark in (b"[[", b"],[", b"]]", b"[]")], dtype=np.uint64)
+BLANK_COMMA = np.uint64(_word(b",") - _word(b" "))
