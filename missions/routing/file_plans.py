@@ -3,6 +3,7 @@
 A graph file is an npz with lat, lon float64 (n,) [deg], u, v int32 (m,) node indices and w float64 (m,) metres.
 """
 
+import io
 import json
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -235,3 +236,11 @@ def _word(text: bytes) -> int:
 
 MARKS = np.array([_word(mark) for mark in (b"[[", b"],[", b"]]", b"[]")], dtype=np.uint64)
 BLANK_COMMA = np.uint64(_word(b",") - _word(b" "))
+
+
+def rehearse() -> None:
+    """Plan a mission of one UAV and one target on a graph of two nodes: what is compiled is compiled, or loaded, then."""
+    file = io.BytesIO()
+    np.savez(file, lat=np.array([47.0, 47.1]), lon=np.array([9.0, 9.0]), u=np.array([0]), v=np.array([1]), w=np.array([11_000.0]))
+    file.seek(0)
+    plan_json(read_graph(file), {"uavs": [[47.0, 9.0]], "targets": [1]}, Objective.TOTAL, float)

@@ -33,7 +33,7 @@ SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
 KEEP_SHARE = 0.01  # how often one more of them is let go
 BLINK_SHARE = 0.01  # how often a place is overlooked
 AROUND_LONGEST_SHARE = 0.5
-CROSSING_SHARE = 0.7  # of all rounds
+CROSSING_SHARE = 0.6  # of all rounds
 EVENNESS = 1e-3  # what the mean route weighs beside the longest
 
 

@@ -21,7 +21,9 @@ LOOK_INTERVAL_S = 0.1
 TARGET_ROUNDS_PER_STEP = 40_000  # rounds times targets, some tens of milliseconds
 FIXED_STEPS = 40  # of each chain in a search without a time, a second or less in all
 MOST_ROUNDS_PER_STEP = 600
-WARM, COLD = 5.0, 0.02  # temperatures, in mean arcs of the plan
+# Temperatures at the beginning and the end, in mean arcs of the plan, of one chain and the next. Measured by `benchmarks.assignment`.
+TOTAL_TEMPERATURES = ((3.0, 0.02), (6.0, 0.03))
+MAKESPAN_TEMPERATURES = ((0.3, 0.002), (1.0, 0.005))
 POWERS = (3, 3, 4, 5, 6)  # of 2, one after another: the longest route comes to count more and more
 
 
@@ -31,24 +33,26 @@ class Chain:
 
     ground: Ground
     work: Workspace
-    unit: float
+    warm: float
+    cold: float
     routes: Routes  # the best so far; replaced as a whole, so that other threads may read it
 
     @classmethod
-    def begin(cls, ground: Ground, seed: int) -> "Chain":
-        work = workspace(len(ground.first_m), len(ground.weight), seed)
+    def begin(cls, ground: Ground, seed: int, number: int) -> "Chain":
+        work = workspace(len(ground.first_m), len(ground.weight), seed + number)
         construct(ground, work, POWERS[0], CONSTRUCTIONS)
         _, total_m, longest_s = values(ground, work.best)
         flown = max(1, int(work.best.size.sum()))
         unit = longest_s * np.count_nonzero(work.best.size) / flown if ground.is_makespan else total_m / flown
-        return cls(ground, work, max(1e-6, float(unit)), routes_of(work.best))
+        temperatures = MAKESPAN_TEMPERATURES if ground.is_makespan else TOTAL_TEMPERATURES
+        warm, cold = temperatures[number % len(temperatures)]
+        return cls(ground, work, max(1e-6, float(unit) * warm), max(1e-8, float(unit) * cold), routes_of(work.best))
 
     def step(self, share: float, step: float, rounds: int) -> None:
         """So many rounds, while the search goes from a share of its time to share + step."""
         power = POWERS[min(len(POWERS) - 1, int(share * len(POWERS)))]
-        warm = self.unit * WARM * (COLD / WARM) ** min(1.0, share)
-        cold = self.unit * WARM * (COLD / WARM) ** min(1.0, share + step)
-        anneal(self.ground, self.work, rounds, warm, cold, power)
+        now, later = (self.warm * (self.cold / self.warm) ** min(1.0, at) for at in (share, share + step))
+        anneal(self.ground, self.work, rounds, now, later, power)
         self.routes = routes_of(self.work.best)
 
 
@@ -95,7 +99,7 @@ def best_found(
     if search_s:
         timer.start()
     with ThreadPoolExecutor(CHAINS + 1, "search") as pool:
-        chains = list(pool.map(lambda number: Chain.begin(ground, seed + number), range(CHAINS)))
+        chains = list(pool.map(lambda number: Chain.begin(ground, seed, number), range(CHAINS)))
         first = _best(problem, chains)
         bounding = pool.submit(lower_bound, problem, usable, needed_m, first, seed=seed)
         flights = [pool.submit(fly, chain) for chain in chains]
