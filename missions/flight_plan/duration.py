@@ -1,7 +1,8 @@
 """How long a route takes."""
 
 from collections.abc import Sequence
-from itertools import pairwise
+
+import numpy as np
 
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import Waypoint
@@ -15,8 +16,10 @@ def duration_s(waypoints: Sequence[Waypoint], *, length_m: float, cruise_speed_m
     """
     if not waypoints:
         return 0.0
-    vertical_m = waypoints[0].point.agl_m + sum(abs(right.relative_m - left.relative_m) for left, right in pairwise(waypoints))
+    relative_m = np.array([waypoint.relative_m for waypoint in waypoints])
+    vertical_m = waypoints[0].point.agl_m + float(np.abs(np.diff(relative_m)).sum())
     if lands:
         vertical_m += waypoints[-1].point.agl_m
-    hold_s = sum(waypoint.point.task.hold_s for waypoint in waypoints if waypoint.point.task is not None)
+    tasks = [waypoint.point.task for waypoint in waypoints]
+    hold_s = sum(task.hold_s for task in tasks if task is not None)
     return length_m / cruise_speed_mps + vertical_m / rules.climb_speed_mps + hold_s

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from itertools import pairwise
+from itertools import pairwise, repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,9 +44,10 @@ def is_above_limit(height_m: float, rules: FlightRules) -> bool:
     return height_m + rules.clearance_m > rules.max_agl_m
 
 
-def pass_agl_m(height_m: float, rules: FlightRules) -> float:
-    """Height above ground at which an asset is passed."""
-    return max(rules.transit_agl_m, height_m + rules.clearance_m)
+def pass_agl_m(heights_m: FloatArray, rules: FlightRules) -> FloatArray:
+    """Heights above ground at which assets of these heights are passed, (n,)."""
+    passed_m: FloatArray = np.maximum(rules.transit_agl_m, heights_m + rules.clearance_m)
+    return passed_m
 
 
 def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
@@ -62,7 +63,7 @@ def with_heights(
     Where the ground between two points bulges or sags by more than the tolerance, waypoints are put in on the straight lon/lat line
     between them. If the ground is unknown in even one place, nothing is put in and no height above sea level is given.
     """
-    flat = tuple([Waypoint(point, None, point.agl_m) for point in points])
+    flat = tuple(map(Waypoint, points, repeat(None), [point.agl_m for point in points]))
     if ground_heights_m is None or not points:
         return flat, bool(points)
     position = np.array([point.position for point in points])

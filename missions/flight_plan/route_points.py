@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise, repeat
 from typing import NamedTuple
 
 import numpy as np
@@ -71,12 +71,21 @@ class _Route:
         self.points: list[RoutePoint] = []
 
     def add_way(self, way: Sequence[PassedNode]) -> None:
-        for position, agl_m, asset in way:
-            before = self.points[-1]
-            if before.agl_m >= self.transit_agl_m and not _same_place(position, before.position):  # as nearly all are
-                self.points.append(RoutePoint(position, WaypointKind.PASS, agl_m, asset))
-            else:
-                self.add(RoutePoint(position, WaypointKind.PASS, agl_m, asset))
+        if not way:
+            return
+        self._add_node(way[0])
+        rest = way[1:]
+        if not rest:
+            return
+        positions, agl_m, assets = zip(*rest, strict=True)
+        if min(agl_m) >= self.transit_agl_m <= way[0].agl_m and not _repeats(way):  # as on nearly every way
+            self.points += map(RoutePoint, positions, repeat(WaypointKind.PASS), agl_m, assets)
+        else:
+            for node in rest:
+                self._add_node(node)
+
+    def _add_node(self, node: PassedNode) -> None:
+        self.add(RoutePoint(node.position, WaypointKind.PASS, node.agl_m, node.asset))
 
     def add_target(self, points: TargetPoints) -> None:
         entry = points.positions[0]
@@ -103,9 +112,12 @@ class _Route:
 
 def with_short_legs(points: Sequence[RoutePoint], longest_leg_m: float) -> list[RoutePoint]:
     """The points, and in between as many more, evenly on the straight lon/lat line, as keep every leg within the longest."""
+    position = positions_of(points)
+    lengths_m = distance_m(position[:-1], position[1:])
+    if not (lengths_m > longest_leg_m).any():
+        return list(points)
     divided: list[RoutePoint] = list(points[:1])
-    position = np.array([point.position for point in points])
-    for (left, right), length_m in zip(pairwise(points), distance_m(position[:-1], position[1:]).tolist(), strict=True):
+    for (left, right), length_m in zip(pairwise(points), lengths_m.tolist(), strict=True):
         if length_m > longest_leg_m:
             parts = math.ceil(length_m / longest_leg_m)
             divided += [point_between(left, right, part / parts) for part in range(1, parts)]
@@ -117,9 +129,20 @@ def _same_place(left: LonLat, right: LonLat) -> bool:
     return abs(left[0] - right[0]) <= SAME_PLACE_DEG and abs(left[1] - right[1]) <= SAME_PLACE_DEG
 
 
+def _repeats(way: Sequence[PassedNode]) -> bool:
+    """Whether any node stands where the one before it does."""
+    return bool((np.abs(np.diff(positions_of(way), axis=0)) <= SAME_PLACE_DEG).all(axis=1).any())
+
+
+def positions_of(points: Sequence[RoutePoint] | Sequence[PassedNode]) -> NDArray[np.float64]:
+    """Lon lat of each, shape (n, 2)."""
+    flat = np.fromiter(chain.from_iterable([point.position for point in points]), dtype=np.float64, count=2 * len(points))
+    return flat.reshape(-1, 2)
+
+
 def line_of(points: Sequence[RoutePoint]) -> NDArray[np.float64]:
     """The route on the map, shape (n, 2), n >= 2: positions without repeated ones; a UAV that stays in its place has it twice."""
-    positions = np.array([point.position for point in points])
+    positions = positions_of(points)
     moved = np.append(True, (np.diff(positions, axis=0) != 0).any(axis=1))
     line: NDArray[np.float64] = positions[moved]
     return line if len(line) > 1 else np.repeat(line, 2, axis=0)

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.waypoints import Waypoint
+from missions.flight_plan.waypoints import Waypoint, WaypointKind
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, task_to_json
 
 FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
+_KINDS = {kind: kind.value for kind in WaypointKind}
 
 
 @dataclass(frozen=True)
@@ -71,13 +72,14 @@ def plan_to_json(
 
 def waypoint_to_json(waypoint: Waypoint) -> dict[str, Any]:
     (position, kind, agl_m, asset, target, task), amsl_m, relative_m = waypoint
+    shown_agl_m = round(agl_m, 2)
     return {
         "position": list(position),
-        "kind": kind.value,
+        "kind": _KINDS[kind],
         "asset": asset,
         "target": target,
         "task": task_to_json(task) if task else None,
-        "altitude_agl_m": round(agl_m, 2),
+        "altitude_agl_m": shown_agl_m,
         "altitude_amsl_m": None if amsl_m is None else round(amsl_m, 2),
-        "altitude_relative_m": round(relative_m, 2),
+        "altitude_relative_m": shown_agl_m if relative_m is agl_m else round(relative_m, 2),
     }

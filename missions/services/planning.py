@@ -16,7 +16,7 @@ from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
 from missions.flight_plan.duration import duration_s
 from missions.flight_plan.flyable_graph import flyable_graph
 from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
-from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
+from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, positions_of, route_points, with_short_legs
 from missions.models import EndAction
 from missions.routing.problem import End, Problem, UavStart, Visit
 from missions.routing.progress import Progress
@@ -175,7 +175,7 @@ class _Drawing:
         )
         points = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, self.ground, flight)
-        length_m = path_length_m(np.array([point.position for point in points]))
+        length_m = path_length_m(positions_of(points))
         return PlannedRoute(
             targets=tuple(self.places[self.visits[visit].target].target for visit in order),
             waypoints=waypoints,
@@ -199,16 +199,9 @@ class _Drawing:
 
     def _passed(self, nodes: np.ndarray) -> list[PassedNode]:
         graph = self.scene.graph
-        positions, assets, heights_m = (
-            graph.position[nodes].tolist(),
-            graph.node_asset[nodes].tolist(),
-            node_heights_m(graph, nodes).tolist(),
-        )
-        passed_m = [pass_agl_m(height_m, self.scene.flight) for height_m in heights_m]
-        return [
-            PassedNode(LonLat(lon, lat), agl_m, asset if asset >= 0 else None)
-            for (lon, lat), agl_m, asset in zip(positions, passed_m, assets, strict=True)
-        ]
+        passed_m = pass_agl_m(node_heights_m(graph, nodes), self.scene.flight).tolist()
+        assets = [asset if asset >= 0 else None for asset in graph.node_asset[nodes].tolist()]
+        return list(map(PassedNode, map(LonLat._make, graph.position[nodes].tolist()), passed_m, assets))
 
 
 def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> Edition:

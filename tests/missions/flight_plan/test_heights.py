@@ -46,8 +46,7 @@ def test_the_tagged_height_counts_then_voltage_then_kind() -> None:
 
 
 def test_nothing_is_passed_below_transit_height_or_nearer_than_the_clearance() -> None:
-    assert pass_agl_m(14.0, RULES) == 60.0
-    assert pass_agl_m(80.0, RULES) == 95.0
+    assert pass_agl_m(np.array([14.0, 80.0]), RULES).tolist() == [60.0, 95.0]
     assert inspection_agl_m(14.0, RULES) == 29.0
     assert inspection_agl_m(0.0, RULES) == 60.0
     assert not is_above_limit(105.0, RULES)
