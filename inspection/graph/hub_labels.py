@@ -317,19 +317,26 @@ def _label(
     label_first = np.zeros(nodes + 1, dtype=np.int64)
     for node in range(nodes):
         label_first[node + 1] = label_first[node] + count[node]
-    total = label_first[nodes]
-    out_hub, out_chain = np.empty(total, dtype=np.int32), np.empty(total, dtype=np.int32)
-    out_cost, out_m = np.empty(total), np.empty(total)
-    for node in range(nodes):
-        to = label_first[node]
-        block, left = first_block[node], count[node]
-        while left > 0:
-            for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
-                out_hub[to], out_chain[to], out_cost[to], out_m[to] = hub[entry], chain_of[entry], entry_cost[entry], entry_m[entry]
-                to += 1
-            left -= BLOCK
-            block = next_block[block]
+    # One array of the pool after the other, each of which is let go as soon as it has been copied.
+    out_cost = _together(entry_cost, first_block, next_block, label_first)
+    out_m = _together(entry_m, first_block, next_block, label_first)
+    out_hub = _together(hub, first_block, next_block, label_first)
+    out_chain = _together(chain_of, first_block, next_block, label_first)
     return label_first, out_hub, out_chain, out_cost, out_m
+
+
+@njit(cache=True, nogil=True)
+def _together(pool: Any, first_block: NumberArray, next_block: NumberArray, label_first: IntArray) -> Any:
+    """What each node has in its blocks of the pool, one node after another."""
+    entries = np.empty(label_first[-1], dtype=pool.dtype)
+    for node in range(len(first_block)):
+        to, end, block = label_first[node], label_first[node + 1], first_block[node]
+        while to < end:
+            for entry in range(block * BLOCK, block * BLOCK + min(end - to, BLOCK)):
+                entries[to] = pool[entry]
+                to += 1
+            block = next_block[block]
+    return entries
 
 
 @njit(cache=True, nogil=True)
