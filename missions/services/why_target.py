@@ -87,8 +87,8 @@ def _network_m(place: Place, scene: Scene) -> float:
     """Metres to the nearest node of the network from the nearer end."""
     gaps_m = []
     for end in (place.course[0], place.course[-1]):
-        nearest = node_tree(scene.graph).nearest(end, 1)
-        gaps_m += distance_m(np.array([end]), scene.graph.position[nearest]).tolist()
+        for node in node_tree(scene.graph).nearest(end, 1).tolist():
+            gaps_m += distance_m(np.array([end]), scene.graph.position[[node]]).tolist()
     return min(gaps_m, default=float("inf"))
 
 
