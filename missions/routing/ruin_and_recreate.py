@@ -94,6 +94,7 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
     plan = work.plan
     scale = max(1e-9, values(ground, work.best)[2])
     missed, cost = _cost(ground, plan, power, scale)
+    best_missed, best_total_m, _ = values(ground, work.best)
     cooling = math.exp(math.log(cold / warm) / rounds) if rounds else 1.0
     temperature = warm
     for _ in range(rounds):
@@ -119,8 +120,10 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
             now_missed, now_cost = _cost(ground, plan, power, scale)
         if now_missed < missed or (now_missed == missed and now_cost < cost - temperature * math.log(1.0 - draw(work.random))):
             missed, cost = now_missed, now_cost
-            if _is_better(ground, plan, work.best):
+            may_be_best = ground.is_makespan or missed < best_missed or cost < best_total_m
+            if may_be_best and _is_better(ground, plan, work.best):
                 copy_plan(plan, work.best)
+                best_missed, best_total_m, _ = values(ground, plan)
         else:
             for place in range(count):
                 plan.uav_of[work.waiting[place]] = -1
