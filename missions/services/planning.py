@@ -1,6 +1,6 @@
 """One plan from request to answer: places, ways, assignment, waypoints, heights, and the last look at the zones."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -19,7 +19,7 @@ from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heig
 from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, positions_of, route_points, with_short_legs
 from missions.models import EndAction
 from missions.routing.problem import End, Problem, UavStart, Visit
-from missions.routing.progress import Progress
+from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import Stop, never, solve
 from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch, unheard
@@ -95,11 +95,10 @@ def make_plan(
     )
 
 
-def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> Callable[..., None]:
+def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:
     """What the solver says of the search, in the words of the whole plan."""
 
-    def hear(progress: Progress | float, message: str = "") -> None:
-        told = progress if isinstance(progress, Progress) else Progress(progress, message)
+    def hear(told: Progress) -> None:
         draw = None if told.best_routes is None else lambda: sketch.of(told)
         on_progress(PlanProgress(0.1 + 0.85 * told.share, told.message, draw))
 

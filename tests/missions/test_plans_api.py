@@ -14,6 +14,7 @@ from missions.routing import solver
 from missions.routing.progress import Progress
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world, zone_around
+from tests.workspace.counters import forget_counts
 from tests.workspace.people import client_of, somebody
 from workspace import job_watch
 from workspace.models import Job, JobState, Organisation, Role
@@ -136,6 +137,7 @@ def test_a_zone_newer_than_the_graph_makes_the_answer_try_again(here: World, cli
 
 
 def test_the_rate_of_plans_is_limited_per_user(here: World, client: Client, settings: Any) -> None:
+    forget_counts()
     with mock.patch("workspace.throttling.ScopedRate.THROTTLE_RATES", {"plans": "3/hour"}):
         answers = [post(client, "plans", plan_body(here.towers[0])).status_code for _ in range(4)]
         other = post(client_of(somebody()), "plans", plan_body(here.towers[0])).status_code

@@ -3,8 +3,9 @@
 import pytest
 from redis.exceptions import ConnectionError as RedisAway
 
+from tests.workspace.counters import forget_counts
 from tests.workspace.people import client_of, somebody
-from workspace.throttling import ScopedRate, _counters
+from workspace.throttling import ScopedRate
 
 pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.echo_urls")]
 
@@ -12,9 +13,7 @@ pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.echo_urls
 @pytest.fixture(autouse=True)
 def three_an_hour(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ScopedRate, "THROTTLE_RATES", {"plans": "3/hour"})
-    counters = _counters()
-    for key in counters.scan_iter("throttle_plans*"):
-        counters.delete(key)
+    forget_counts()
 
 
 def statuses(number: int = 5) -> list[int]:
