@@ -28,6 +28,7 @@ from scripts.supervision import Supervisor
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 POLL_S = 0.5
 STOP_S = 60
+BROWSER_TESTS_AFTER = ("tests/browser/ground", "tests/browser/people")  # in line with the others; the rest run beside, about as long
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Step:
     name: str
     command: list[str]
     environment: dict[str, str] = field(default_factory=dict)
-    runs_beside: bool = False  # has its own servers and waits a lot: it starts first, is told last, and spares a third of the whole time
+    runs_beside: bool = False  # has its own servers and waits a lot: it starts first and is told last
 
 
 def _python(*arguments: str) -> list[str]:
@@ -68,7 +69,10 @@ def steps(arguments: list[str]) -> list[Step]:
     if scripts := sorted(str(path) for path in (PROJECT_DIR / "tests" / "javascript").glob("**/*.test.*js")):
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
     if not is_fast:
-        found.append(Step("browser tests", _pytest(f"browser{without_long}", []), runs_beside=True))
+        expression = f"browser{without_long}"
+        found.append(Step("browser tests of the ground and its people", _pytest(expression, list(BROWSER_TESTS_AFTER))))
+        others = [f"--ignore={folder}" for folder in BROWSER_TESTS_AFTER]
+        found.append(Step("browser tests", _pytest(expression, ["tests/browser", *others]), runs_beside=True))
     return found
 
 

@@ -115,6 +115,9 @@ def _vertices(page: Page, asset: int) -> list[list[float]]:
 
 def _is_alone(page: Page, place: list[float], kinds: str) -> bool:
     around = 0.0004  # some 40 m
+    stands_there = [feature["geometry"]["coordinates"] for feature in asks(page, "/uavs?limit=100")["features"]]
+    if any(max(abs(uav[0] - place[0]), abs(uav[1] - place[1])) < 3 * around for uav in stands_there):
+        return False  # a click would meet its mark
     box = f"{place[0] - around},{place[1] - around},{place[0] + around},{place[1] + around}"
     return len(asks(page, f"/assets?kind={kinds}&bbox={box}&limit=3")["features"]) == 1
 

@@ -202,11 +202,16 @@ def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
 
 def test_a_uav_points_along_its_heading_and_nowhere_without_one(operator: Page) -> None:
     token = next(cookie["value"] for cookie in operator.context.cookies() if cookie["name"] == "csrftoken")
-    for name, place, more in (("Sandpiper", RIVER, {"heading_deg": 90}), ("Turnstone", [RIVER[0] + 0.02, RIVER[1]], {})):
+    east = [RIVER[0] + 0.05, RIVER[1]]
+    for name, place, more in (("Heading dart", RIVER, {"heading_deg": 90}), ("Heading unknown", east, {}), ("Heading unknown 2", east, {})):
         answer = operator.request.post("/api/v1/uavs", data={"name": name, "position": place, **more}, headers={"X-CSRFToken": token})
         assert answer.status == 201, answer.text()
     opens_at(operator, RIVER, 12)
     map_region = operator.get_by_role("region", name="Map")
-    dart = map_region.get_by_role("button", name="Sandpiper, not in this mission, heading 090°")
+    dart = map_region.get_by_role("button", name="Heading dart, not in this mission, heading 090°")
     expect(dart.locator("svg")).to_have_css("rotate", "90deg")
-    expect(map_region.get_by_role("button", name="Turnstone, not in this mission", exact=True).locator("svg circle")).to_be_visible()
+    both = map_region.get_by_role("button", name="2 UAVs, not in this mission: Heading unknown, Heading unknown 2")
+    both.click()
+    expect(map_region.get_by_role("button", name="Heading unknown, not in this mission", exact=True).locator("svg circle")).to_be_visible()
+    map_region.get_by_role("button", name="Heading unknown 2, not in this mission", exact=True).click()
+    expect(operator.get_by_role("checkbox", name="Heading unknown 2")).to_be_checked()

@@ -63,6 +63,16 @@ def test_a_lasso_takes_the_towers_and_bridges_inside_it(visitor: Visitor) -> Non
     page.keyboard.press("Control+z")
     expect(rows(page)).to_have_count(0)
 
+    page.keyboard.press("o")
+    page.mouse.move(place["x"], place["y"] - 60)
+    page.mouse.down()
+    page.mouse.move(place["x"] + 60, place["y"], steps=4)
+    page.mouse.move(place["x"] - 60, place["y"] + 60, steps=4)
+    page.keyboard.press("Escape")
+    page.mouse.up()
+    expect(page.get_by_role("radio", name="Point")).to_be_checked()
+    expect(rows(page)).to_have_count(0)
+
 
 def test_a_stretch_between_two_towers_is_taken_tower_by_tower_or_flown_along(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)

@@ -116,10 +116,14 @@ def test_a_mission_that_somebody_deletes_can_be_brought_back_from_the_open_page(
     theirs.get_by_role("button", name="Delete").click()
     expect(theirs.get_by_text("“Deleted by another” is deleted.")).to_be_visible()
     expect(mine.get_by_text("The mission has been deleted.")).to_be_visible()
+    removes_first_target(mine)
+    expect(mine.locator("#save-state")).to_contain_text("Not saved")
     forgives(visitor, 404)
     mine.get_by_role("button", name="Bring it back").click()
-    expect(mine.get_by_text("The mission has been deleted.")).to_be_hidden()
-    assert asks(mine, address)["name"] == "Deleted by another"
+    expect(mine.get_by_text("the mission has been deleted", exact=False)).to_be_hidden()
+    expect(mine.locator("#save-state")).to_have_text(SAVED)
+    stored = asks(mine, address)
+    assert (stored["name"], len(stored["targets"])) == ("Deleted by another", 1)
     visitor.complaints.clear()
 
 

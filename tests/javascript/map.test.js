@@ -7,7 +7,7 @@ import { graticuleLines, graticuleStep } from "../../static/js/map/layers/gratic
 import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
 import { distinct } from "../../static/js/map/furniture.js";
 import { plainWords } from "../../static/js/map/tips.js";
-import { mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
+import { mergedLabel, mergeDarts, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { fitTo } from "../../static/js/missions/sketch.js";
 
 const feature = (id, sourceLayer, properties = { id: 1 }) => ({ layer: { id }, sourceLayer, properties, geometry: { type: "Point", coordinates: [0, 0] } });
@@ -132,4 +132,12 @@ test("codes of a zone file are told in words", () => {
 
 test("a source is named once, with its licence where that is known", () => {
   assert.deepEqual(distinct(["© A, ODbL 1.0", "© A", "© AB", "© AB"]), ["© A, ODbL 1.0", "© AB"]);
+});
+
+test("UAVs that would cover each other's names are one mark with their number", () => {
+  const dart = (name, x, y) => ({ name, x, y });
+  const said = (darts) => mergeDarts(darts).map(({ label, members }) => [label, members.length]);
+  assert.deepEqual(said([dart("Heron", 0, 0)]), [["Heron", 1]]);
+  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 20, 4), dart("Osprey", 300, 0)]), [["2 UAVs", 2], ["Osprey", 1]]);
+  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 0, 40)]), [["Heron", 1], ["Kite", 1]]);
 });

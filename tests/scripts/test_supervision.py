@@ -16,7 +16,7 @@ from config.private_servers import DATABASE_NAME, DATABASE_ROLE
 from scripts import supervision
 from scripts.check import steps
 from scripts.database_cluster import create_database, database_exists, prepare_cluster, wait_for_database, wait_for_queue
-from scripts.places import Places, prepare_sockets, prepare_state, remove_sockets
+from scripts.places import PROJECT_DIR, Places, prepare_sockets, prepare_state, remove_sockets
 from scripts.processes import processes_in
 from scripts.programs import SERVERS_STAGE, Program, database_server, queue_server, web_programs
 from scripts.supervision import Supervisor
@@ -145,11 +145,18 @@ def _expression(command: list[str]) -> str:
 
 
 def test_fast_leaves_the_browser_out_and_long_takes_the_long_tests_in() -> None:
+    ground, others = "browser tests of the ground and its people", "browser tests"
     by_name = {step.name: _expression(step.command) for step in steps([]) if "pytest" in step.command}
-    assert by_name == {"pytest": "not browser and not long", "browser tests": "browser and not long"}
-    assert "browser tests" not in {step.name for step in steps(["--fast"])}
+    assert by_name == {"pytest": "not browser and not long", ground: "browser and not long", others: "browser and not long"}
+    assert not {ground, others} & {step.name for step in steps(["--fast"])}
     by_name = {step.name: _expression(step.command) for step in steps(["--long"]) if "pytest" in step.command}
-    assert by_name == {"pytest": "not browser", "browser tests": "browser"}
+    assert by_name == {"pytest": "not browser", ground: "browser", others: "browser"}
+
+
+def test_every_browser_test_runs_in_one_of_two_steps() -> None:
+    after, beside = (step.command[step.command.index("-m", 3) + 2 :] for step in steps([]) if step.name.startswith("browser"))
+    assert beside == ["tests/browser", *(f"--ignore={folder}" for folder in after)]
+    assert all((PROJECT_DIR / folder).is_dir() for folder in after)
 
 
 def test_other_arguments_go_to_pytest_alone() -> None:

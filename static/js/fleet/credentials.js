@@ -98,7 +98,7 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
         h(
           "div",
           { class: "acts" },
-          h("button", { type: "button", class: "button", onclick: () => make(kind), "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}` }, credential ? t("Replace") : t("Make")),
+          uav.state !== "retired" && h("button", { type: "button", class: "button", onclick: () => make(kind), "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}` }, credential ? t("Replace") : t("Make")),
           credential && h("button", { type: "button", class: "icon-button", onclick: ask(kind), "aria-label": `${t("Revoke")}: ${CREDENTIALS[kind]}`, title: t("Revoke") }, icon("x")),
         ),
       asking === kind && credential && question(credential),

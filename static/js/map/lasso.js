@@ -16,6 +16,7 @@ export function drawLassos(map, canvas, on) {
     return [event.clientX - box.left, event.clientY - box.top];
   };
 
+  /** Ends the drawing; what was drawn, or null. */
   function stop() {
     if (!points) return null;
     const drawn = points;
@@ -54,7 +55,7 @@ export function drawLassos(map, canvas, on) {
     on.lasso(drawn.map((point) => map.unproject(point)).map(({ lng, lat }) => [lng, lat]));
   });
   canvas.addEventListener("pointercancel", stop);
-  return { stop };
+  addEventListener("keydown", (event) => event.key === "Escape" && stop(), true);
 }
 
 /** Whether a drawing is meant to go round something. */

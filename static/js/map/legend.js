@@ -55,7 +55,10 @@ const ROWS = [
 /** UAVs stand on the map as HTML, not in a layer. */
 const UAV_ROW = {
   words: t("UAV"),
-  draw: () => sample(svg("path", { d: "M13 1L18.5 11L13 8.5L7.5 11Z", fill: "var(--map-casing)", stroke: "var(--ink-2)", "stroke-width": 1.3, "stroke-linejoin": "round" })),
+  draw: () => {
+    const look = { fill: "var(--map-casing)", stroke: "var(--ink-2)", "stroke-width": 1.3, "stroke-linejoin": "round" };
+    return sample(svg("circle", { cx: 6, cy: 6, r: 4, ...look }), svg("path", { d: "M19 1L24 11L19 8.5L14 11Z", ...look })); // with and without a heading
+  },
 };
 
 const items = (rows) => rows.map(({ words, draw }) => h("li", {}, draw(), words));

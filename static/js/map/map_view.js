@@ -53,6 +53,32 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     if (error?.name !== "AbortError") console.warn(`map: ${error?.message ?? error}`);
   });
 
+  let fitted = null; // the box that the map was brought to, until somebody moves it
+  let isFitting = false;
+  let size = sizeOf(container);
+  map.on("movestart", () => {
+    const isResized = size !== sizeOf(container);
+    if (!isFitting && !isResized) fitted = null;
+  });
+  function fitTo(box, duration) {
+    fitted = box;
+    isFitting = true;
+    map.fitBounds([[box[0], box[1]], [box[2], box[3]]], { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration });
+    isFitting = false;
+  }
+  // Legend and dock grow when routes come: what was fitted stays in view.
+  function fitAgain() {
+    if (map.isMoving()) map.once("moveend", fitAgain);
+    else if (fitted) {
+      const box = fitted; // a resize counts as a move
+      map.resize();
+      fitTo(box, 0);
+    }
+    size = sizeOf(container);
+  }
+  const watcher = new ResizeObserver(() => (fitted ? fitAgain() : (size = sizeOf(container))));
+  for (const element of [container, container.parentElement.querySelector(".map-edge")]) if (element) watcher.observe(element);
+
   return {
     map,
     palette: () => palette,
@@ -77,10 +103,12 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
       keepsAddress = true; // from here on the view is one that somebody may come back to
       if (!box) return;
       const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-      map.fitBounds([[box[0], box[1]], [box[2], box[3]]], { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration: animate && !calm ? 350 : 0 });
+      fitTo(box, animate && !calm ? 350 : 0);
     },
   };
 }
+
+const sizeOf = ({ clientWidth, clientHeight }) => `${clientWidth} x ${clientHeight}`;
 
 /** Room for pills at the edges, for the controls on the right and for legend and attribution below. */
 function paddingIn(container) {

@@ -1,4 +1,4 @@
-/** Which target pills share one place on the screen, and what a shared one says. Values in, values out. */
+/** Which target pills and which UAVs share one place on the screen, and what a shared one says. Values in, values out. */
 
 import { countText } from "../units.js";
 
@@ -7,6 +7,9 @@ const LETTER_PX = 7;
 const PADDING_PX = 18;
 const LEAST_WIDTH_PX = 28;
 const HEIGHT_PX = 22;
+const DART_PX = 28;
+const DART_LETTER_PX = 6;
+const DART_HEIGHT_PX = 16;
 
 /** How wide a pill with this label is drawn, about. */
 export const pillWidth = (label) => Math.max(LEAST_WIDTH_PX, label.length * LETTER_PX + PADDING_PX);
@@ -15,15 +18,25 @@ const isSameKind = (a, b) => a.sequence === b.sequence && a.isMissed === b.isMis
 
 /** Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Those of one UAV that would overlap become one. */
 export function mergePills(pills) {
-  let groups = pills.map((pill) => ({ x: pill.x, y: pill.y, members: [pill], label: groupLabel([pill]) }));
+  return merged(pills, groupLabel, (a, b) => isSameKind(a.members[0], b.members[0]) && overlap(a, b));
+}
+
+/** Groups of UAVs that would stand on each other or on each other's names: [{ members, x, y, label }]. x is where the mark stands, its label to the right. */
+export function mergeDarts(darts) {
+  return merged(darts, dartLabel, (a, b) => Math.abs(a.y - b.y) < DART_HEIGHT_PX && a.x < b.x + dartWidth(b.label) && b.x < a.x + dartWidth(a.label));
+}
+
+/** A group stands where its first member does. */
+function merged(items, labelOf, overlaps) {
+  let groups = items.map((item) => ({ x: item.x, y: item.y, members: [item], label: labelOf([item]) }));
   for (let isMerged = true; isMerged; ) {
     isMerged = false;
     const kept = [];
     for (const group of groups) {
-      const near = kept.find((other) => isSameKind(other.members[0], group.members[0]) && overlap(other, group));
+      const near = kept.find((other) => overlaps(other, group));
       if (near) {
         near.members.push(...group.members);
-        near.label = groupLabel(near.members);
+        near.label = labelOf(near.members);
         isMerged = true;
       } else kept.push(group);
     }
@@ -31,6 +44,9 @@ export function mergePills(pills) {
   }
   return groups;
 }
+
+const dartWidth = (label) => DART_PX + label.length * DART_LETTER_PX;
+const dartLabel = (members) => (members.length === 1 ? members[0].name : countText(members.length, "UAV"));
 
 function overlap(a, b) {
   return Math.abs(a.x - b.x) < (pillWidth(a.label) + pillWidth(b.label)) / 2 && Math.abs(a.y - b.y) < HEIGHT_PX;

@@ -27,12 +27,14 @@ export function changedParts(selection, stored) {
 export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, waitForJob, conflicts) {
   let retry = 0;
   let rest = 0;
-  let unsure = null; // { asked, body, key } of a save whose answer never came
+  let unsure = null; // { asked, body, key, isNew, asCopy } of a save whose answer never came
+  let wanted = null; // what somebody asked for while another save was under way
   let refused = null; // what was not saved: it is tried again once it is another
 
   const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.basisOf(picked), name, plan?.basis ?? null]);
 
   function shownAs(mission, stored, plan) {
+    refused = null; // what was refused may go on top of this revision
     store.update({
       mission,
       stored: { name: mission.name, selection: stored },
@@ -89,7 +91,10 @@ export function createSaving({ store, history, selection, change, problem, faile
 
   /** byItself: nobody asked for it, so nothing is said where it goes well. */
   async function save({ asCopy = false, byItself = false } = {}) {
-    if (store.state.saving || store.state.planning) return;
+    if (store.state.saving || store.state.planning) {
+      if (store.state.saving && !byItself) wanted = { asCopy };
+      return;
+    }
     if (store.state.conflict && !asCopy) {
       if (!byItself) conflicts.seeBoth();
       return;
@@ -99,7 +104,7 @@ export function createSaving({ store, history, selection, change, problem, faile
     const { mission } = store.state;
     const isNew = !mission || asCopy;
     const draftOf = mission?.id ?? null; // the copy takes the changes along
-    const isAgain = unsure !== null && isNew; // the answer of the first try may be waiting: ask for just the same
+    const isAgain = isNew && unsure?.isNew && unsure.asCopy === asCopy; // the answer of the first try may be waiting: ask for just the same
     const asked = isAgain ? unsure.asked : { selection: selection(), name: store.state.name };
     const body = isAgain ? unsure.body : bodyOf(asked, { isNew, asCopy });
     const key = isAgain ? unsure.key : freshKey();
@@ -122,6 +127,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       }
       unsure = refused = null;
       drafts.dropOwn(draftOf);
+      if (isNew && store.state.name === asked.name) store.update({ name: saved.name }); // a mission without a name is given one
       keepOpen(saved, asked);
       if (isNew) addressNow(saved);
       settleDraft();
@@ -129,13 +135,16 @@ export function createSaving({ store, history, selection, change, problem, faile
       else if (!byItself) toast(t("“{name}” is saved.", { name: saved.name }));
     } catch (error) {
       const lost = unsure?.asked ?? null; // what an earlier try may have stored after all
-      unsure = error.isAway ? { asked, body, key } : null;
-      refused = whatIsThere(store.state);
+      unsure = error.isAway ? { asked, body, key, isNew, asCopy } : null;
       if (draftId) await get(`/missions/${draftId}`).then(({ data }) => keepOpen(data, asked), () => {});
+      refused = whatIsThere(store.state);
       await saveFailed(error, asCopy, lost);
     } finally {
       running.stopping = null;
       store.update({ saving: false, planning: null });
+      const next = wanted;
+      wanted = null;
+      if (next) void save(next);
     }
   }
 

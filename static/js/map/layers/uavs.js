@@ -1,9 +1,13 @@
-/** Where UAVs stand: a square with the letter for those of the mission, a dart with the name for the others. Squares can be dragged. */
+/**
+ * Where UAVs stand: a square with the letter for those of the mission, a dart with the name for the others. Squares can be dragged.
+ * Darts that would cover each other are one mark with their number; a click spreads them out until the map is zoomed.
+ */
 
 import { h, svg } from "../../dom.js";
 import { maplibre } from "../maplibre.js";
 import { t } from "../../text.js";
 import { routeNumber } from "../palette.js";
+import { mergeDarts } from "../pills.js";
 
 const SQUARE_PX = 22;
 const DART_MIDDLE_PX = 14; // from a dart's left edge; its name stands to the right
@@ -19,7 +23,11 @@ function uavMark({ heading_deg }) {
 }
 
 export function createUavs(map, { onMove, onPick, onLook }) {
-  let markers = [];
+  let squares = [];
+  let darts = [];
+  let others = []; // UAVs that are not of the mission
+  let standing = new Map(); // place → how many squares stand there
+  let spread = ""; // the group that is spread out, by its UAVs
 
   function square(uav) {
     return h(
@@ -54,25 +62,60 @@ export function createUavs(map, { onMove, onPick, onLook }) {
     );
   }
 
+  function several({ members, label }) {
+    const names = members.map((uav) => uav.name).join(", ");
+    return h(
+      "button",
+      {
+        type: "button",
+        tabindex: "-1",
+        class: "map-dart several",
+        "aria-label": t("{uavs}, not in this mission: {names}", { uavs: label, names }),
+        title: t("{names}. Click to see each", { names }),
+        onclick: (event) => (event.stopPropagation(), (spread = keyOf(members)), drawDarts()),
+      },
+      uavMark({}),
+      h("span", { class: "dart-name", "aria-hidden": "true" }, label),
+    );
+  }
+
+  function drawDarts() {
+    darts.forEach((marker) => marker.remove());
+    const placed = others.map((uav) => ({ ...uav, ...map.project(uav.position) }));
+    darts = mergeDarts(placed).flatMap((group) => {
+      const [first] = group.members;
+      const below = standing.has(placeOf(first)) ? 1 : 0;
+      const at = (element, row) => new maplibre.Marker({ element, anchor: "left", offset: [-DART_MIDDLE_PX, (below + row) * SQUARE_PX] }).setLngLat(first.position).addTo(map);
+      if (group.members.length > 1 && spread !== keyOf(group.members)) return [at(several(group), 0)];
+      return group.members.map((uav, row) => at(dart(uav), row));
+    });
+  }
+
+  map.on("zoomend", () => {
+    spread = "";
+    drawDarts();
+  });
+
   return {
     /** uavs: [{ id, name, position, heading_deg, sequence or null, letter, canMove }] */
     update(uavs) {
-      markers.forEach((marker) => marker.remove());
-      const standing = new Map(); // place → how many squares and darts stand there already
-      markers = uavs.map((uav) => {
-        const isChosen = uav.sequence !== null;
-        const place = uav.position.map((degrees) => degrees.toFixed(5)).join();
-        const before = standing.get(place) ?? { squares: 0, darts: 0 };
-        standing.set(place, before);
-        const marker = isChosen
-          ? new maplibre.Marker({ element: square(uav), draggable: uav.canMove, offset: [before.squares++ * SQUARE_PX, 0] })
-          : new maplibre.Marker({ element: dart(uav), anchor: "left", offset: [-DART_MIDDLE_PX, ((before.squares > 0 ? 1 : 0) + before.darts++) * SQUARE_PX] });
+      squares.forEach((marker) => marker.remove());
+      standing = new Map();
+      squares = uavs.filter((uav) => uav.sequence !== null).map((uav) => {
+        const before = standing.get(placeOf(uav)) ?? 0;
+        standing.set(placeOf(uav), before + 1);
+        const marker = new maplibre.Marker({ element: square(uav), draggable: uav.canMove, offset: [before * SQUARE_PX, 0] });
         marker.on("dragend", () => {
           const { lng, lat } = marker.getLngLat();
           onMove(uav.sequence, [Number(lng.toFixed(6)), Number(lat.toFixed(6))]);
         });
         return marker.setLngLat(uav.position).addTo(map);
       });
+      others = uavs.filter((uav) => uav.sequence === null);
+      drawDarts();
     },
   };
 }
+
+const placeOf = ({ position }) => position.map((degrees) => degrees.toFixed(5)).join();
+const keyOf = (members) => members.map(({ id }) => id).join();
