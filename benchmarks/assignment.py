@@ -2,8 +2,9 @@
 
     .venv/bin/python -m benchmarks.assignment [--search-s 5] [--rival-s 120] [--instances 5] [--only w4 w5 tsplib] [--write]
 
-W4 is 10 UAVs x 100 targets, W5 20 x 500, open routes on the graph of make_graph.py. The best of a row is the least that any method
-finds, ours in the rival's time included; ours in its own time has to come within 1 % of it. Ends with an error where it does not.
+The rivals are among the libraries of requirements-benchmarks.txt. W4 is 10 UAVs x 100 targets, W5 20 x 500, open routes on the graph
+of make_graph.py. The best of a row is the least that any method finds, ours in the rival's time included; ours in its own time has to
+come within 1 % of it. Ends with an error where it does not.
 """
 
 import argparse

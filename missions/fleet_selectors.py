@@ -10,6 +10,12 @@ from workspace.models import AuditEntry, Organisation
 EVERY_STATE = "all"
 
 
+def states_out_of_service(uavs: list[int]) -> dict[int, UavState]:
+    """Of these UAVs the state of each that does not fly at present."""
+    found = Uav.objects.filter(pk__in=uavs).exclude(state=UavState.ACTIVE).values_list("pk", "state")
+    return {pk: UavState(state) for pk, state in found}
+
+
 def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:
     """With the type and the base that each belongs to."""
     return Uav.objects.filter(organisation=organisation).select_related("uav_type", "base")

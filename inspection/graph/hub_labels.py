@@ -49,10 +49,10 @@ def label(condensed: CondensedGraph) -> HubLabels:
     tail, head, cost, length_m = condensed.chain_tail, condensed.chain_head, condensed.chain_cost, condensed.chain_m
     first, chain_at = _chains_of_nodes(condensed.core_count, tail, head)
     trees = max(FEWEST_TREES, min(SAMPLED_TREES, MOST_SAMPLED_NODES // max(1, condensed.core_count)))
-    random = np.random.default_rng(SEED)
+    draw = np.random.default_rng(SEED)
     roots = np.empty((trees, condensed.core_count), dtype=np.int32)
     for tree in range(trees):
-        roots[tree] = random.permutation(condensed.core_count)
+        roots[tree] = draw.permutation(condensed.core_count)
     order, component = _order(first, chain_at, tail, head, cost, roots)
     arrays = (*_label(first, chain_at, tail, head, cost, length_m, order), component)
     for array in arrays:

@@ -47,7 +47,7 @@ class ReachSerializer(serializers.Serializer):
     name = serializers.CharField()
     uav_id = serializers.IntegerField(allow_null=True)
     is_in_mission = serializers.BooleanField(help_text="false: another UAV of the fleet")
-    is_grounded = serializers.BooleanField(help_text="it stands inside a zone")
+    is_grounded = serializers.BooleanField(help_text="it stands inside a zone, is retired or in maintenance")
     needed_m = serializers.FloatField(allow_null=True, help_text="the range it needs; null: there is no way")
     max_range_m = serializers.FloatField(allow_null=True)
     is_enough = serializers.BooleanField()

@@ -50,7 +50,7 @@ class UnassignedSerializer(serializers.Serializer):
 
 
 class WarningSerializer(serializers.Serializer):
-    code = serializers.ChoiceField(choices=["uav_inside_zone"])
+    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service"])
     uav = serializers.IntegerField(help_text="index of the UAV")
     message = serializers.CharField()
 

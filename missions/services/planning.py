@@ -25,7 +25,7 @@ from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch, unheard
 from missions.services.places import Place, places_of
 from missions.services.plan_json import PlannedRoute, plan_to_json
-from missions.services.refusals import Scene, asset_gone, grounded_reason, place_height_m, refused_place, unreached_place
+from missions.services.refusals import Scene, asset_gone, groundings, place_height_m, refused_place, unreached_place
 from missions.services.requests import PlanRequest
 
 
@@ -46,7 +46,7 @@ def make_plan(
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]
-    grounded = {number: reason for number, uav in enumerate(request.uavs) if (reason := grounded_reason(uav, scene)) is not None}
+    grounded = groundings(request.uavs, scene)
     uavs = [number for number in range(len(request.uavs)) if number not in grounded]
 
     on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
@@ -88,7 +88,7 @@ def make_plan(
         request,
         routes,
         left_out,
-        [{"code": "uav_inside_zone", "uav": number, "message": reason} for number, reason in grounded.items()],
+        [{"code": why.code, "uav": number, "message": why.message} for number, why in grounded.items()],
         graph_version=scene.graph.version,
         ground_revision=now[0],
         has_terrain=drawing.ground is not None,

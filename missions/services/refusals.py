@@ -1,5 +1,6 @@
 """Why a target is left out of a plan before or after the routes are found, and why a UAV stays on the ground."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,8 +9,10 @@ from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import Edition
+from missions.fleet_selectors import states_out_of_service
 from missions.flight_plan.heights import is_above_limit
 from missions.flight_plan.rules import FlightRules
+from missions.models import UavState
 from missions.routing.problem import Reason, Unassigned
 from missions.routing.terminals import AccessRules, Ways, is_near_network, tallest_support_m
 from missions.services.places import Place
@@ -67,10 +70,29 @@ def place_height_m(place: Place, scene: Scene) -> float:
     return place.height_m
 
 
-def grounded_reason(uav: UavRequest, scene: Scene) -> str | None:
-    """Why a UAV cannot take off where it stands, or None."""
-    zone = zone_at(uav.position, scene)
-    return f"{uav.name} stands inside {zone} and cannot take off." if zone is not None else None
+@dataclass(frozen=True)
+class Grounding:
+    """Why a UAV stays on the ground."""
+
+    code: str
+    message: str
+
+
+def groundings(uavs: Sequence[UavRequest], scene: Scene) -> dict[int, Grounding]:
+    """By their places in the request, the UAVs that cannot take off: retired, in maintenance, or inside a zone."""
+    stored = [uav.uav for uav in uavs if uav.uav is not None]
+    states = states_out_of_service(stored) if stored else {}
+    found: dict[int, Grounding] = {}
+    for number, uav in enumerate(uavs):
+        zone = zone_at(uav.position, scene)
+        state = states.get(uav.uav) if uav.uav is not None else None
+        if state is UavState.RETIRED:
+            found[number] = Grounding("uav_out_of_service", f"{uav.name} is retired and flies no more.")
+        elif state is not None:
+            found[number] = Grounding("uav_out_of_service", f"{uav.name} is in maintenance and does not fly.")
+        elif zone is not None:
+            found[number] = Grounding("uav_inside_zone", f"{uav.name} stands inside {zone} and cannot take off.")
+    return found
 
 
 def zone_at(position: LonLat, scene: Scene) -> str | None:

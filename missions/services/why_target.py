@@ -18,7 +18,7 @@ from missions.routing.reach import needed_range_m
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
 from missions.services.planning import current_scene, route_end, visits_of_places
-from missions.services.refusals import Scene, grounded_reason, place_height_m
+from missions.services.refusals import Scene, groundings, place_height_m
 from missions.services.requests import PlanRequest, UavRequest
 from workspace.models import Organisation
 
@@ -55,7 +55,8 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     if is_above_limit(height_m, scene.flight):
         return said | {"reason": "above_height_limit"}
     asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
-    grounded = [grounded_reason(uav, scene) is not None for uav in asked]
+    on_the_ground = groundings(asked, scene)
+    grounded = [number in on_the_ground for number in range(len(asked))]
     ways, needed_m = _needs(request, asked, place, scene)
     uavs = [
         {

@@ -1,16 +1,18 @@
 """From a request to a plan on a small world."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
+from django.contrib.gis.geos import Point
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import NoGraph
 from inspection.services import import_terrain
-from missions.models import EndAction
+from missions.models import EndAction, Uav
 from missions.routing.problem import Objective, Task, TaskKind
 from missions.services import GraphOutdated, InvalidRequest, TargetRequest, make_plan
 from tests.inspection import ground
@@ -236,6 +238,18 @@ def test_a_uav_inside_a_zone_stays_on_the_ground_and_the_plan_says_so() -> None:
     plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.990), name="Kite"), uav())))
     assert [route["targets"] for route in plan["routes"]] == [[], [0]]
     assert plan["warnings"] == [{"code": "uav_inside_zone", "uav": 0, "message": "Kite stands inside Airport and cannot take off."}]
+
+
+@pytest.mark.parametrize(
+    ("state", "words"), [("retired", "Kite is retired and flies no more."), ("maintenance", "Kite is in maintenance and does not fly.")]
+)
+def test_a_uav_out_of_service_is_given_nothing(state: str, words: str) -> None:
+    here = world()
+    stored = Uav.objects.create(organisation_id=1, name="Kite", location=Point(*UAV_AT, srid=4326), state=state)
+    kite = replace(uav(name="Kite"), uav=stored.pk)
+    plan = make_plan(request=request(here.towers[0], uavs=(kite, uav())))
+    assert [route["targets"] for route in plan["routes"]] == [[], [0]]
+    assert plan["warnings"] == [{"code": "uav_out_of_service", "uav": 0, "message": words}]
 
 
 def test_when_no_uav_can_take_off_every_target_says_so() -> None:

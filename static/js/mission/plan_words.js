@@ -7,8 +7,13 @@ const SENTENCES = [
   [/^It stands inside (.+)\.$/, (zone) => t("It stands inside {zones}.", { zones: zoneOf(zone) })],
   [/^It runs through (.+)\.$/, (zone) => t("It runs through {zones}.", { zones: zoneOf(zone) })],
   [/^(.+) stands inside (.+) and cannot take off\.$/, (name, zone) => t("{name} stands inside {zone} and cannot take off.", { name, zone: zoneOf(zone) })],
+  [/^(.+) is retired and flies no more\.$/, (name) => t("{name} is retired and flies no more.", { name })],
+  [/^(.+) is in maintenance and does not fly\.$/, (name) => t("{name} is in maintenance and does not fly.", { name })],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
+
+/** What a plan warns of where a UAV stays on the ground. */
+export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
 
 /** `fallback` where a language has no sentence for it; English as it is stored. */
 export function inWords(message, fallback = message) {

@@ -153,6 +153,8 @@ export default {
   "{name} flies {low} to {high} above its take-off; flat ground is assumed.": "{name} fliegt {low} bis {high} über dem Start; flaches Gelände ist angenommen.",
   "{name} flies {low} to {high} above sea level.": "{name} fliegt {low} bis {high} über dem Meer.",
   "{name} is added and chosen.": "{name} ist angelegt und gewählt.",
+  "{name} is in maintenance and does not fly.": "{name} ist in Wartung und fliegt nicht.",
+  "{name} is retired and flies no more.": "{name} ist ausgemustert und fliegt nicht mehr.",
   "{name} stands inside {zone} and cannot take off.": "{name} steht in {zone} und kann nicht starten.",
   "{name}’s": "{name}",
   "{visited} of {count} target": ["{visited} von {count} Ziel", "{visited} von {count} Zielen"],

@@ -6,13 +6,14 @@ import { t, tn } from "../../text.js";
 import { durationText, lengthText } from "../../units.js";
 import { counterpart, profileOfSummary } from "../compare.js";
 import { endingOf, isPlanCurrent, lastPlanOf, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
+import { GROUNDING } from "../plan_words.js";
 import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
 const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
-/** One whose start lies in a zone; the notice and the row of the UAV say which. */
-const isGrounded = ({ result }, { sequence }) => (result.warnings ?? []).some(({ code, uav }) => code === "uav_inside_zone" && uav === sequence);
+/** One that cannot take off; the notice and the row of the UAV say which. */
+const isGrounded = ({ result }, { sequence }) => (result.warnings ?? []).some(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
 
 /** "+1.2 km", "−3 min", "=": more or less than before. */
 export function moreOrLess(difference, least, textOf) {

@@ -6,7 +6,7 @@ import { t, tn } from "../../text.js";
 import { percentText } from "../../units.js";
 import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor } from "../fleet.js";
 import { isPlanCurrent } from "../plan_view.js";
-import { inWords } from "../plan_words.js";
+import { GROUNDING, inWords } from "../plan_words.js";
 import { uavDialog } from "./uav_dialog.js";
 
 const LEAST_TO_NARROW = 4; // a fleet of fewer is seen at a glance
@@ -89,7 +89,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   /** Those to choose from, as narrowed; who flies already stays in sight. */
   function shownOf(state) {
     const warnings = isPlanCurrent(state) ? (state.plan.result.warnings ?? []) : [];
-    const grounded = (uav) => inWords(warnings.find((warning) => warning.code === "uav_inside_zone" && warning.uav === uav.sequence)?.message ?? "");
+    const grounded = (uav) => inWords(warnings.find((warning) => GROUNDING.includes(warning.code) && warning.uav === uav.sequence)?.message ?? "");
     const fleet = inFleetOrder(state).map((uav) => ({ ...uav, grounded: grounded(uav) }));
     if (state.mission && !canPlan) return fleet.filter((uav) => uav.sequence !== null); // who does not fly is of use only to who plans
     return fleet.filter((uav) => uav.sequence !== null || isAskedFor(uav, asked));
