@@ -67,11 +67,12 @@ def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]
     return places, gone
 
 
-# What a whole tower or bridge needs, without its geometry.
-_PLAIN_FIELDS = (
+_NEEDED = {
     "id", "kind", "subtype", "ref", "name", "operator", "max_voltage_v", "line_id", "place_on_line", "places_on_line", "osm_type",
     "osm_id", "height_m",
-)  # fmt: skip
+}  # fmt: skip
+# What a whole tower or bridge needs, without its geometry; in the model's own order, in which `from_db` takes the values.
+_PLAIN_FIELDS = tuple(field.attname for field in Asset._meta.concrete_fields if field.attname in _NEEDED)
 _PLAIN_ASSETS = f"""
     SELECT {", ".join(_PLAIN_FIELDS)}, ST_X(centre), ST_Y(centre) FROM inspection_asset
     WHERE id = ANY(%s::bigint[]) AND kind = ANY(ARRAY['{AssetKind.TOWER}', '{AssetKind.BRIDGE}'])"""  # noqa: S608 - no value of anybody's

@@ -296,7 +296,7 @@ def test_a_jobs_plan_is_not_stored_on_a_mission_that_was_changed_meanwhile(here:
 def test_a_stopped_job_stores_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:
     settings.ROUTING_RULES = replace(settings.ROUTING_RULES, large_plan_search_s=0.3)
     mission, job = large_mission(here, client)
-    with mock.patch("missions.tasks._Watch.stop", return_value=True):
+    with mock.patch("workspace.job_watch.JobWatch.stop", return_value=True):
         tasks.plan_mission(str(job.pk))
     job.refresh_from_db()
     mission.refresh_from_db()
