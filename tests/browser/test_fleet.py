@@ -214,7 +214,7 @@ def test_a_uav_is_added_with_the_keyboard_alone(visitor: Visitor) -> None:
     expect(page.get_by_label("Name", exact=True)).to_be_focused()
     page.keyboard.type("Lapwing")
     page.keyboard.press("Control+s")
-    expect(page.get_by_role("link", name="Lapwing")).to_be_visible()
+    is_saved(page, "Lapwing")
     page.keyboard.press("e")
     expect(page.get_by_label("Name", exact=True)).to_be_focused()
     page.keyboard.press("Escape")
