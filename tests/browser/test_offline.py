@@ -98,8 +98,8 @@ def test_a_new_mission_stores_itself_with_its_first_plan_and_then_each_change(vi
     address = "/" + "/".join(page.url.split("#")[0].split("/")[-2:])
     expect(page.get_by_role("textbox", name="Name of the mission")).to_have_value(re.compile(r"^Mission of "))
     assert asks(page, address)["state"] == "planned"
-    picks_from_the_search(page, "138 kV")
-    expect(page.locator("#save-state")).to_have_text("Not saved yet")
+    with page.expect_response(lambda answer: answer.request.method == "PATCH"):
+        picks_from_the_search(page, "138 kV")
     expect(page.locator("#save-state")).to_have_text(SAVED)
     assert len(asks(page, address)["targets"]) == 2
     wait_for_map(page)

@@ -3,7 +3,6 @@
 import json
 import math
 import random
-import time
 from io import StringIO
 
 import pytest
@@ -13,6 +12,7 @@ from django.db import connection
 
 from inspection.models import DataImport, Ground, NoFlyZone, ZoneSet
 from inspection.services import ZoneFileError, import_zones
+from tests.runaway import no_runaway
 
 pytestmark = pytest.mark.django_db
 
@@ -161,14 +161,12 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_hostile_zone_file_is_refused_within_two_seconds_and_the_database_lives_on(name, tmp_path):
+def test_a_hostile_zone_file_is_refused_before_it_costs_much_and_the_database_lives_on(name, tmp_path):
     path = tmp_path / "hostile.geojson"
     path.write_text(HOSTILE[name]())
     running_since = postmaster_start()
-    started = time.perf_counter()
-    with pytest.raises(CommandError, match="refused"):
+    with no_runaway(), pytest.raises(CommandError, match="refused"):
         call_command("import_zones", str(path))
-    assert time.perf_counter() - started < 2.0
     assert postmaster_start() == running_since
     assert (NoFlyZone.objects.count(), DataImport.objects.count(), ZoneSet.objects.count()) == (0, 0, 0)
 

@@ -10,6 +10,7 @@ export function drawLassos(map, canvas, on) {
   let points = null; // on the screen
   let drawing = null;
   let line = null;
+  let isDropped = false; // the click that ends a dropped drawing picks nothing
 
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -33,6 +34,7 @@ export function drawLassos(map, canvas, on) {
       event.stopPropagation();
       event.preventDefault();
       map.dragPan.disable();
+      isDropped = false;
       points = [placeOf(event)];
       line = svg("polygon", {});
       drawing = svg("svg", { class: "lasso-frame", "aria-hidden": "true" }, line);
@@ -55,7 +57,15 @@ export function drawLassos(map, canvas, on) {
     on.lasso(drawn.map((point) => map.unproject(point)).map(({ lng, lat }) => [lng, lat]));
   });
   canvas.addEventListener("pointercancel", stop);
-  addEventListener("keydown", (event) => event.key === "Escape" && stop(), true);
+  addEventListener("keydown", (event) => event.key === "Escape" && stop() && (isDropped = true), true);
+  canvas.addEventListener(
+    "click",
+    (event) => {
+      if (isDropped) event.stopImmediatePropagation();
+      isDropped = false;
+    },
+    true,
+  );
 }
 
 /** Whether a drawing is meant to go round something. */

@@ -4,13 +4,13 @@ import bz2
 import gzip
 import resource
 import struct
-import time
 import zlib
 
 import pytest
 
 from inspection.osm.file_gate import MAX_BLOB_BYTES, OsmFileError, examine
 from inspection.osm.reader import read_osm
+from tests.runaway import no_runaway
 
 
 def varint(value):
@@ -62,14 +62,12 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_hostile_file_is_refused_within_two_seconds(name, tmp_path):
+def test_a_hostile_file_is_refused_before_it_costs_much(name, tmp_path):
     path = tmp_path / "hostile.osm.pbf"
     path.write_bytes(HOSTILE[name])
     before_kib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    started = time.perf_counter()
-    with pytest.raises(OsmFileError):
+    with no_runaway(), pytest.raises(OsmFileError):
         read_osm(path)
-    assert time.perf_counter() - started < 2.0
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before_kib < 150 * 1024
     assert list(tmp_path.iterdir()) == [path]
 

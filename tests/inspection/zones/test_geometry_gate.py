@@ -3,7 +3,6 @@
 import json
 import math
 import random
-import time
 
 import numpy as np
 import pytest
@@ -22,6 +21,7 @@ from inspection.zones.geometry_gate import (
     checked_position,
 )
 from inspection.zones.strict_json import JsonFault, parse_strict_json
+from tests.runaway import no_runaway
 
 
 def polygon(*rings):
@@ -88,10 +88,8 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_an_odd_area_is_refused_with_the_place_of_its_fault(name):
     value, place, message, position = REFUSED[name]
-    started = time.perf_counter()
-    with pytest.raises(GeometryFault) as refusal:
+    with no_runaway(), pytest.raises(GeometryFault) as refusal:
         checked_area(value)
-    assert time.perf_counter() - started < 1.0
     assert refusal.value.place == place
     assert message in refusal.value.message
     if position is not None:
@@ -226,10 +224,8 @@ def test_json_refuses_what_is_no_json():
         b"\xff\xfe",
         "[" * 20_000 + "]" * 20_000,
     ):
-        started = time.perf_counter()
-        with pytest.raises(JsonFault):
+        with no_runaway(), pytest.raises(JsonFault):
             parse_strict_json(text, max_bytes=1_000_000)
-        assert time.perf_counter() - started < 1.0
 
 
 def test_json_has_limits_of_size_and_depth_and_takes_a_byte_order_mark():
