@@ -9,9 +9,9 @@ from django.db.migrations.executor import MigrationExecutor
 from django.http import HttpRequest, JsonResponse
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_safe
-from redis.exceptions import RedisError
 
 from inspection.models import Asset, GraphSnapshot
+from workspace.cache_absence import CACHE_AWAY
 
 
 @never_cache
@@ -50,6 +50,6 @@ def _database_faults() -> list[str]:
 def _redis_faults() -> list[str]:
     try:
         cache.get("ready")
-    except (RedisError, OSError):
+    except CACHE_AWAY:
         return ["Redis cannot be reached"]
     return []

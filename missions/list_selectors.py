@@ -13,11 +13,11 @@ from django.contrib.gis.geos import GEOSGeometry, Polygon
 from django.core.cache import cache
 from django.db.models import CharField, Count, Exists, F, FloatField, Func, IntegerField, Max, OuterRef, Q, QuerySet, Subquery, Value
 from django.db.models.functions import Coalesce, Lower
-from redis.exceptions import RedisError
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_revision
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route
+from workspace.cache_absence import CACHE_AWAY
 from workspace.models import Organisation
 
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
@@ -28,7 +28,6 @@ LEAST_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
 MOST_LINES = 60
 MOST_PLACES = 60
 KEPT_S = 7 * 24 * 3600
-CACHE_AWAY = (RedisError, OSError)
 NOT_PLANNED = -1.0  # what was not planned stands below what was
 
 LAST_CHANGED_FIRST = "-changed"

@@ -8,13 +8,12 @@ import time
 from uuid import UUID
 
 from django.core.cache import cache
-from redis.exceptions import RedisError
 
+from workspace.cache_absence import CACHE_AWAY
 from workspace.models import User
 
 FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at
 MOST_PAGES = 20  # of one user, the last that reported
-CACHE_AWAY = (RedisError, OSError)
 
 
 def _key(mission_id: UUID) -> str:

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
-from typing import NoReturn
+from typing import BinaryIO, NoReturn
 
 from config.private_servers import private_database_url, private_redis_url, state_directory
 from scripts import database_cluster
@@ -127,11 +127,38 @@ def _headline(step: Step) -> None:
     print(f"\n── {step.name} {'─' * max(0, shutil.get_terminal_size((100, 24)).columns - len(step.name) - 4)}", flush=True)
 
 
+def _start(step: Step, environment: dict[str, str], output: BinaryIO | None) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        step.command,
+        cwd=PROJECT_DIR,
+        env={**os.environ, **environment, **step.environment},
+        stdout=output,
+        stderr=None if output is None else subprocess.STDOUT,
+        start_new_session=True,  # an interrupt reaches it once, from here, or it would not stop its site
+    )
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Nothing of a step outlives the check: it may stop its own site first, and is killed with its children if it does not."""
+    if process.poll() is not None:
+        return
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(STOP_S)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
 def _run_here(step: Step, environment: dict[str, str]) -> Result:
     _headline(step)
     began = time.monotonic()
-    code = subprocess.run(step.command, cwd=PROJECT_DIR, env={**os.environ, **environment, **step.environment}, check=False).returncode
-    return Result(step.name, code, time.monotonic() - began)
+    process = _start(step, environment, None)
+    try:
+        process.wait()
+    finally:
+        _end(process)
+    return Result(step.name, process.returncode, time.monotonic() - began)
 
 
 def _tell(step: Step, log: Path, process: subprocess.Popen[bytes]) -> None:
@@ -155,21 +182,12 @@ def run_all(to_run: list[Step], environment: dict[str, str], log: Path) -> list[
         return [_run_here(step, environment) for step in to_run]
     began = time.monotonic()
     with log.open("wb") as written:
-        process = subprocess.Popen(
-            beside.command,
-            cwd=PROJECT_DIR,
-            env={**os.environ, **environment, **beside.environment},
-            stdout=written,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,  # an interrupt reaches it once, from here, or it would not stop its site
-        )
+        process = _start(beside, environment, written)
     try:
         results = [_run_here(step, environment) for step in to_run if step is not beside]
         _tell(beside, log, process)
-    except KeyboardInterrupt:
-        process.send_signal(signal.SIGINT)
-        process.wait(STOP_S)
-        raise
+    finally:
+        _end(process)
     return [*results, Result(beside.name, process.returncode, time.monotonic() - began)]
 
 

@@ -62,11 +62,5 @@ class InTheBrowserAlone(RolePermission):
         return super().has_permission(request, view)
 
 
-class AdministratorsInTheBrowser(AdministratorsAlone):
+class AdministratorsInTheBrowser(InTheBrowserAlone, AdministratorsAlone):
     """Who gives somebody a role could make an account that outlives a lost token: reading is for tokens, too, giving is not."""
-
-    def has_permission(self, request: Request, view: Any) -> bool:
-        if request.auth is not None and request.method not in SAFE_METHODS:
-            self.message = _("A token cannot do this. Sign in with a browser.")
-            return False
-        return super().has_permission(request, view)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 from django.core.cache import cache
 from django.http import HttpRequest
-from redis.exceptions import RedisError
+
+from workspace.cache_absence import CACHE_AWAY
 
 WINDOW_S = 15 * 60
 TRIES = 5  # of one name from one network, or from one known browser
@@ -22,7 +23,6 @@ SLOW_S = 10  # then strangers have one try in so long
 PASSWORD_CHANGES = "changing the password of"  # noqa: S105 - a purpose, no password
 NETWORK_BITS_OF_IPV6 = 64  # what one subscriber usually has
 
-CACHE_AWAY = (RedisError, OSError)
 logger = logging.getLogger(__name__)
 
 

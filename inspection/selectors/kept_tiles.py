@@ -3,13 +3,12 @@
 import contextlib
 
 from django.core.cache import cache
-from redis.exceptions import RedisError
 
 from inspection.selectors.tiles import vector_tile
+from workspace.cache_absence import CACHE_AWAY
 
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600
-CACHE_AWAY = (RedisError, OSError)
 
 
 def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> bytes:

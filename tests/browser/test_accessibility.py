@@ -1,5 +1,6 @@
 """What axe finds on every page: wide in light, narrow in dark; the colours of both themes are measured in tokens.test.js as well."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ from playwright.sync_api import Page
 
 from tests.browser.conftest import PROJECT_DIR, Visitor
 from tests.browser.operator_map import stores_mission
+from tests.browser.page_lists import FOR_ADMINISTRATORS, FOR_CURATORS, FOR_OPERATORS, FOR_STRANGERS
 
 pytestmark = pytest.mark.browser
 
@@ -15,21 +17,6 @@ AXE = PROJECT_DIR / "node_modules" / "axe-core" / "axe.min.js"
 RUN_AXE = """async () => (await axe.run(document, { resultTypes: ["violations"] })).violations
     .filter(({ impact }) => impact === "serious" || impact === "critical")
     .map(({ id, nodes }) => `${id}: ${nodes.map(({ target, any }) => target.join(" ") + " " + (any[0]?.message ?? "")).join(" | ")}`)"""
-FOR_STRANGERS = ["/sign-in", "/lost-password", "/lost-password/sent"]
-FOR_OPERATORS = [
-    "/",
-    "/missions/new",
-    "/uavs",
-    "/assets",
-    "/assets/gaps",
-    "/terrain",
-    "/zones",
-    "/account",
-    "/change-password",
-    "/no-such-page",
-]
-FOR_CURATORS = ["/imports"]
-FOR_ADMINISTRATORS = ["/administration"]
 VIEWS: list[dict[str, Any]] = [
     {"theme": "light", "size": (1440, 900)},
     {"theme": "dark", "size": (390, 844), "touch": True},
@@ -41,7 +28,7 @@ def faults(page: Page) -> list[str]:
     return page.evaluate(RUN_AXE)
 
 
-def looks_at(page: Page, paths: list[str]) -> dict[str, list[str]]:
+def looks_at(page: Page, paths: Iterable[str]) -> dict[str, list[str]]:
     """Of each page, what axe finds serious or critical once it has loaded."""
     found = {}
     for path in paths:

@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 from scripts import texts
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.page_lists import FOR_OPERATORS, FOR_STRANGERS
 
 pytestmark = pytest.mark.browser
 
@@ -108,22 +109,11 @@ def _stores_mission(page: Page, **rest: Any) -> str:
 def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     reader = Reader()
     stranger = _german(visitor)
-    for path in ("/sign-in", "/lost-password", "/lost-password/sent", "/new-password/x/y", "/invitation/unknown"):
+    for path in (*FOR_STRANGERS, "/new-password/x/y", "/invitation/unknown"):
         reader.opens(stranger, path)
     page = _german(visitor, "opal")
     mission = _stores_mission(page)
-    for path in (
-        "/",
-        "/missions/new",
-        "/uavs",
-        "/assets",
-        "/assets/gaps",
-        "/terrain",
-        "/zones",
-        "/account",
-        "/change-password",
-        "/nirgends",
-    ):
+    for path in FOR_OPERATORS:
         reader.opens(page, path)
     reader.opens(page, f"/missions/{mission}")
     wait_for_map(page)

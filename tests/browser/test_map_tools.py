@@ -16,20 +16,21 @@ RIVER = [-83.06, 39.9]  # south-west of the city: nothing else of the fixture is
 AROUND = 0.01
 
 
-@pytest.fixture
-def curator(visitor: Visitor) -> Page:
-    page = visitor.signs_in("cora")
+def at_the_map(visitor: Visitor, name: str) -> Page:
+    page = visitor.signs_in(name)
     page.goto("/missions/new")
     wait_for_map(page)
     return page
+
+
+@pytest.fixture
+def curator(visitor: Visitor) -> Page:
+    return at_the_map(visitor, "cora")
 
 
 @pytest.fixture
 def operator(visitor: Visitor) -> Page:
-    page = visitor.signs_in("opal")
-    page.goto("/missions/new")
-    wait_for_map(page)
-    return page
+    return at_the_map(visitor, "opal")
 
 
 def draws_zone(page: Page, name: str, **facts: Any) -> int:

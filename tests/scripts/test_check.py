@@ -1,7 +1,9 @@
 """How ./check runs its steps."""
 
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -28,18 +30,34 @@ def test_all_steps_run_when_one_fails(tmp_path: Path) -> None:
     assert [(result.name, result.code) for result in results] == [("first", 2), ("second", 0)]
 
 
-def test_an_interrupt_reaches_the_step_beside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    log = tmp_path / "beside.log"
-    sleeps = "import time\ntry:\n    print('up', flush=True); time.sleep(60)\nexcept KeyboardInterrupt:\n    print('stopped')"
-    real_run = subprocess.run
+CHECK = """
+import signal, sys
+from pathlib import Path
+from scripts.check import Step, _interrupt, run_all
+signal.signal(signal.SIGINT, _interrupt)
+folder = Path(sys.argv[1])
+steps = [Step(name, [sys.executable, "-c", sys.argv[2], str(folder / name)], runs_beside=name == "beside") for name in ("here", "beside")]
+run_all(steps, {}, folder / "log")
+"""
+SITE = """
+import sys, time
+from pathlib import Path
+state = Path(sys.argv[1])
+try:
+    state.write_text("up")
+    time.sleep(60)
+except KeyboardInterrupt:
+    state.write_text("stopped")
+"""
 
-    def interrupted(*arguments: object, **more: object) -> None:
-        real_run(
-            [sys.executable, "-c", f"import time\nwhile 'up' not in open({str(log)!r}).read(): time.sleep(0.02)"], check=True, timeout=30
-        )
-        raise KeyboardInterrupt
 
-    monkeypatch.setattr(subprocess, "run", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        run_all([_step("first", ""), _step("beside", sleeps, runs_beside=True)], {}, log)
-    assert log.read_text().split() == ["up", "stopped"]
+def test_an_interrupt_reaches_every_step_that_runs_and_lets_it_stop_what_it_started(tmp_path: Path) -> None:
+    check = subprocess.Popen([sys.executable, "-c", CHECK, str(tmp_path), SITE], stderr=subprocess.DEVNULL)
+    states = [tmp_path / name for name in ("here", "beside")]
+    deadline = time.monotonic() + 30
+    while [state.read_text() if state.exists() else "" for state in states] != ["up", "up"]:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    check.send_signal(signal.SIGINT)
+    check.wait(30)
+    assert [state.read_text() for state in states] == ["stopped", "stopped"]

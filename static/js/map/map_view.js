@@ -55,6 +55,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
 
   let fitted = null; // the box that the map was brought to, until somebody moves it
   let isFitting = false;
+  let footOfFit = 0;
   let size = sizeOf(container);
   map.on("movestart", () => {
     const isResized = size !== sizeOf(container);
@@ -63,13 +64,15 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
   function fitTo(box, duration) {
     fitted = box;
     isFitting = true;
+    footOfFit = footOf(container);
     map.fitBounds([[box[0], box[1]], [box[2], box[3]]], { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration });
     isFitting = false;
   }
-  // Legend and dock grow when routes come: what was fitted stays in view.
+  // Legend and dock grow when routes come: what was fitted stays in view. A legend that shrinks is let be: its rows go by the zoom, and
+  // following it both ways could go on for ever.
   function fitAgain() {
     if (map.isMoving()) map.once("moveend", fitAgain);
-    else if (fitted) {
+    else if (fitted && (size !== sizeOf(container) || footOf(container) > footOfFit)) {
       const box = fitted; // a resize counts as a move
       map.resize();
       fitTo(box, 0);
@@ -110,12 +113,13 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
 
 const sizeOf = ({ clientWidth, clientHeight }) => `${clientWidth} x ${clientHeight}`;
 
+const footOf = (container) => container.parentElement.querySelector(".map-edge")?.offsetHeight ?? 0;
+
 /** Room for pills at the edges, for the controls on the right and for legend and attribution below. */
 function paddingIn(container) {
   const { clientWidth: width, clientHeight: height } = container;
   const edge = Math.min(64, Math.min(width, height) / 6);
-  const foot = container.parentElement.querySelector(".map-edge")?.offsetHeight ?? 0;
-  const bottom = Math.min(Math.max(edge, foot + FOOT_GAP_PX), height / 3);
+  const bottom = Math.min(Math.max(edge, footOf(container) + FOOT_GAP_PX), height / 3);
   return { top: edge, bottom, left: edge, right: Math.min(Math.max(edge, CONTROLS_PX), width / 4) };
 }
 

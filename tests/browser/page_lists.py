@@ -1,0 +1,17 @@
+"""The addresses of the pages, by who may open them: what looks at every page looks at these."""
+
+FOR_STRANGERS = ("/sign-in", "/lost-password", "/lost-password/sent")
+FOR_OPERATORS = (
+    "/",
+    "/missions/new",
+    "/uavs",
+    "/assets",
+    "/assets/gaps",
+    "/terrain",
+    "/zones",
+    "/account",
+    "/change-password",
+    "/no-such-page",
+)
+FOR_CURATORS = ("/imports",)
+FOR_ADMINISTRATORS = ("/administration",)
