@@ -42,8 +42,9 @@ def route_points(
     targets: Sequence[TargetPoints],
     ways: Sequence[Sequence[PassedNode]],
     way_home: Sequence[PassedNode] | None,
+    home: LonLat | None = None,
 ) -> list[RoutePoint]:
-    """The points of one route; ways[i] leads to targets[i], way_home back to the start (None: the route ends at the last target).
+    """The points of one route; ways[i] leads to targets[i], way_home on to `home` (None: the start), or the route ends at the last target.
 
     The route begins at transit height above the start, after a vertical climb, and ends above the place where the UAV hovers, lands or
     comes home to. Each target has exactly one point of kind `target`: where it is, or where its stretch is entered; the stretch's other
@@ -58,7 +59,7 @@ def route_points(
         route.add_target(points)
     if way_home is not None:
         route.add_way(way_home)
-        route.add(RoutePoint(start, WaypointKind.END, transit_agl_m))
+        route.add(RoutePoint(start if home is None else home, WaypointKind.END, transit_agl_m))
     else:
         last = route.points[-1]
         route.points.append(RoutePoint(last.position, WaypointKind.END, last.agl_m))

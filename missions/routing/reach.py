@@ -8,6 +8,8 @@ from numba import njit
 from missions.routing.arcs import IntArray
 from missions.routing.problem import BoolArray, End, FloatArray, Problem, Reason, Routes, Unassigned
 
+_THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
+
 
 def needed_range_m(problem: Problem) -> FloatArray:
     """The least range (u, v) with which a UAV can fly a visit, and on to where it ends; inf where there is no way at all or it may not.
@@ -94,7 +96,7 @@ def _reason(
         limit_m = np.array([uav.limit_m for uav in problem.uavs])
         missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
         uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
-        there = "there" if problem.uavs[uav].end is End.OPEN else "there and back"
+        there = _THERE[problem.uavs[uav].end]
         needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
         return Reason.BEYOND_RANGE, f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
     able = np.flatnonzero(within.any(axis=1)).tolist()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,7 +116,7 @@ def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: Z
 
 @dataclass(frozen=True, eq=False)
 class Ways:
-    """Metres and paths between u starts and v visits: the ends of each are terminals."""
+    """Metres and paths between u starts and v visits, and on to the bases: the ends of each are terminals."""
 
     travel: Travel
     uavs: int
@@ -123,6 +124,7 @@ class Ways:
     uav_legs: tuple[tuple[Attachment, ...], ...]  # how each start meets the network; none: not at all
     entry_legs: tuple[tuple[Attachment, ...], ...]  # how each visit's entry does, and its exit
     exit_legs: tuple[tuple[Attachment, ...], ...]
+    bases: int = 0
 
     @property
     def from_start_m(self) -> FloatArray:
@@ -134,7 +136,21 @@ class Ways:
 
     @property
     def to_start_m(self) -> FloatArray:
-        return self.travel.length_m[self.uavs :, self.visits :]
+        return self.travel.length_m[self.uavs :, self.visits : self.visits + self.uavs]
+
+    @cached_property
+    def nearest_base(self) -> NDArray[np.int64]:
+        """The base to which the way from each visit's end costs least, (v,); any where none can be reached."""
+        cost = self.travel.cost[self.uavs :, self.visits + self.uavs :]
+        return cost.argmin(axis=1) if self.bases else np.zeros(self.visits, dtype=np.int64)
+
+    @cached_property
+    def to_base_m(self) -> FloatArray:
+        """Metres from each visit's end to its nearest base, (v,); inf where none can be reached."""
+        if not self.bases:
+            return np.full(self.visits, np.inf)
+        to_base_m: FloatArray = self.travel.length_m[self.uavs + np.arange(self.visits), self.visits + self.uavs + self.nearest_base]
+        return to_base_m
 
     def out(self, uav: int, visit: int) -> NDArray[np.int64]:
         return self.travel.path(uav, visit)
@@ -145,6 +161,9 @@ class Ways:
     def home(self, visit: int, uav: int) -> NDArray[np.int64]:
         return self.travel.path(self.uavs + visit, self.visits + uav)
 
+    def to_base(self, visit: int) -> NDArray[np.int64]:
+        return self.travel.path(self.uavs + visit, self.visits + self.uavs + int(self.nearest_base[visit]))
+
 
 def ways_between(
     graph: InspectionGraph,
@@ -153,16 +172,17 @@ def ways_between(
     entries: Sequence[Terminal],
     exits: Sequence[Terminal],
     rules: AccessRules,
+    bases: Sequence[Terminal] = (),
 ) -> Ways:
-    """Least-cost ways from starts and exits to entries and starts.
+    """Least-cost ways from starts and exits to entries, starts and bases.
 
     A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
     """
     legs_of: dict[Terminal, list[Attachment]] = {}
-    for terminal in [*starts, *entries, *exits]:
+    for terminal in [*starts, *entries, *exits, *bases]:
         if terminal not in legs_of:
             legs_of[terminal] = attachments(graph, zones, terminal, rules)
-    sources, sinks = [*starts, *exits], [*entries, *starts]
+    sources, sinks = [*starts, *exits], [*entries, *starts, *bases]
     direct = direct_legs(sources, sinks, zones, rules)
 
     def travel() -> Travel:
@@ -182,4 +202,5 @@ def ways_between(
         uav_legs=tuple(tuple(legs_of[place]) for place in starts),
         entry_legs=tuple(tuple(legs_of[place]) for place in entries),
         exit_legs=tuple(tuple(legs_of[place]) for place in exits),
+        bases=len(bases),
     )

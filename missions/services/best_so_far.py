@@ -35,12 +35,16 @@ def unheard(progress: PlanProgress) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Sketch:
-    """Draws routes of visits along the network, without heights. `starts` and `uavs` (their numbers in the request) of those that fly."""
+    """Draws routes of visits along the network, without heights. `starts` and `uavs` (their numbers in the request) of those that fly.
+
+    `bases` are those of the ways.
+    """
 
     problem: Problem
     ways: Ways
     graph: InspectionGraph
     starts: Sequence[LonLat]
+    bases: Sequence[LonLat]
     uavs: Sequence[int]
     courses: Sequence[tuple[LonLat, ...]]
 
@@ -80,6 +84,8 @@ class Sketch:
             parts += [position[self.ways.onward(left, right)], np.array(self.courses[right])]
         if self.problem.uavs[uav].end is End.RETURN:
             parts += [position[self.ways.home(route[-1], uav)], np.array([self.starts[uav]])]
+        elif self.problem.uavs[uav].end is End.ANY_BASE:
+            parts += [position[self.ways.to_base(route[-1])], np.array([self.bases[self.ways.nearest_base[route[-1]]]])]
         return np.concatenate(parts)
 
 

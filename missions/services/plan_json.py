@@ -1,6 +1,6 @@
 """A plan in the shape of the API."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,10 +8,13 @@ from missions.flight_plan.heights import FloatArray
 from missions.flight_plan.waypoints import Waypoint, WaypointKind
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
-from missions.services.requests import PlanRequest, task_to_json
+from missions.services.requests import PlanRequest, lock_to_json, task_to_json
 
 FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
+NO_QUALITY: dict[str, Any] = {
+    "lower_bound_m": None, "lower_bound_s": None, "gap": None, "is_proven": False, "method": "", "wish": None,
+}  # fmt: skip
 _KINDS = {kind: kind.value for kind in WaypointKind}
 
 
@@ -37,6 +40,7 @@ def plan_to_json(
     graph_version: int,
     ground_revision: int,
     has_terrain: bool,
+    quality: Mapping[str, Any],
 ) -> dict[str, Any]:
     lengths_m = [round(route.length_m, 3) for route in routes]
     flat_ground_assumed = not has_terrain or any(route.is_flat for route in routes)
@@ -49,6 +53,8 @@ def plan_to_json(
         "ground_revision": ground_revision,
         "flat_ground_assumed": flat_ground_assumed,
         "terrain": FLAT_GROUND if flat_ground_assumed else TERRAIN_MODEL,
+        **quality,
+        "locks": [lock_to_json(lock) for lock in request.locks],
         "warnings": list(warnings),
         "routes": [
             {
@@ -58,6 +64,7 @@ def plan_to_json(
                 "length_m": length_m,
                 "duration_s": round(route.duration_s, 1),
                 "targets": list(route.targets),
+                "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": route.line.tolist()},
                 "waypoints": [waypoint_to_json(waypoint) for waypoint in route.waypoints],
             }
@@ -68,6 +75,12 @@ def plan_to_json(
             for item in sorted(left_out, key=lambda item: item.target)
         ],
     }
+
+
+def locked_targets(flown: Sequence[int], runs: Iterable[Sequence[int]]) -> list[int]:
+    """Of the targets that a UAV flies those that are locked to it; runs are its locks."""
+    locked = {target for run in runs for target in run}
+    return [target for target in flown if target in locked] if locked else []
 
 
 def waypoint_to_json(waypoint: Waypoint) -> dict[str, Any]:

@@ -353,5 +353,14 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
     patch(client, f"uavs/{uav}", {"position": [11.0, 57.0]})
     opened = client.get(f"/api/v1/missions/{mission['id']}").json()
     assert opened["uavs"] == [
-        {"id": uav, "name": "Tern 9", "position": list(UAV_AT), "max_range_m": 9_000.0, "cruise_speed_mps": 12.0, "end_action": "hover"}
+        {
+            "id": uav,
+            "name": "Tern 9",
+            "position": list(UAV_AT),
+            "max_range_m": 9_000.0,
+            "cruise_speed_mps": 12.0,
+            "end_action": "hover",
+            "most_targets": None,
+            "sensors": [],
+        }
     ]

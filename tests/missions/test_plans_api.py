@@ -265,7 +265,7 @@ def test_the_best_route_so_far_is_drawn_while_it_is_searched_for(here: World, cl
     with (
         mock.patch("workspace.job_watch.report_progress", report),
         mock.patch("missions.tasks.JobWatch", watching_often),
-        mock.patch("missions.services.planning.solve", solve),
+        mock.patch("missions.services.assignment.solve", solve),
     ):
         tasks.solve_plan(str(job.pk))
     best = next(entry for entry in drawn if entry)
