@@ -191,9 +191,10 @@ export function mountMap(store, actions, page, { askForUav }) {
     banner.hidden = !words;
     banner.replaceChildren(words ?? "", h("button", { type: "button", class: "text-button", onclick: () => store.update({ tool: "point" }) }, isPlacing ? t("Cancel") : t("Done")));
   });
-  store.listen(["selection", "plan"], ({ selection, plan }) => {
-    const routes = plan ? plan.result.routes.filter((route) => route.geometry).length : 0;
-    map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes: tn(routes, "{count} route", "{count} routes") }));
+  store.listen(["selection", "plan", "planning"], ({ selection, plan, planning }) => {
+    const flown = planning?.best?.routes.features ?? (plan?.result.routes ?? []).filter((route) => route.geometry);
+    const routes = planning?.best ? tn(flown.length, "{count} route so far", "{count} routes so far") : tn(flown.length, "{count} route", "{count} routes");
+    map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes }));
   });
 
   /** Routes and targets; UAVs only as long as nothing says which of them fly. */

@@ -89,15 +89,22 @@ const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
 
 /** How good a plan is: { isProven, words, detail }; null where that is not known, or nobody flies. */
-export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, routes }) {
+export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, wish, routes }) {
   const isTotal = objective === "total";
   const bound = isTotal ? lower_bound_m : lower_bound_s;
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
   const above = gap / (1 - gap); // `gap` is a share of this plan
-  if (is_proven) return { isProven: true, words: isTotal ? t("Proven shortest.") : t("Proven soonest."), detail: isTotal ? t("No plan flies less.") : t("No plan is done sooner.") };
+  if (is_proven) return { isProven: true, words: provenWords(isTotal, Boolean(wish)), detail: "" };
   const figure = bound === null || bound === undefined ? "" : isTotal ? t("No plan can fly less than {length}.", { length: lengthText(bound) }) : t("No plan can be done in less than {time}.", { time: durationText(bound) });
-  return { isProven: false, words: above < LEAST_SHARE ? t("As good as is possible.") : t("At most {share} above what is possible.", { share: shareText(above) }), detail: figure };
+  const share = shareText(above);
+  const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
+  return { isProven: false, words, detail: figure };
+}
+
+function provenWords(isTotal, isLocked) {
+  if (isLocked) return isTotal ? t("Proven shortest with what is locked.") : t("Proven soonest with what is locked.");
+  return isTotal ? t("Proven shortest.") : t("Proven soonest.");
 }
 
 /** What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked. */

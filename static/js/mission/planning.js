@@ -43,8 +43,19 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     return null;
   }
 
+  let isWanted = false; // somebody asked while a save was under way
+  store.listen(["saving"], ({ saving }) => {
+    if (saving || !isWanted) return;
+    isWanted = false;
+    queueMicrotask(plan); // after whoever saved has settled
+  });
+
   async function plan() {
-    if (store.state.planning || store.state.saving) return;
+    if (store.state.planning) return;
+    if (store.state.saving) {
+      isWanted = true;
+      return;
+    }
     const lacking = missing();
     if (lacking) {
       problem(...lacking, [], { untilChanged: true });

@@ -109,7 +109,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     if (!state.plan) return;
     const { sentence, facts } = sentenceOf(state.plan);
     byId("plan-sentence").textContent = `${sentence}.`;
-    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${isPlanInSight(state) ? t("before your wish") : t("for the selection before")}`;
+    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${isPlanInSight(state) ? t("before your last change") : t("for the selection before")}`;
     width_px = stripRoom(dock);
     const last = lastPlanOf(state);
     const before = state.why?.compare ? last : null;
