@@ -16,7 +16,7 @@ from missions.serializers.limits import FARTHEST_RANGE_M, FASTEST_MPS, LARGEST_K
 from missions.services import PlanRequest, TargetRequest, UavRequest
 
 _OBJECTIVES = {objective.value: objective for objective in Objective}
-_END_ACTIONS = {action.value: action for action in EndAction}
+_END_ACTIONS = {action.value: action for action in EndAction if action is not EndAction.BASE}  # which needs the organisation's bases
 _TASK_KINDS = {kind.value: kind for kind in TaskKind}
 _BODY = frozenset({"uavs", "targets", "objective", "return_to_start"})
 _UAV = frozenset({"name", "position", "max_range_m", "cruise_speed_mps", "end_action"})

@@ -87,6 +87,8 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
         locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
         before = _summary(locked)
         picked = _what_is_picked(locked)
+        if change.drops_plan:
+            drop_plan(mission=locked)  # remembered with the options that it was made with
         if change.name is not None:
             locked.name = change.name
         if change.objective is not None:
@@ -97,8 +99,6 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             locked.locks = [lock_to_json(lock) for lock in change.locks]
         elif targets is not None:
             locked.locks = []
-        if change.drops_plan:
-            drop_plan(mission=locked)
         if change.uavs is not None:
             locked.mission_uavs.all().delete()
             _store_uavs(locked, change.uavs)
