@@ -121,12 +121,13 @@ export function wishWordsOf({ objective, wish }) {
   return [words, leftOut].filter(Boolean).join(" ");
 }
 
-/** The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible". */
+/** The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)". */
 export function bestWordsOf(best) {
   if (!best) return "";
   const { unit, value, bound, left_out } = best;
-  const figure = (unit === "m" ? lengthText : durationText)(value);
-  const words = bound > 0 ? t("{figure} so far, at most {share} above what is possible", { figure, share: shareText(Math.max(0, value / bound - 1)) }) : t("{figure} so far", { figure });
+  const textOf = unit === "m" ? lengthText : durationText;
+  const figure = textOf(value);
+  const words = bound > 0 ? t("{figure} so far, at most {share} above what is possible ({least})", { figure, share: shareText(Math.max(0, value / bound - 1)), least: textOf(bound) }) : t("{figure} so far", { figure });
   return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")].filter(Boolean).join(", ");
 }
 

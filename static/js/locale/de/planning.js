@@ -63,7 +63,7 @@ export default {
   "{count} target is locked.": ["{count} Ziel ist festgelegt.", "{count} Ziele sind festgelegt."],
   "{count} target may be flown by any UAV.": ["{count} Ziel darf jedes UAV anfliegen.", "{count} Ziele darf jedes UAV anfliegen."],
   "{figure} so far": "bisher {figure}",
-  "{figure} so far, at most {share} above what is possible": "bisher {figure}, höchstens {share} über dem, was möglich ist",
+  "{figure} so far, at most {share} above what is possible ({least})": "bisher {figure}, höchstens {share} über dem, was möglich ist ({least})",
   "{target} is locked as target {number} of {uav}.": "{target} ist als Ziel {number} von {uav} festgelegt.",
   "{target} is locked to {uav}.": "{target} ist auf {uav} festgelegt.",
   "{target} is not locked any more.": "{target} ist nicht mehr festgelegt.",

@@ -38,7 +38,12 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   let width_px = 0;
   let isPointed = false; // a place of a strip is shown on the map
   let wishes = []; // the order of each route as it would be with what is locked
-  const grab = createPillDrag(list, { strips, drop: (keys, { sequence, index }) => actions.placeTargets(keys, { uav: store.state.plan.result.routes[sequence].uav, index }) });
+  const grab = createPillDrag(list, { strips, drop });
+
+  function drop(keys, { sequence, index }) {
+    store.update({ litTarget: null }); // a finger does not leave
+    actions.placeTargets(keys, { uav: store.state.plan.result.routes[sequence].uav, index });
+  }
 
   function row(route, state, before) {
     const isUsed = Boolean(route.geometry);
