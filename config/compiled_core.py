@@ -14,7 +14,7 @@ from pathlib import Path
 
 from config.private_servers import PROJECT_DIR, state_directory
 
-SOURCE_FOLDERS = ("inspection/graph", "missions/routing")
+SOURCE_FOLDERS = ("inspection/geodesy", "inspection/graph", "missions/routing")
 SHIPPED = PROJECT_DIR / ".venv" / "compiled"
 STAMP = "stamp"
 

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from typing import Any
 
 from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.waypoints import Waypoint, WaypointKind
+from missions.flight_plan.waypoints import Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, lock_to_json, task_to_json
@@ -15,7 +16,6 @@ TERRAIN_MODEL = "terrain model"
 NO_QUALITY: dict[str, Any] = {
     "lower_bound_m": None, "lower_bound_s": None, "gap": None, "is_proven": False, "method": "", "wish": None,
 }  # fmt: skip
-_KINDS = {kind: kind.value for kind in WaypointKind}
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class PlannedRoute:
     """What one UAV flies; without targets it stays where it is."""
 
     targets: tuple[int, ...] = ()
-    waypoints: tuple[Waypoint, ...] = ()
+    waypoints: Waypoints | None = None
     line: FloatArray | None = None
     length_m: float = 0.0
     duration_s: float = 0.0
@@ -66,7 +66,7 @@ def plan_to_json(
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": route.line.tolist()},
-                "waypoints": [waypoint_to_json(waypoint) for waypoint in route.waypoints],
+                "waypoints": [] if route.waypoints is None else waypoints_to_json(route.waypoints),
             }
             for uav, route, length_m in zip(request.uavs, routes, lengths_m, strict=True)
         ],
@@ -83,16 +83,35 @@ def locked_targets(flown: Sequence[int], runs: Iterable[Sequence[int]]) -> list[
     return [target for target in flown if target in locked] if locked else []
 
 
-def waypoint_to_json(waypoint: Waypoint) -> dict[str, Any]:
-    (position, kind, agl_m, asset, target, task), amsl_m, relative_m = waypoint
-    shown_agl_m = round(agl_m, 2)
-    return {
-        "position": list(position),
-        "kind": _KINDS[kind],
-        "asset": asset,
-        "target": target,
-        "task": task_to_json(task) if task else None,
-        "altitude_agl_m": shown_agl_m,
-        "altitude_amsl_m": None if amsl_m is None else round(amsl_m, 2),
-        "altitude_relative_m": shown_agl_m if relative_m is agl_m else round(relative_m, 2),
-    }
+def waypoints_to_json(waypoints: Waypoints) -> list[dict[str, Any]]:
+    points = waypoints.points
+    agl_m = _shown(points.agl_m)
+    return [
+        {
+            "position": position,
+            "kind": kind,
+            "asset": asset,
+            "target": target,
+            "task": task and task_to_json(task),
+            "altitude_agl_m": shown_agl_m,
+            "altitude_amsl_m": amsl_m,
+            "altitude_relative_m": relative_m,
+        }
+        for position, kind, asset, target, task, shown_agl_m, amsl_m, relative_m in zip(
+            points.position,
+            points.kind,
+            points.asset,
+            points.target,
+            points.task,
+            agl_m,
+            repeat(None, len(points)) if waypoints.amsl_m is None else _shown(waypoints.amsl_m),
+            agl_m if waypoints.relative_m is points.agl_m else _shown(waypoints.relative_m),
+            strict=True,
+        )
+    ]
+
+
+def _shown(heights_m: list[float]) -> list[float]:
+    """In centimetres. Most points of a route are passed at one of a few heights."""
+    shown = {height_m: round(height_m, 2) for height_m in set(heights_m)}
+    return [shown[height_m] for height_m in heights_m]
