@@ -185,6 +185,9 @@ class JobState(models.TextChoices):
     CANCELLED = "cancelled", "Cancelled"
 
 
+OPEN_STATES = (JobState.QUEUED, JobState.RUNNING)
+
+
 class Job(models.Model):
     """A promise to do something that takes longer than a request. The row is the truth; the queue is a hint.
 
@@ -226,7 +229,7 @@ class Job(models.Model):
 
     @property
     def is_open(self) -> bool:
-        return self.state in {JobState.QUEUED, JobState.RUNNING}
+        return self.state in OPEN_STATES
 
 
 class AuditEntry(models.Model):

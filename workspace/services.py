@@ -16,6 +16,7 @@ from django.utils.translation import gettext as _
 from workspace.live import publish_job
 from workspace.models import (
     DEFAULT_ORGANISATION_ID,
+    OPEN_STATES,
     ApiToken,
     AuditEntry,
     IdempotencyKey,
@@ -114,7 +115,7 @@ def create_job_within(
 def refuse_jobs_beyond(limit: int, *, user: User, task: str) -> None:
     """Raises TooManyJobs when the user has `limit` open jobs, or more, of the app that the task is of."""
     app = task.partition(".")[0]
-    if Job.objects.filter(created_by=user, state__in=(JobState.QUEUED, JobState.RUNNING), task__startswith=f"{app}.").count() >= limit:
+    if Job.objects.filter(created_by=user, state__in=OPEN_STATES, task__startswith=f"{app}.").count() >= limit:
         raise TooManyJobs(limit)
 
 

@@ -5,6 +5,7 @@ from typing import Any
 from inspection.selectors import asset_detail, asset_label
 from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
+from missions.selectors import open_plan_of_mission
 from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
 from missions.stale_selectors import cause_json, is_stale, stale_causes, stale_reason
 
@@ -33,6 +34,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "targets": [_target(row) for row in mission.targets.all()],
         "plan": _plan(mission),
         "last_plan": mission.last_plan,
+        "planning_job": open_plan_of_mission(mission),
     }
 
 

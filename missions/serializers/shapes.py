@@ -211,6 +211,7 @@ class MissionSerializer(serializers.Serializer):
     targets = MissionTargetSerializer(many=True)
     plan = PlanSerializer(allow_null=True)
     last_plan = LastPlanSerializer(allow_null=True, help_text="the plan before the present one, in short")
+    planning_job = serializers.UUIDField(allow_null=True, help_text="the job that is planning it at present")
 
 
 class MissionSummarySerializer(serializers.Serializer):

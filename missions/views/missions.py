@@ -20,7 +20,7 @@ from missions.serializers import inputs, shapes
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import MissionChange
 from missions.views.mission_filters import FILTER_PARAMETERS, asked_filter, asked_order
-from missions.views.plans import PLAN_MISSION, is_small, job_answer, planning_job
+from missions.views.plans import is_small, job_answer, planning_job
 from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
@@ -78,7 +78,7 @@ def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int
         services.plan_mission(mission=mission, actor=user, expected_revision=revision)
         return answer_mission(user, mission.pk, status=status)
     services.plannable_request(mission=mission)
-    job = planning_job(user, PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, targets)
+    job = planning_job(user, selectors.PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, targets)
     return job_answer(job, mission=str(mission.pk))
 
 

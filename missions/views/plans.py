@@ -25,7 +25,7 @@ from workspace.tasks import send_job_on_commit
 from workspace.throttling import ScopedRate
 from workspace.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
 
-SOLVE_PLAN, PLAN_MISSION = "missions.tasks.solve_plan", "missions.tasks.plan_mission"
+SOLVE_PLAN = "missions.tasks.solve_plan"
 JOBS_RETRY_AFTER_S = 10
 STATUS_OF_FAILURE = {
     "invalid": 400,
@@ -71,7 +71,7 @@ class PlanList(APIView):
         asked = plain_request(request.data) or _read(request)
         with api_problems():
             if is_small(len(asked.targets)):
-                return Response(services.make_plan(request=asked))
+                return Response(services.make_plan(request=asked, as_text=True))
             services.places_of(asked.targets)  # says at once what a worker would find wrong later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
 

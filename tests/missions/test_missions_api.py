@@ -58,7 +58,7 @@ def test_a_reopened_mission_names_its_targets_as_the_list_of_assets_does(client:
     number_supports()
     targets = [*here.towers, here.line, here.bridge, {"position": [10.0, 56.3]}]
     mission = post(client, "missions", mission_body(*targets)).json()
-    with django_assert_num_queries(8):  # session, user, organisation, mission, UAVs, targets, routes, ground
+    with django_assert_num_queries(9):  # session, user, organisation, mission, UAVs, targets, routes, ground
         opened = client.get(f"/api/v1/missions/{mission['id']}").json()
     names = [(target["label"], target["detail"]) for target in opened["targets"]]
     assert names[:6] == [(f"Tower {place} of 6", "110 kV AEP") for place in range(1, 7)]
@@ -291,6 +291,14 @@ def test_a_jobs_plan_is_not_stored_on_a_mission_that_was_changed_meanwhile(here:
     job.refresh_from_db()
     assert (job.state, job.error["code"]) == ("failed", "mission_changed")
     assert not Route.objects.exists()
+
+
+def test_a_mission_names_the_job_that_is_planning_it(here: World, client: Client) -> None:
+    mission, job = large_mission(here, client)
+    address = f"/api/v1/missions/{mission.pk}"
+    assert client.get(address).json()["planning_job"] == str(job.pk)
+    Job.objects.filter(pk=job.pk).update(state="done")
+    assert client.get(address).json()["planning_job"] is None
 
 
 def test_a_stopped_job_stores_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:

@@ -283,6 +283,20 @@ def test_a_list_of_jobs_leaves_their_results_out(django_assert_num_queries: Any)
     assert client.get(f"/api/v1/jobs/{jobs[0].pk}").json()["result"] == {"routes": []}
 
 
+def test_a_page_that_is_loaded_again_finds_the_open_jobs_of_its_user() -> None:
+    user, other = somebody(), somebody()
+    waiting, running, done, of_another = new_job(user), new_job(user), new_job(user), new_job(other)
+    Job.objects.filter(pk=running.pk).update(state=JobState.RUNNING)
+    Job.objects.filter(pk=done.pk).update(state=JobState.DONE)
+
+    def listed(query: str) -> set[str]:
+        return {job["id"] for job in client_of(user).get(f"/api/v1/jobs?{query}").json()["results"]}
+
+    assert listed("open=true&mine=true") == {str(waiting.pk), str(running.pk)}
+    assert listed("open=true") == {str(waiting.pk), str(running.pk), str(of_another.pk)}
+    assert listed("mine=true") == {str(waiting.pk), str(running.pk), str(done.pk)}
+
+
 def test_pages_of_jobs_follow_one_another_newest_first() -> None:
     user = somebody()
     client = client_of(user)
