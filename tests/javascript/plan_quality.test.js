@@ -108,6 +108,7 @@ test("what is only locked stays in sight of the plan, at the places that are wis
   assert.ok(isPlanInSight(state));
   assert.deepEqual(shownPlaces(state).places.get(keys[0]), { sequence: 1, letter: "B", number: 1 });
   assert.deepEqual(placesOf(plan).get(keys[0]), { sequence: 0, letter: "A", number: 1 });
+  assert.ok(isPlanInSight({ plan, selection: withWishes(picked, keys, { priority: "high" }) }));
   assert.ok(!isPlanInSight({ plan, selection: { ...picked, objective: "total" } }));
 });
 

@@ -5,7 +5,7 @@ import { t, tn } from "../text.js";
 import { durationText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
-import { basisOf, withoutLocks } from "./selection.js";
+import { basisOf, withoutWishes } from "./selection.js";
 
 const REASONS = {
   no_path: t("No way along the network leads there."),
@@ -173,9 +173,9 @@ export function isPlanCurrent(state) {
   return state.plan !== null && state.plan.basis === basisOf(state.selection);
 }
 
-/** Whether the plan on the page is that, but for what has been locked and unlocked since: the wish can be shown in it. */
+/** Whether the plan on the page is that, but for locks and wishes of targets that are younger: they can be shown in it. */
 export function isPlanInSight(state) {
-  return isPlanCurrent(state) || (state.plan !== null && state.plan.freeBasis === basisOf(withoutLocks(state.selection)));
+  return isPlanCurrent(state) || (state.plan !== null && state.plan.freeBasis === basisOf(withoutWishes(state.selection)));
 }
 
 /** Places of what is picked, none where the plan is of something else; and the keys that no route visits. */

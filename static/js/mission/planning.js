@@ -14,7 +14,7 @@ const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
 export function planOf(result, selection) {
   const { targets, uavs } = selection;
-  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutLocks(selection)), targets, uavs };
+  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs };
 }
 
 /** Results by what they were made for; the oldest go. */

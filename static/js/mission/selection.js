@@ -151,6 +151,11 @@ function locksAsked({ targets, locks }) {
 /** The same with nothing locked. */
 export const withoutLocks = (selection) => ({ ...selection, locks: [] });
 
+/** The same without what is locked and what targets wish: what leaves a plan's targets and UAVs as they are. */
+export function withoutWishes(selection) {
+  return { ...withoutLocks(selection), targets: selection.targets.map((target) => ({ ...target, ...NO_WISH })) };
+}
+
 /** The body of /plans and of a mission. */
 export function requestOf(selection) {
   return {
