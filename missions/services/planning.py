@@ -34,9 +34,18 @@ class GraphOutdated(Exception):
 
 
 def make_plan(
-    *, request: PlanRequest, stop: Stop = never, on_progress: OnPlanProgress = unheard, seed: int = 7, search_s: float = 0.0
+    *,
+    request: PlanRequest,
+    stop: Stop = never,
+    on_progress: OnPlanProgress = unheard,
+    seed: int = 7,
+    search_s: float = 0.0,
+    as_text: bool = False,
 ) -> dict[str, Any]:
-    """The plan in the shape of the API. Raises InvalidRequest, NoGraph or GraphOutdated."""
+    """The plan in the shape of the API, on demand with parts of it `as_text` (see plan_to_json).
+
+    Raises InvalidRequest, NoGraph or GraphOutdated.
+    """
     on_progress(PlanProgress(0.0, "Looking up the targets"))
     every_place, gone = places_of(request.targets)
     scene = current_scene()
@@ -92,6 +101,7 @@ def make_plan(
             total_m=sum(route.length_m for route in routes),
             longest_s=max(route.duration_s for route in routes),
         ),
+        as_text=as_text,
     )
 
 
