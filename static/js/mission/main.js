@@ -175,7 +175,7 @@ async function load() {
     if (page.mission) await actions.open(page.mission);
     else if (page.canPlan) actions.openDraft();
     isLoaded = true;
-    actions.resume();
+    void actions.resume();
   } catch (error) {
     actions.failed(t("Not loaded."), error, [{ label: t("Load again"), act: () => location.reload() }]);
     if (!(error instanceof ApiError)) throw error;

@@ -1,6 +1,6 @@
 /** Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and stopping it. */
 
-import { follow, post } from "../api.js";
+import { follow, get, post } from "../api.js";
 import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
@@ -102,11 +102,19 @@ export function createPlanning({ store, selection, change, problem, failed, runn
   }
 
   /** A large plan that was being made when the page was left: its progress comes back, or its result. */
-  function resume() {
+  async function resume() {
     const mission = store.state.mission?.id ?? null;
     const kept = page.canPlan ? runningJob.read(mission) : null;
     if (!kept || store.state.planning) return;
-    void search(kept.selection, async () => ({ job: kept.job }));
+    await search(kept.selection, async (signal) => {
+      try {
+        await get(`/jobs/${kept.job}`, { signal });
+      } catch (error) {
+        if (error.status === 404) throw new DOMException("gone", "AbortError"); // cleared away since
+        throw error;
+      }
+      return { job: kept.job };
+    });
   }
 
   /** Drops the search with what it has found. */
