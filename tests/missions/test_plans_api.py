@@ -165,13 +165,16 @@ def test_a_large_plan_with_an_unknown_asset_is_refused_before_it_becomes_a_job(h
     assert not Job.objects.exists()
 
 
-def large_job(here: World, client: Client) -> Job:
-    return Job.objects.get(pk=post(client, "plans", plan_body(*many(here))).json()["job"])
+def large_job(here: World, client: Client, **more: Any) -> Job:
+    return Job.objects.get(pk=post(client, "plans", plan_body(*many(here), **more)).json()["job"])
 
 
-def test_a_job_stopped_while_it_runs_ends_before_its_time_with_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:
+@pytest.mark.parametrize("locks", [[], [{"uav": "Tern", "targets": [5, 2]}]], ids=["free", "locked"])
+def test_a_job_stopped_while_it_runs_ends_before_its_time_with_the_best_plan_until_then(
+    here: World, client: Client, settings: Any, locks: list[Any]
+) -> None:
     settings.ROUTING_RULES = replace(settings.ROUTING_RULES, large_plan_search_s=60.0)
-    job = large_job(here, client)
+    job = large_job(here, client, locks=locks)
     reported: list[float] = []
 
     def report(*, job: Job, progress: float, **more: Any) -> None:
@@ -187,6 +190,8 @@ def test_a_job_stopped_while_it_runs_ends_before_its_time_with_the_best_plan_unt
     assert (job.state, job.message) == (JobState.DONE, "Stopped; the best plan until then is kept")
     assert sorted(job.result["routes"][0]["targets"]) == list(range(LARGE))
     assert (job.finished_at - job.started_at).total_seconds() < 30.0  # of a search of 60 s
+    assert job.result["routes"][0]["locked"] == [target for lock in locks for target in lock["targets"]]
+    assert (job.result["wish"] is not None) == bool(locks)
 
 
 def test_a_job_cancelled_before_it_starts_is_never_solved(here: World, client: Client) -> None:
