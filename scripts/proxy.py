@@ -205,7 +205,7 @@ http {{
     }}
     {visitor}
     log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
-    access_log /dev/stdout line;
+    access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
     tcp_nopush on;
@@ -219,7 +219,7 @@ http {{
     gzip_proxied any;
     gzip_vary on;
     gzip_min_length 512;
-    gzip_comp_level 4;
+    gzip_comp_level 2;
     gzip_types {COMPRESSED};
     upstream web {{
         server {_quoted(f"unix:{sockets / 'web.sock'}")} max_fails=0;

@@ -33,12 +33,17 @@ def clear_legs(
     if index.component_count > 1:
         served = set(index.component_of(np.array([leg.node for leg in legs], dtype=np.int64)).tolist())
         around = tree.around(position, chord(radius_m))
-        is_cut_off = ~np.isin(index.component_of(around), list(served))
-        others = _clear(graph, zones, position, around[is_cut_off], radius_m, factor, clearance_m)
-        for leg, component in zip(others, index.component_of(np.array([leg.node for leg in others], dtype=np.int64)).tolist(), strict=True):
-            if component not in served:
-                served.add(component)
-                legs.append(leg)
+        component = index.component_of(around)
+        is_cut_off = np.ones(len(around), dtype=bool)
+        for number in served:
+            is_cut_off &= component != number
+        if is_cut_off.any():
+            others = _clear(graph, zones, position, around[is_cut_off], radius_m, factor, clearance_m)
+            components = index.component_of(np.array([leg.node for leg in others], dtype=np.int64)).tolist()
+            for leg, number in zip(others, components, strict=True):
+                if number not in served:
+                    served.add(number)
+                    legs.append(leg)
     return legs
 
 

@@ -87,10 +87,11 @@ def _plain_places(targets: Sequence[TargetRequest]) -> list[Place] | None:
     if any(key not in rows for key in keys):
         return None
     places = []
-    for index, target in enumerate(targets):
-        row = rows[target.asset]
-        asset = Asset.from_db(DEFAULT_DB_ALIAS, _PLAIN_FIELDS, row[: len(_PLAIN_FIELDS)])
-        places.append(_place_of(asset, index, target, (LonLat(*row[len(_PLAIN_FIELDS) :]),)))
+    with override("en"):  # once for all of them
+        for index, target in enumerate(targets):
+            row = rows[target.asset]
+            asset = Asset.from_db(DEFAULT_DB_ALIAS, _PLAIN_FIELDS, row[: len(_PLAIN_FIELDS)])
+            places.append(_place_of(asset, index, target, (LonLat(*row[len(_PLAIN_FIELDS) :]),), asset_label(asset)))
     return places
 
 
@@ -99,12 +100,13 @@ def position_label(position: LonLat) -> str:
 
 
 def _place_on(asset: Asset, index: int, target: TargetRequest) -> Place:
-    return _place_of(asset, index, target, _course(asset, index, target))
-
-
-def _place_of(asset: Asset, index: int, target: TargetRequest, course: tuple[LonLat, ...]) -> Place:
-    with override("en"):  # it is stored, for readers of any language
+    course = _course(asset, index, target)
+    with override("en"):  # the label is stored, for readers of any language
         label = asset_label(asset)
+    return _place_of(asset, index, target, course, label)
+
+
+def _place_of(asset: Asset, index: int, target: TargetRequest, course: tuple[LonLat, ...], label: str) -> Place:
     return Place(
         target=index,
         label=label,
