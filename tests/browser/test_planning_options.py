@@ -87,6 +87,7 @@ def test_a_pill_dragged_to_another_uav_is_locked_there_and_says_what_that_costs(
     assert names_in_order(page)[0] == given[1]
     picture(page, "plan-wish-light")
     assert faults(page) == []
+    expect(page.locator("#save-state")).to_contain_text("Saved")
     page.reload()
     wait_for_map(page)
     expect(quality).to_contain_text("Your wish costs")
