@@ -13,6 +13,7 @@ import orjson
 from locust import FastHttpUser, constant, task
 
 FOLDER = Path(os.environ["SPANWISE_LOAD_FOLDER"])
+LOCUSTS = int(os.environ.get("SPANWISE_LOAD_LOCUSTS", "1"))  # processes, each with users of its own
 WAIT_S = float(os.environ.get("SPANWISE_LOAD_WAIT_S", "10"))
 BODIES = [orjson.dumps(body) for body in orjson.loads((FOLDER / "missions.json").read_bytes())]
 TOKENS = (FOLDER / "tokens.txt").read_text().split()
@@ -28,7 +29,8 @@ class Operator(FastHttpUser):
     max_retries = 0
 
     def on_start(self) -> None:
-        token = TOKENS[next(_users) % len(TOKENS)]
+        process = max(0, getattr(self.environment.runner, "worker_index", 0))
+        token = TOKENS[(process + LOCUSTS * next(_users)) % len(TOKENS)]
         self.headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/json"}
 
     @task

@@ -22,9 +22,11 @@ import urllib.request
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
+from benchmarks.report import machine, table, write_section
 from config.private_servers import state_directory
 from scripts.places import PROJECT_DIR, Places
 from scripts.programs import Program, web_programs
@@ -96,14 +98,15 @@ def servers_of(names: tuple[str, ...]) -> list[int]:
     return found
 
 
-def answers_in_hold(history: Path, begins_s: float, ends_s: float) -> tuple[int, int]:
-    """Answers and failures between two instants, of Locust's once-a-second history."""
+def answers_in_hold(history: Path, begins_s: float, ends_s: float) -> tuple[float, int]:
+    """Answers a second and failures between two instants, of Locust's once-a-second history."""
     rows = [line.split(",") for line in history.read_text().splitlines()]
     names = [name.strip('"') for name in rows[0]]
     at, who, total, failed = (names.index(name) for name in ("Timestamp", "Name", "Total Request Count", "Total Failure Count"))
     counted = [(float(row[at]), int(row[total]), int(row[failed])) for row in rows[1:] if row[who].strip('"') == "Aggregated"]
     inside = [row for row in counted if begins_s <= row[0] <= ends_s]
-    return inside[-1][1] - inside[0][1], inside[-1][2] - inside[0][2]
+    first, last = inside[0], inside[-1]
+    return (last[1] - first[1]) / (last[0] - first[0]), last[2] - first[2]
 
 
 def main() -> int:
@@ -112,7 +115,9 @@ def main() -> int:
     parser.add_argument("--ramp", type=int, default=50, help="users more a second")
     parser.add_argument("--wait-s", type=float, default=10.0)
     parser.add_argument("--hold-s", type=int, default=60)
+    parser.add_argument("--locusts", type=int, default=1, help="processes of Locust")
     parser.add_argument("--json", type=Path, help="write the figures there, too")
+    parser.add_argument("--write", action="store_true", help="put them into docs/performance.md")
     options = parser.parse_args()
 
     places = Places(state_directory())
@@ -148,7 +153,13 @@ def main() -> int:
         command = [sys.executable, "-m", "locust", "-f", str(PROJECT_DIR / "deploy" / "load" / "plans.py"), "--headless", "--host", address]
         command += ["--users", str(options.users), "--spawn-rate", str(options.ramp), "--run-time", f"{ramp_s + options.hold_s + 10}s"]
         command += ["--csv", str(results), "--csv-full-history", "--only-summary", "--loglevel", "WARNING", "--stop-timeout", "0"]
-        load = {"SPANWISE_LOAD_FOLDER": str(folder), "SPANWISE_LOAD_WAIT_S": str(options.wait_s)}
+        if options.locusts > 1:
+            command += ["--processes", str(options.locusts)]
+        load = {
+            "SPANWISE_LOAD_FOLDER": str(folder),
+            "SPANWISE_LOAD_WAIT_S": str(options.wait_s),
+            "SPANWISE_LOAD_LOCUSTS": str(options.locusts),
+        }
         began_s = time.time()
         with (folder / "locust.log").open("wb") as words:
             locust = subprocess.Popen(command, env=environment | load, stdout=words, stderr=words, cwd=folder)
@@ -183,14 +194,15 @@ def report(options: argparse.Namespace, folder: Path, cores: dict[str, float], b
     """Print the figures; 1 if the demand was not served."""
     rows = (folder / "locust_stats.csv").read_text().splitlines()
     whole = dict(zip(rows[0].split(","), rows[-1].split(","), strict=True))
-    answered, failed = answers_in_hold(folder / "locust_stats_history.csv", *hold)
+    answers_per_s, failed = answers_in_hold(folder / "locust_stats_history.csv", *hold)
     mean_s = float(whole["Average Response Time"]) / 1_000
-    demand = options.users * (hold[1] - hold[0]) / (options.wait_s + mean_s)
+    demand_per_s = options.users / (options.wait_s + mean_s)
     figures = {
         "users": options.users,
         "hold_s": round(hold[1] - hold[0], 1),
-        "answers_per_s": round(answered / (hold[1] - hold[0]), 1),
-        "demand_served_percent": round(100 * answered / demand, 1),
+        "answers_per_s": round(answers_per_s, 1),
+        "demand_per_s": round(demand_per_s, 1),
+        "demand_served_percent": round(100 * answers_per_s / demand_per_s, 1),
         "requests": int(whole["Request Count"]),
         "failures": int(whole["Failure Count"]),
         "failures_in_hold": failed,
@@ -200,13 +212,35 @@ def report(options: argparse.Namespace, folder: Path, cores: dict[str, float], b
         "longest_ms": round(float(whole["Max Response Time"])),
         "answer_bytes": round(float(whole["Average Content Size"])),
         "cores": {name: round(value, 2) for name, value in cores.items()},
+        "cpu_ms_per_answer": {name: round(1_000 * value / max(answers_per_s, 0.1), 2) for name, value in cores.items()},
         "cores_of_others": round(busy - sum(cores.values()), 2),
     }
     for name, value in figures.items():
         print(f"{name:22} {value}")
     if options.json:
         options.json.write_text(json.dumps(figures, indent=1))
+    if options.write:
+        write_section(f"The load test: {options.users:,} users", section(options, figures, cores))
     return 0 if figures["demand_served_percent"] >= 97 and not figures["failures"] else 1
+
+
+def section(options: argparse.Namespace, figures: dict[str, Any], cores: dict[str, float]) -> str:
+    rows = [
+        ["answers a second in the hold, of the demand", f"{figures['answers_per_s']} of {figures['demand_per_s']}"],
+        ["demand served", f"{figures['demand_served_percent']} %"],
+        ["failures of requests, over the whole run", f"{figures['failures']} of {figures['requests']:,}"],
+        ["p50, p95, p99 over the whole run", ", ".join(f"{figures[name]:,.0f} ms" for name in ("p50_ms", "p95_ms", "p99_ms"))],
+        *([f"{name}: cores, CPU an answer", f"{value:.2f}, {figures['cpu_ms_per_answer'][name]} ms"] for name, value in cores.items()),
+        ["what else the machine did: cores", f"{figures['cores_of_others']}"],
+    ]
+    command = f"`python deploy/load/run.py --users {options.users} --hold-s {options.hold_s} --locusts {options.locusts} --write`"
+    return f"""{command}
+
+{options.users:,} users, {options.ramp} more a second, {options.wait_s:g} s wait, each with a token of their own; 2 UAVs and 4 targets on the
+graph of deploy/load/README.md, whole plans of {figures["answer_bytes"] / 1_000:.0f} kB; Locust on the same cores.
+{machine("granian", "django", "psycopg", "numba", "locust")}
+
+{table(["", ""], rows)}"""
 
 
 if __name__ == "__main__":
