@@ -11,13 +11,11 @@ docs/performance.md. Exits with 1 where a bar is missed.
 import argparse
 import json
 import os
-import resource
 import subprocess
 import sys
 import tempfile
 import time
 from dataclasses import dataclass
-from hashlib import sha256
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -96,81 +94,19 @@ def large(options: argparse.Namespace, folder: Path) -> tuple[list[list[str]], l
     """The graph of a million nodes: rows of the table, and which bars are missed."""
     graph = make(options.large_nodes)
     np.savez(folder / "large.npz", **graph)
-    subprocess.run([sys.executable, "-m", "benchmarks.plan_speed", "--store", str(folder)], cwd=ROOT, check=True)
+    subprocess.run([sys.executable, "-m", "benchmarks.large_graph", "--store", str(folder)], cwd=ROOT, check=True)
     rows, missed = [], []
     for name, radius_m in (("within 30 km", NEAR_M), ("anywhere", None)):
         asked = missions(graph, UAVS, TARGETS, options.near, radius_m=radius_m)
         ours = plan_file(folder / "large.npz", asked, folder)
         (folder / "missions.json").write_text(json.dumps(asked))
-        child = [sys.executable, "-m", "benchmarks.plan_speed", "--planner", str(folder)]
+        child = [sys.executable, "-m", "benchmarks.large_graph", "--planner", str(folder)]
         said = json.loads(subprocess.run(child, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
         rows.append([name, f"{ours.index_s:.2f} s", f"{ours.peak_mib:.0f} MiB", f"{ours.median_ms:.3f} ms", f"{said['peak_mib']:.0f} MiB"])
         print(*rows[-1], sep="  ", flush=True)
         if ours.index_s > MOST_INDEX_S or said["peak_mib"] > MOST_PLANNER_MIB or ours.median_ms > MOST_PLAN_MS:
             missed.append(f"{options.large_nodes:,} nodes, {name}")
     return rows, missed
-
-
-def planner(folder: Path) -> None:
-    """What a web worker does, in this process: map the stored graph and its index, and plan; prints the most memory it had."""
-    os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
-    import django  # noqa: PLC0415 (only this process is a planner)
-
-    django.setup()
-    import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
-    from inspection.geodesy import LonLat  # noqa: PLC0415
-    from inspection.graph.access import clear_legs  # noqa: PLC0415
-    from inspection.graph.snapshot_file import read_cache  # noqa: PLC0415
-    from inspection.graph.ways import travel_between  # noqa: PLC0415
-    from inspection.graph.zone_index import ZoneIndex  # noqa: PLC0415
-
-    content_sha256 = (folder / "content.sha256").read_text()
-    graph = read_cache(folder / "graphs", content_sha256=content_sha256, version=1, ground_revision=1)
-    if graph is None:
-        raise SystemExit("the stored graph cannot be read")
-    zones = ZoneIndex([], [], [])
-    for mission in json.loads((folder / "missions.json").read_bytes()):
-        places = [LonLat(lon, lat) for lat, lon in mission["uavs"]]
-        places += [LonLat(*graph.position[node].tolist()) for node in mission["targets"]]
-        legs = [clear_legs(graph, zones, place, radius_m=3_000.0, factor=2.0, clearance_m=5.0) for place in places]
-        travel = travel_between(graph, legs, legs[UAVS:])
-        for source in range(len(legs)):
-            for sink in range(TARGETS):
-                travel.path(source, sink)
-    print(json.dumps({"peak_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}))
-
-
-def store(folder: Path) -> None:
-    """Write the large graph with its index as the task that builds graphs does, in a process of its own."""
-    os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
-    import django  # noqa: PLC0415
-
-    django.setup()
-    from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: PLC0415
-    from inspection.graph.snapshot_file import to_bytes, write_cache  # noqa: PLC0415
-
-    stored = np.load(folder / "large.npz")
-    nodes, edges = len(stored["lat"]), len(stored["u"])
-    graph = InspectionGraph(
-        version=1,
-        ground_revision=1,
-        position=np.column_stack([stored["lon"], stored["lat"]]),
-        node_kind=np.array([NodeKind.SUPPORT, NodeKind.RAILWAY, NodeKind.BRIDGE], dtype=np.uint8)[stored["kind"]],
-        node_asset=np.arange(nodes, dtype=np.int64),
-        node_height_m=np.full(nodes, np.nan),
-        edge=np.sort(np.column_stack([stored["u"], stored["v"]]), axis=1),
-        length_m=stored["w"],
-        cost=stored["w"],
-        edge_kind=np.full(edges, EdgeKind.LINE, dtype=np.uint8),
-        edge_asset=np.arange(edges, dtype=np.int64) // 40,
-        zone_wkb=(),
-        zone_id=np.zeros(0, dtype=np.int64),
-        zone_name=(),
-    )
-    content = to_bytes(graph)
-    content_sha256 = sha256(content).hexdigest()
-    write_cache(folder / "graphs", content, content_sha256=content_sha256, version=1)
-    (folder / "content.sha256").write_text(content_sha256)
 
 
 def main() -> None:
@@ -181,13 +117,7 @@ def main() -> None:
     parser.add_argument("--anywhere", type=int, default=100, help="missions anywhere in a component")
     parser.add_argument("--article-s", type=float, default=300.0, help="no mission of the article's method begins later than this")
     parser.add_argument("--write", action="store_true", help="into docs/performance.md")
-    parser.add_argument("--planner", type=Path, help=argparse.SUPPRESS)
-    parser.add_argument("--store", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
-    if options.planner:
-        return planner(options.planner)
-    if options.store:
-        return store(options.store)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         rows, missed = compare(options, folder)
@@ -216,7 +146,6 @@ def main() -> None:
         write_section("Speed of small plans", text)
     if missed or large_missed:
         raise SystemExit("missed: " + "; ".join(missed + large_missed))
-    return None
 
 
 if __name__ == "__main__":

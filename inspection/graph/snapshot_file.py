@@ -95,7 +95,9 @@ def read_cache(
             return None
         if any(_hash_of_file(place / name) != digest for name, digest in manifest["files"].items()):
             return None
-        arrays = {name.removesuffix(".npy"): _mapped(place / name) for name in manifest["files"]}
+        # Files with the same content are mapped once: where the cost of an edge is its length, half of the index is.
+        mapped = {digest: _mapped(place / name) for name, digest in manifest["files"].items()}
+        arrays = {name.removesuffix(".npy"): mapped[digest] for name, digest in manifest["files"].items()}
         graph = flyable = _graph(arrays, version, ground_revision)
         if any(name.startswith(FLYABLE) for name in arrays):
             own: Arrays = {name: arrays[FLYABLE + name] for name in ARRAY_FIELDS}
