@@ -236,7 +236,7 @@ def section(options: argparse.Namespace, figures: dict[str, Any], cores: dict[st
     command = f"`python deploy/load/run.py --users {options.users} --hold-s {options.hold_s} --locusts {options.locusts} --write`"
     return f"""{command}
 
-{options.users:,} users, {options.ramp} more a second, {options.wait_s:g} s wait, each with a token of their own; 2 UAVs and 4 targets on the
+{options.users:,} users, {options.ramp} more a second, {options.wait_s:g} s wait, each with a token; 2 UAVs and 4 targets on the
 graph of deploy/load/README.md, whole plans of {figures["answer_bytes"] / 1_000:.0f} kB; Locust on the same cores.
 {machine("granian", "django", "psycopg", "numba", "locust")}
 
