@@ -64,7 +64,7 @@ function wishChoices(targets, actions, { selection, fleet }) {
     choiceOf(t("Priority"), wishes.map(({ priority }) => priority), PRIORITIES.map(({ value, words }) => [value, words]), (priority) => actions.setWish(keys, { priority })),
     uavs.length > 0 && choiceOf(t("Only UAV"), wishes.map(({ uav }) => uav ?? ""), [["", t("any")], ...uavs.map(({ name }) => [name, name])], (name) => actions.tieTargets(keys, name || null)),
     sensors.length > 0 &&
-      choiceOf(t("Needs sensor"), wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""), [["", t("none")], ...sensors.map((name) => [name, name])], (sensor) => actions.setWish(keys, { sensor })),
+      choiceOf(t("Needs sensor"), wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""), [["", t("none|sensor")], ...sensors.map((name) => [name, name])], (sensor) => actions.setWish(keys, { sensor })),
   ];
 }
 

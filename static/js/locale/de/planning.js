@@ -33,6 +33,7 @@ export default {
   "No plan can fly less than {length}.": "Kein Plan kann unter {length} bleiben.",
   "No sensor is stated for it.": "Für es ist kein Sensor angegeben.",
   "No UAV may fly it: none has the sensor, or is the one it is tied to.": "Kein UAV darf es anfliegen: Keines hat den Sensor oder ist das eine, das es soll.",
+  "none|sensor": "keiner",
   "Normal": "Normal",
   "Nothing is locked any more.": "Nichts ist mehr festgelegt.",
   "Only UAV": "Nur das UAV",
