@@ -23,7 +23,7 @@ from tests.missions.worlds import LINE_LAT, TOWER_LONS, World, island, world, zo
 
 pytestmark = pytest.mark.django_db
 
-MISSIONS = 120
+MISSIONS = 90
 ENDS = {EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
 
 
@@ -47,7 +47,7 @@ def test_random_missions_keep_every_wish() -> None:
         seen["bases"] += sum(route["end_action"] == "base" and bool(route["targets"]) for route in plan["routes"])
         seen["not allowed"] += reasons.count("not_allowed")
         seen["most"] += reasons.count("most_targets")
-    assert min(seen.values()) > 10, seen
+    assert min(seen.values()) > 5, seen
 
 
 def _mission(draw: random.Random, here: World) -> PlanRequest:
