@@ -12,7 +12,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-from django.db import DatabaseError, connection, connections
+from django.db import connection, connections
 
 from workspace.models import Job
 from workspace.services import JobCancelled, JobLost, report_progress
@@ -90,14 +90,29 @@ class JobWatch:
             connections.close_all()  # this thread's alone
 
     def _report(self) -> None:
-        draw, self._draw = self._draw, None
+        best = self._drawn()
+        if not self._told(best) and best is not None:
+            self._told(None)  # the lease is renewed, whatever the best was
+
+    def _told(self, best: Any) -> bool:
         try:
-            report_progress(job=self.job, progress=self._share, message=self._message, best=draw() if draw else None)
+            report_progress(job=self.job, progress=self._share, message=self._message, best=best)
         except JobLost:
             self._is_cancelled.set()
             self._stopped.set()
         except JobCancelled:
             self._is_cancelled.set()  # the lease is renewed until the end: the best until now is still being written up
-        except DatabaseError as error:
-            logger.warning("progress of job %s is not stored: %s", self.job.pk, error)
+        except Exception as error:
+            logger.warning("progress of job %s is not stored: %r", self.job.pk, error)
             connection.close_if_unusable_or_obsolete()
+            return False
+        return True
+
+    def _drawn(self) -> Any:
+        """The best so far; None where there is nothing new, or it cannot be drawn."""
+        draw, self._draw = self._draw, None
+        try:
+            return draw() if draw else None
+        except Exception:
+            logger.exception("the best of job %s so far cannot be drawn", self.job.pk)
+            return None
