@@ -37,6 +37,12 @@ class BearerTokenAuthentication(BaseAuthentication):
         return "Bearer"
 
 
+def bearer_token(scope: dict[str, Any]) -> bytes | None:
+    """What a websocket's `Authorization: Bearer` says; None where it sends none: then its session tells whose it is."""
+    authorization: bytes = dict(scope["headers"]).get(b"authorization", b"")
+    return authorization[7:].strip() if authorization[:7].lower() == b"bearer " else None
+
+
 def user_of_token(token: bytes) -> User | None:
     """Whose token it is, if it is valid."""
     found = _valid_token(token)

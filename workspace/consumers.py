@@ -17,7 +17,7 @@ from django.utils import translation
 from redis.exceptions import RedisError
 
 from workspace import selectors
-from workspace.authentication import user_of_token
+from workspace.authentication import bearer_token, user_of_token
 from workspace.live import job_group
 from workspace.models import Job, User
 from workspace.serializers import JobSerializer
@@ -83,13 +83,18 @@ class JobConsumer(AsyncWebsocketConsumer):
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 if loop.time() - checked_s >= CHECK_PERSON_EVERY_S:
                     checked_s = loop.time()
-                    if (await self._user()) != user:
+                    now = await self._user()
+                    if now is None or (now.pk, now.organisation_id) != (user.pk, user.organisation_id):
                         return self._hang_up(SIGNED_OUT)
+                    user = now
                 version = await self._version(user)
                 if version is None:
                     return self._hang_up(ENDED)  # deleted
                 if version != seen:
-                    message, is_open = await self._message(user)
+                    try:
+                        message, is_open = await self._message(user)
+                    except Job.DoesNotExist:
+                        return self._hang_up(ENDED)
                     await self.send(message)
                     seen, spoken_s = version, loop.time()
                     if not is_open:
@@ -117,9 +122,9 @@ class JobConsumer(AsyncWebsocketConsumer):
 
     async def _user(self) -> User | None:
         """Whoever listens, if they still may."""
-        authorization = dict(self.scope["headers"]).get(b"authorization", b"")
-        if authorization[:7].lower() == b"bearer ":
-            return await database_sync_to_async(user_of_token)(authorization[7:].strip())
+        token = bearer_token(self.scope)
+        if token is not None:
+            return await database_sync_to_async(user_of_token)(token)
         key = await database_sync_to_async(lambda: self.scope["session"].session_key)()
         if key is None:
             return None
@@ -135,6 +140,6 @@ class JobConsumer(AsyncWebsocketConsumer):
 
     @database_sync_to_async
     def _message(self, user: User) -> tuple[str, bool]:
-        job = Job.objects.get(pk=self._job_id)
+        job = selectors.jobs_of_organisation(user.organisation).get(pk=self._job_id)
         with translation.override(user.language or settings.LANGUAGE_CODE):
             return _encode({"type": "job", "job": JobSerializer(job).data}), job.is_open

@@ -1,11 +1,13 @@
 """Jobs over websockets, through the real front door: nginx, and granian behind it."""
 
+import asyncio
 import json
 import os
 import shutil
 import socket
 import subprocess
 import tempfile
+import threading
 import time
 import urllib.error
 import urllib.request
@@ -16,8 +18,10 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
+from uuid import uuid4
 
 import pytest
+from asgiref.sync import async_to_sync
 from django.conf import settings
 from django.db import connection
 from django.utils import timezone
@@ -28,6 +32,8 @@ from scripts.programs import web_programs
 from scripts.proxy import configuration
 from scripts.system_packages import find_program
 from tests.workspace.people import client_of, somebody
+from workspace import live as words
+from workspace.consumers import ENDED, JobConsumer
 from workspace.models import ApiToken, Job, Organisation, User
 from workspace.services import cancel_job, create_api_token, create_job, finish_job, report_progress, start_job
 
@@ -188,20 +194,25 @@ def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Doo
     assert close_code(live) == 1000
 
 
-def test_a_program_listens_with_its_token(here: Door) -> None:
+@pytest.mark.parametrize("origin", ["", None], ids=["from this host", "that names no origin"])
+def test_a_program_listens_with_its_token(here: Door, origin: str | None) -> None:
     user = somebody()
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
-    assert told(here.open(running_job(user), token=token))["state"] == "running"
+    assert told(here.open(running_job(user), token=token, origin=origin))["state"] == "running"
 
 
 def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
     user = somebody()
     job = running_job(user)
     stranger = somebody(organisation=Organisation.objects.create(name="Elsewhere"))
+    token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
     refused: list[dict[str, Any]] = [
         {},
         {"user": stranger},
         {"token": "spw_none"},
+        {"token": "spw_none", "origin": None},
+        {"token": "spw_none", "user": user, "origin": None},
+        {"token": token, "origin": "http://evil.example"},
         {"user": user, "origin": "http://evil.example"},
         {"user": user, "origin": None},
     ]
@@ -213,16 +224,19 @@ def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
         here.open(Job(organisation=user.organisation), user=user)  # is not there
 
 
-def test_a_socket_is_closed_soon_after_its_session_or_token_ends(here: Door) -> None:
+def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_moved(here: Door) -> None:
     user = somebody()
     job = running_job(user)
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
     by_session, by_token = here.open(job, user=user), here.open(job, token=token)
-    told(by_session), told(by_token)
+    moved = somebody()
+    of_old_organisation = here.open(running_job(moved), user=moved)
+    told(by_session), told(by_token), told(of_old_organisation)
     ended_s = time.monotonic()
     User.objects.filter(pk=user.pk).update(session_generation=1)
     ApiToken.objects.update(revoked_at=timezone.now())
-    assert [close_code(by_session), close_code(by_token)] == [4401, 4401]
+    User.objects.filter(pk=moved.pk).update(organisation=Organisation.objects.create(name="Elsewhere"))
+    assert [close_code(by_session), close_code(by_token), close_code(of_old_organisation)] == [4401, 4401, 4401]
     assert time.monotonic() - ended_s < 8.0  # four seconds, and a busy machine
 
 
@@ -252,6 +266,36 @@ def test_a_dead_redis_delays_word_and_comes_back(door: Door, here: Door) -> None
         cancel_job(job=job)
         finish_job(job=job, result=1)
         assert told(live)["state"] in {"running", "done"}
+
+
+def test_a_job_that_is_deleted_between_two_looks_closes_the_socket(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def still_there(consumer: JobConsumer, user: User) -> tuple[str]:
+        return ("running",)
+
+    async def followed(user: User) -> int:
+        consumer = JobConsumer()
+        consumer._job_id, consumer._hung_up = uuid4(), asyncio.get_running_loop().create_future()
+        await consumer._follow(user)
+        return consumer._hung_up.result()
+
+    monkeypatch.setattr(JobConsumer, "_version", still_there)
+    assert async_to_sync(followed)(somebody()) == ENDED
+
+
+def test_nobody_waits_for_a_redis_that_does_not_answer(
+    settings: Any, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(words, "DEADLINE_S", 0.05)
+    monkeypatch.setattr(words, "_quiet_until_s", 0.0)
+    layer = settings.CHANNEL_LAYERS["default"]
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"redis://127.0.0.1:{silent.getsockname()[1]}/0"
+        settings.CHANNEL_LAYERS = {"default": layer | {"CONFIG": layer["CONFIG"] | {"hosts": [{"address": address}]}}}
+        saying = threading.Thread(target=words.publish_job, args=[uuid4()], daemon=True)
+        saying.start()
+        saying.join(PATIENCE_S)
+        assert not saying.is_alive()
+    assert "Redis is away" in caplog.text
 
 
 def test_plain_http_is_told_to_upgrade(here: Door) -> None:
