@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { flownBy, lockedHere, lockOf, ordersOf, placed, settled, shifted, stopsWished, tied, unlocked, wishedOrders, wishedPlace } from "../../static/js/mission/locks.js";
+import { areContrary, flownBy, lockedHere, lockOf, ordersOf, placed, settled, shifted, stopsWished, tied, unlocked, wishedOrders, wishedPlace } from "../../static/js/mission/locks.js";
 import { EMPTY, requestOf, selectionOf, targetOf, withoutLocks, withoutTargets, withoutUavAt } from "../../static/js/mission/selection.js";
 
 const tower = (id) => ({ ...targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] }), key: `${id}` });
@@ -119,4 +119,77 @@ test("on the strip what moves stands between its neighbours, and the rest stays"
   assert.deepEqual(stopsWished(stops, ["1", "9", "8", "2", "3"], 400).map(({ at }) => Math.round(at)), [100, 133, 167, 200, 300]);
   assert.deepEqual(stopsWished(stops, ["1", "2"], 400).map(({ isMoved }) => isMoved), [false, false]);
   assert.deepEqual(stopsWished([], ["7"], 0), [{ target: "7", at: 0, isMoved: true }]);
+});
+
+test("a run that was all that a UAV flies makes room for a target that is given to it", () => {
+  const whole = { ...picked, locks: [run("Heron", ["1", "2", "3"], { at_start: true, at_end: true })] };
+  assert.deepEqual(flownBy(whole, "1", "Heron").locks, [run("Heron", ["2", "3"], { at_start: true }), run("Heron", ["1"])]);
+  assert.deepEqual(flownBy(whole, "5", "Heron").locks, [run("Heron", ["1", "2", "3"], { at_start: true }), run("Heron", ["5"])]);
+  assert.deepEqual(flownBy(whole, "5", "Kite").locks, [...whole.locks, run("Kite", ["5"])]);
+});
+
+test("a neighbour that is tied to another UAV, or picked no more, is not locked along", () => {
+  const free = placed(tied(picked, ["2"], "Kite"), ORDERS, ["5"], { uav: "Heron", index: 2 });
+  assert.deepEqual(free.locks, [run("Heron", ["1", "5", "3"])]);
+  assert.equal(free.targets[1].uav, "Kite");
+  assert.deepEqual(settled(placed(withoutTargets(picked, ["1", "2"]), ORDERS, ["5"], { uav: "Heron", index: 2 })).locks, [run("Heron", ["5"], { at_start: true })]);
+});
+
+test("where two UAVs have the name nothing is locked to it, and what was stays until one of them goes", () => {
+  const locked = flownBy(tied(picked, ["2"], "Heron"), "1", "Heron");
+  const two = settled({ ...locked, uavs: [...locked.uavs, uav("Heron")] });
+  assert.deepEqual([two.locks, two.targets[1].uav], [[run("Heron", ["1"])], "Heron"]);
+  assert.equal(flownBy(two, "3", "Heron"), two);
+  assert.equal(placed(two, ORDERS, ["5"], { uav: "Heron", index: 1 }), two);
+  assert.deepEqual(settled(withoutUavAt(two, 2)).locks, [run("Heron", ["1"])]);
+});
+
+/** What the server would refuse of a selection's locks: missions/services/wishes.py. */
+function contradictionIn({ targets, uavs, locks }) {
+  const known = new Map(targets.map((target) => [target.key, target]));
+  for (const [index, lock] of locks.entries()) {
+    if (!uavs.some(({ name }) => name === lock.uav)) return "an unknown UAV";
+    if (!lock.targets.length || new Set(lock.targets).size < lock.targets.length) return "a target twice in a run, or none";
+    if (lock.targets.some((key) => !known.has(key))) return "an unknown target";
+    if (lock.targets.some((key) => ![undefined, null, lock.uav].includes(known.get(key).uav))) return "a tie against a lock";
+    for (const other of locks.slice(0, index)) {
+      if (other.targets.some((key) => lock.targets.includes(key))) return "a target in two runs";
+      if (other.uav !== lock.uav) continue;
+      if ((other.at_start && lock.at_start) || (other.at_end && lock.at_end)) return "two runs at one end";
+      if ([lock, other].some(({ at_start, at_end }) => at_start && at_end)) return "another run beside a whole route";
+      if (areContrary(lock, other)) return "not contrary, yet called so";
+    }
+  }
+  return null;
+}
+
+test("whatever is wished one after the other, no lock contradicts another or a tie", () => {
+  let seed = 5;
+  const below = (most) => ((seed = (seed * 1_103_515_245 + 12_345) % 2_147_483_648), Math.floor((seed / 2_147_483_648) * most));
+  const name = () => ["Heron", "Kite"][below(2)];
+  const key = () => `${1 + below(6)}`;
+  const isPicked = (selection, one) => selection.targets.some((target) => target.key === one);
+  const whole = [["Heron", "123"], ["Kite", "456"]].map(([uavName, keys]) => run(uavName, [...keys], { at_start: true, at_end: true }));
+  const steps = {
+    placed: (now, one) => placed(now, ORDERS, [one], { uav: name(), index: below(8) }),
+    several: (now, one) => placed(now, ORDERS, [one, key()].filter((each, at, all) => isPicked(now, each) && all.indexOf(each) === at), { uav: name(), index: below(8) }),
+    flownBy: (now, one) => flownBy(now, one, name()),
+    shifted: (now, one) => shifted(now, ORDERS, one, below(2) ? 1 : -1),
+    lockedHere: (now, one) => lockedHere(now, ORDERS, one),
+    unlocked: (now, one) => unlocked(now, one),
+    tied: (now, one) => tied(now, [one], below(3) ? name() : null),
+    removed: (now, one) => (below(4) ? now : withoutTargets(now, [one])),
+  };
+  for (let sequence = 0; sequence < 500; sequence += 1) {
+    let now = sequence % 2 ? { ...picked, locks: whole } : picked;
+    const walked = [];
+    for (let step = 0; step < 12; step += 1) {
+      const what = Object.keys(steps)[below(Object.keys(steps).length)];
+      const one = key();
+      if (!isPicked(now, one)) continue;
+      now = settled(steps[what](now, one));
+      walked.push(`${what} ${one}: ${JSON.stringify(now.locks)}`);
+      assert.equal(contradictionIn(now), null, walked.join("\n"));
+    }
+  }
 });

@@ -8,6 +8,16 @@ import { uavsByName, wishesOf, withWishes } from "./selection.js";
 
 const locksOf = (selection) => selection.locks ?? [];
 const isHeldAt = ({ at_start, at_end }) => at_start || at_end;
+const isWholeRoute = ({ at_start, at_end }) => Boolean(at_start && at_end);
+
+/** Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something more. */
+export function areContrary(a, b) {
+  if (a.targets.some((key) => b.targets.includes(key))) return true;
+  return a.uav === b.uav && Boolean((a.at_start && b.at_start) || (a.at_end && b.at_end) || isWholeRoute(a) || isWholeRoute(b));
+}
+
+/** Whether a lock to this name says which UAV is meant. */
+const isOneUav = (selection, uav) => uavsByName(selection).some(({ name }) => name === uav);
 
 /** The order of each UAV's targets in a plan; one that is visited in several pieces stands once. */
 export function ordersOf(plan) {
@@ -28,7 +38,7 @@ const without = (locks, keys) => locks.flatMap((lock) => leftOf(lock, lock.targe
 /** Locks and ties of targets and UAVs that are still there; the same selection where nothing has gone. */
 export function settled(selection) {
   const known = new Set(selection.targets.map(({ key }) => key));
-  const names = new Set(uavsByName(selection).map(({ name }) => name));
+  const names = new Set(selection.uavs.map(({ name }) => name));
   const locks = locksOf(selection)
     .filter(({ uav }) => names.has(uav))
     .flatMap((lock) => leftOf(lock, lock.targets.filter((key) => known.has(key))));
@@ -60,6 +70,12 @@ function untied(selection, keys, uav) {
   return selection.targets.some(isTiedElsewhere) ? selection.targets.map((target) => (isTiedElsewhere(target) ? { ...target, uav: null } : target)) : selection.targets;
 }
 
+/** Locks with one more; a run that was the whole route of its UAV keeps the begin alone, so that there is room. */
+const withLock = (locks, lock) => [...locks.map((other) => (other.uav === lock.uav && isWholeRoute(other) ? { ...other, at_end: false } : other)), lock];
+
+/** Keys of the targets that a UAV may fly: they are picked still, and tied to nobody else. */
+const flyableBy = ({ targets }, uav) => new Set(targets.filter((target) => [null, uav].includes(wishesOf(target).uav)).map(({ key }) => key));
+
 const orderOf = (orders, uav) => orders.find((order) => order.uav === uav)?.targets ?? [];
 
 /** The place of a target in the orders as wished: { uav, index, last }, or null where no route visits it. */
@@ -68,12 +84,18 @@ export function wishedPlace(orders, selection, key) {
   return order ? { uav: order.uav, index: order.targets.indexOf(key), last: order.targets.length - 1 } : null;
 }
 
-/** Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin or the end. */
+/** Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin or the end.
+ *
+ * The same selection where two UAVs have the name.
+ */
 export function placed(selection, orders, keys, { uav, index }) {
+  if (!isOneUav(selection, uav)) return selection;
   const locks = without(locksOf(selection), keys);
   const others = orderOf(wishedOrders(orders, locks), uav).filter((key) => !keys.includes(key));
   const at = Math.min(Math.max(0, index), others.length);
-  const [before, after] = [others[at - 1], others[at]];
+  const flyable = flyableBy(selection, uav);
+  const before = others.slice(0, at).findLast((key) => flyable.has(key));
+  const after = others.slice(at).find((key) => flyable.has(key));
   const runWith = (key) => locks.find((lock) => key !== undefined && lock.uav === uav && lock.targets.includes(key));
   const [left, right] = [runWith(before), runWith(after)];
   const isAlone = before === undefined && after === undefined;
@@ -89,12 +111,13 @@ export function placed(selection, orders, keys, { uav, index }) {
     lock.at_end = Boolean(right?.at_end);
   }
   const joined = [joinsLeft && left, joinsRight && right];
-  return { ...selection, targets: untied(selection, keys, uav), locks: [...locks.filter((other) => !joined.includes(other)), lock] };
+  return { ...selection, targets: untied(selection, keys, uav), locks: withLock(locks.filter((other) => !joined.includes(other)), lock) };
 }
 
-/** A target is flown by this UAV, wherever in its order that is best. */
+/** A target is flown by this UAV, wherever in its order that is best. The same selection where two UAVs have the name. */
 export function flownBy(selection, key, uav) {
-  return { ...selection, targets: untied(selection, [key], uav), locks: [...without(locksOf(selection), [key]), { uav, targets: [key], at_start: false, at_end: false }] };
+  if (!isOneUav(selection, uav)) return selection;
+  return { ...selection, targets: untied(selection, [key], uav), locks: withLock(without(locksOf(selection), [key]), { uav, targets: [key], at_start: false, at_end: false }) };
 }
 
 /** One place earlier (−1) or later (1) in the order of its UAV; the same selection at an end. */
