@@ -1,7 +1,7 @@
 /** Two people's changes of one mission put together, part by part. Values in, values out. */
 
 import { t, tn } from "../text.js";
-import { settled } from "./locks.js";
+import { areContrary, settled } from "./locks.js";
 import { wishesOf } from "./selection.js";
 
 const SINGLE = ["objective", "return_to_start"];
@@ -45,14 +45,19 @@ const locksOf = ({ locks }) => locks ?? [];
 const keyOfLock = ({ uav, targets, at_start, at_end }) => JSON.stringify([uav, targets, Boolean(at_start), Boolean(at_end)]);
 const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).map(keyOfLock).join();
 
-/** Theirs, with what I locked and unlocked; where both locked the same target it stands where I want it. */
-function mergedLocks(base, mine, theirs) {
+/** Whether somebody else than `uav` alone may fly a target. */
+const isTiedElsewhere = (target, uav) => ![null, uav].includes(wishesOf(target).uav);
+
+/** Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of theirs and one of mine, mine stands. */
+function mergedLocks(base, mine, theirs, targets) {
   const { list } = mergedList(locksOf(base), locksOf(mine), locksOf(theirs), keyOfLock, () => true);
   const own = new Set(locksOf(mine).map(keyOfLock));
-  const held = new Set(locksOf(mine).flatMap(({ targets }) => targets));
-  const isMineToo = (lock) => own.has(keyOfLock(lock)) || !lock.targets.some((key) => held.has(key));
-  const kept = list.filter(isMineToo);
-  return { list: kept, isClash: kept.length < list.length };
+  const held = list.filter((lock) => own.has(keyOfLock(lock)));
+  const uavs = new Map(held.flatMap((lock) => lock.targets.map((key) => [key, lock.uav])));
+  const free = targets.map((target) => (uavs.has(target.key) && isTiedElsewhere(target, uavs.get(target.key)) ? { ...target, uav: null } : target));
+  const isAgainstTie = (lock) => free.some((target) => lock.targets.includes(target.key) && isTiedElsewhere(target, lock.uav));
+  const locks = list.filter((lock) => held.includes(lock) || !(isAgainstTie(lock) || held.some((other) => areContrary(other, lock))));
+  return { locks, targets: free, isClash: locks.length < list.length || free.some((target, index) => target !== targets[index]) };
 }
 
 /** base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands. */
@@ -71,9 +76,9 @@ export function merged(base, mine, theirs) {
     if (isClash) clashes.push(part);
   }
   for (const part of SINGLE) selection[part] = single(part, base.selection[part], mine.selection[part], theirs.selection[part]);
-  const locks = mergedLocks(base.selection, mine.selection, theirs.selection);
-  if (locks.isClash) clashes.push("locks");
-  return { name, selection: settled({ ...selection, locks: locks.list }), clashes };
+  const { isClash, ...agreed } = mergedLocks(base.selection, mine.selection, theirs.selection, selection.targets);
+  if (isClash) clashes.push("locks");
+  return { name, selection: settled({ ...selection, ...agreed }), clashes };
 }
 
 function differences(before, after, keyOf, isSame) {
