@@ -106,6 +106,19 @@ class TargetInputSerializer(serializers.Serializer):
         return attrs
 
 
+class LockListSerializer(serializers.ListSerializer):
+    """Counts before it looks at each: a target can be locked once, so that more than a plan may have are too many."""
+
+    def to_internal_value(self, data: Any) -> list[dict[str, Any]]:
+        most = settings.ROUTING_RULES.max_targets
+        if isinstance(data, list):
+            _no_more_than(most, data, "locks")
+            targets = [lock.get("targets") for lock in data if isinstance(lock, dict)]
+            _no_more_than(most, [target for listed in targets if isinstance(listed, list) for target in listed], "locked targets")
+        found: list[dict[str, Any]] = super().to_internal_value(data)
+        return found
+
+
 class LockSerializer(serializers.Serializer):
     """Targets that one UAV flies in this order with nothing between, if wished as the first or the last of its route."""
 
@@ -115,6 +128,9 @@ class LockSerializer(serializers.Serializer):
     )
     at_start = serializers.BooleanField(required=False, default=False)
     at_end = serializers.BooleanField(required=False, default=False)
+
+    class Meta:
+        list_serializer_class = LockListSerializer
 
 
 class OptionsSerializer(serializers.Serializer):
@@ -133,8 +149,7 @@ class OptionsSerializer(serializers.Serializer):
         return _no_more_than(settings.ROUTING_RULES.max_targets, value, "targets")
 
     def validate_locks(self, value: list[dict[str, Any]]) -> tuple[LockRequest, ...]:
-        locks = _no_more_than(settings.ROUTING_RULES.max_targets, value, "locks")
-        return tuple(LockRequest(lock["uav"], tuple(lock["targets"]), lock["at_start"], lock["at_end"]) for lock in locks)
+        return tuple(LockRequest(lock["uav"], tuple(lock["targets"]), lock["at_start"], lock["at_end"]) for lock in value)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if "uavs" in attrs:
@@ -159,7 +174,7 @@ class OptionsSerializer(serializers.Serializer):
         return tuple(_uav_request(uav, stored.get(uav.get("id"))) for uav in uavs)
 
 
-def _no_more_than(limit: int, value: list[dict[str, Any]], what: str) -> list[dict[str, Any]]:
+def _no_more_than(limit: int, value: list[Any], what: str) -> list[Any]:
     if len(value) > limit:
         raise serializers.ValidationError(
             _("At most %(limit)s %(what)s; these are %(count)s.") % {"limit": limit, "what": what, "count": len(value)}

@@ -51,11 +51,11 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
     field = _field(request, wanted, scene, scene.graph, scene.zones)
     order = _best_order(request, field, uav, routes[uav])
     legs_m = _legs_m(request, field, uav, order)
-    straight_m = _straight_m(request, field, uav, order)
     along_m = sum(field.along_m[visit] for visit in order)
     length_m = sum(legs_m) + along_m
     if not np.isfinite(length_m):
         raise InvalidRequest({"routes": _("A target of this route cannot be reached any more. Plan again.")})
+    straight_m = _straight_m(request, field, uav, order)
     end = _end(request, field, uav, order[-1])
     detours = _detours(request, scene, uav, routes[uav], legs_m, [] if end is None else [end[0]])
     round_zones_m = None if detours is None else sum(extra_m for extra_m, _ in detours)
@@ -151,7 +151,7 @@ def _straight_m(request: PlanRequest, field: _Field, uav: int, order: Sequence[i
 def _detours(
     request: PlanRequest, scene: Scene, uav: int, targets: Sequence[int], legs_m: Sequence[float], ends: Sequence[LonLat]
 ) -> list[tuple[float, list[tuple[int, str]]]] | None:
-    """For each leg the metres that zones cost it, and the zones that bar its shorter way; None where that is too much to work out."""
+    """For each leg the metres that zones cost it, and the zones that bar its shorter way; None where that cannot be worked out."""
     positions = [
         request.uavs[uav].position,
         *ends,
@@ -168,6 +168,8 @@ def _detours(
     field = _field(own, set(targets), scene, graph, ZoneIndex([], [], []))
     order = _best_order(own, field, 0, targets)
     free_m = _legs_m(own, field, 0, order)
+    if not np.isfinite(sum(free_m)):
+        return None
     froms = [request.uavs[uav].position, *(field.courses[visit][-1] for visit in order)]
     tos = [field.courses[visit][0] for visit in order]
     nodes = [field.ways.out(0, order[0]), *(field.ways.onward(left, right) for left, right in pairwise(order))]

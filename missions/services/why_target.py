@@ -22,7 +22,7 @@ from missions.services.places import Place, places_of
 from missions.services.planning import current_scene, visits_of_places
 from missions.services.refusals import Scene, groundings, place_height_m, zone_at
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest
-from missions.services.wishes import may_do
+from missions.services.wishes import may_do, stored_bases
 from workspace.models import Organisation
 
 MOST_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
@@ -62,7 +62,8 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
     on_the_ground = groundings(asked, scene)
     grounded = [number in on_the_ground for number in range(len(asked))]
-    ways, needed_m = _needs(request, asked, place, scene)
+    fleet = replace(request, uavs=tuple(asked), bases=stored_bases(organisation))  # a spare UAV may land at one where none asked does
+    ways, needed_m = _needs(fleet, place, scene)
     uavs = [
         {
             "name": uav.name,
@@ -154,27 +155,26 @@ def _spare_uavs(request: PlanRequest, place: Place, organisation: Organisation) 
     return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MOST_SPARE]]
 
 
-def _needs(request: PlanRequest, asked: list[UavRequest], place: Place, scene: Scene) -> tuple[Ways, np.ndarray]:
+def _needs(fleet: PlanRequest, place: Place, scene: Scene) -> tuple[Ways, np.ndarray]:
     """The least range with which each UAV could do the place alone; inf where there is no way."""
     visits, courses = visits_of_places([place])
     ways = ways_between(
         scene.graph,
         scene.zones,
-        starts=[Terminal(uav.position) for uav in asked],
+        starts=[Terminal(uav.position) for uav in fleet.uavs],
         entries=[Terminal(course[0], place.asset) for course in courses],
         exits=[Terminal(course[-1], place.asset) for course in courses],
         rules=scene.access,
-        bases=[Terminal(base.position) for base in request.bases if zone_at(base.position, scene) is None],
+        bases=[Terminal(base.position) for base in fleet.bases if zone_at(base.position, scene) is None],
     )
-    fleet = replace(request, uavs=tuple(asked))
     problem = Problem(
-        uavs=tuple(UavStart(uav.max_range_m, route_end(fleet, number)) for number, uav in enumerate(asked)),
+        uavs=tuple(UavStart(uav.max_range_m, route_end(fleet, number)) for number, uav in enumerate(fleet.uavs)),
         visits=tuple(visits),
         target_count=1,
         from_start_m=ways.from_start_m,
         between_m=ways.between_m,
         to_start_m=ways.to_start_m,
         objective=Objective.TOTAL,
-        to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(asked))),
+        to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(fleet.uavs))),
     )
     return ways, needed_range_m(problem).min(axis=1)

@@ -18,12 +18,16 @@ def with_bases(request: PlanRequest, organisation: Organisation) -> PlanRequest:
     landing = [uav for uav in range(len(request.uavs)) if request.end_action(uav) is EndAction.BASE]
     if not landing:
         return replace(request, bases=())
-    rows = bases_of_organisation(organisation).order_by("name", "pk")
-    bases = tuple(BaseRequest(row.name, LonLat(*row.location.coords)) for row in rows)
+    bases = stored_bases(organisation)
     if not bases:
         fault = _("There is no base to land at. Add one to the fleet, or choose another end.")
         raise InvalidRequest({f"uavs.{uav}.end_action": fault for uav in landing})
     return replace(request, bases=bases)
+
+
+def stored_bases(organisation: Organisation) -> tuple[BaseRequest, ...]:
+    rows = bases_of_organisation(organisation).order_by("name", "pk")
+    return tuple(BaseRequest(row.name, LonLat(*row.location.coords)) for row in rows)
 
 
 def has_sensor(uav: UavRequest, sensor: str) -> bool:
@@ -52,9 +56,11 @@ def _faults(request: PlanRequest) -> Iterator[tuple[str, str]]:
     for number, target in enumerate(request.targets):
         if target.uav:
             yield from _name_fault(f"targets.{number}.uav", target.uav, names)
+    taken: set[int] = set()
     for number, lock in enumerate(request.locks):
         yield from _name_fault(f"locks.{number}.uav", lock.uav, names)
-        yield from _target_faults(f"locks.{number}.targets", number, lock, request)
+        yield from _target_faults(f"locks.{number}.targets", lock, taken, request)
+        taken.update(lock.targets)
     if all(names[lock.uav] == 1 for lock in request.locks):
         yield from _end_faults(request.locks)
         yield from _count_faults(request)
@@ -67,13 +73,14 @@ def _name_fault(place: str, name: str, names: Counter[str]) -> Iterator[tuple[st
         yield place, _("%(count)s UAVs of this plan are named %(name)s.") % {"count": names[name], "name": name}
 
 
-def _target_faults(place: str, number: int, lock: LockRequest, request: PlanRequest) -> Iterator[tuple[str, str]]:
-    before = {target for earlier in request.locks[:number] for target in earlier.targets}
+def _target_faults(place: str, lock: LockRequest, taken: set[int], request: PlanRequest) -> Iterator[tuple[str, str]]:
+    """taken: what the locks before it hold."""
+    own: set[int] = set()
     uav = next((uav for uav in request.uavs if uav.name == lock.uav), None)
-    for at, target in enumerate(lock.targets):
+    for target in lock.targets:
         if not 0 <= target < len(request.targets):
             yield place, _("There is no target %(target)s.") % {"target": target}
-        elif target in before or target in lock.targets[:at]:
+        elif target in taken or target in own:
             yield place, _("Target %(target)s is locked twice.") % {"target": target}
         elif request.targets[target].uav not in ("", lock.uav):
             values = {"target": target, "uav": request.targets[target].uav}
@@ -82,6 +89,7 @@ def _target_faults(place: str, number: int, lock: LockRequest, request: PlanRequ
             values = {"target": target, "sensor": request.targets[target].sensor, "uav": lock.uav}
             yield place, _("Target %(target)s needs the sensor %(sensor)s, which %(uav)s does not have.") % values
         else:
+            own.add(target)
             continue
         return
 

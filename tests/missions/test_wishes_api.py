@@ -1,5 +1,6 @@
 """Wishes over HTTP: in plans, in missions, and what is kept of them."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -72,6 +73,18 @@ def test_what_cannot_be_kept_is_refused_with_its_place(here: World, client: Clie
     mission = {"name": "North", "plan": True} | plan_body(here.towers[0]) | more
     assert faults(post(client, "missions", mission)) == [place]
     assert not Mission.objects.exists()
+
+
+@pytest.mark.parametrize("locked", [[[0] * 6], [[0] * 2] * 3, [["x"] * 6], [[]] * 6], ids=["in one", "in all", "no numbers", "locks"])
+def test_more_locked_targets_than_a_plan_may_have_are_refused_before_any_is_looked_at(
+    here: World, client: Client, settings: Any, locked: list[list[Any]]
+) -> None:
+    settings.ROUTING_RULES = replace(settings.ROUTING_RULES, max_targets=5)
+    body = plan_body(here.towers[0], locks=[{"uav": "Tern", "targets": targets} for targets in locked])
+    answer = post(client, "plans", body)
+    assert faults(answer) == ["locks"]
+    assert "At most 5" in str(answer.json())
+    assert faults(post(client, "missions", {"name": "North"} | body)) == ["locks"]
 
 
 def test_a_stored_uav_brings_its_sensors(here: World, client: Client) -> None:
