@@ -117,8 +117,20 @@ export function uavOf(feature) {
   };
 }
 
+const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
+
+/** "Heron", or where one of the UAVs is called so "Heron 2": ties and locks name the one that they mean. */
+function freeName({ uavs }, name) {
+  const taken = new Set(uavs.map((uav) => uav.name));
+  let free = name;
+  for (let number = 2; taken.has(free); number += 1) free = `${name.slice(0, LONGEST_UAV_NAME - ` ${number}`.length)} ${number}`;
+  return free;
+}
+
+/** One more UAV of the fleet; in this mission it has another name where its own is taken. */
 export function withUav(selection, uav) {
-  return selection.uavs.some((chosen) => chosen.id === uav.id) ? selection : { ...selection, uavs: [...selection.uavs, uav] };
+  if (selection.uavs.some((chosen) => chosen.id === uav.id)) return selection;
+  return { ...selection, uavs: [...selection.uavs, { ...uav, name: freeName(selection, uav.name) }] };
 }
 
 /** UAVs are told apart by name where a target is tied or locked to one: not where two have the same. */
@@ -199,9 +211,19 @@ export function storedTarget(target) {
   return { key: keyOf(made), ...made, ...wishesOf(target) };
 }
 
+/** The same targets, each with a key of its own: a program may ask for one place several times. */
+function toldApart(targets) {
+  const count = new Map();
+  return targets.map((target) => {
+    const number = (count.get(target.key) ?? 0) + 1;
+    count.set(target.key, number);
+    return number === 1 ? target : { ...target, key: `${target.key} (${number})` };
+  });
+}
+
 /** The selection of a stored mission. */
 export function selectionOf(mission, fleet = []) {
-  const targets = mission.targets.map(storedTarget);
+  const targets = toldApart(mission.targets.map(storedTarget));
   return {
     targets,
     uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),
