@@ -144,6 +144,12 @@ test("where two UAVs have the name nothing is locked to it, and what was stays u
   assert.deepEqual(settled(withoutUavAt(two, 2)).locks, [run("Heron", ["1"])]);
 });
 
+test("of two UAVs with one name each keeps its own order", () => {
+  const two = [{ uav: "Heron", targets: ["1", "2"] }, { uav: "Heron", targets: ["3"] }];
+  assert.deepEqual(wishedOrders(two, []), two);
+  assert.deepEqual(wishedOrders(two, [run("Kite", ["2"])]), [{ uav: "Heron", targets: ["1"] }, two[1], { uav: "Kite", targets: ["2"] }]);
+});
+
 /** What the server would refuse of a selection's locks: missions/services/wishes.py. */
 function contradictionIn({ targets, uavs, locks }) {
   const known = new Map(targets.map((target) => [target.key, target]));

@@ -48,20 +48,24 @@ export function settled(selection) {
   return { ...selection, locks, targets: selection.targets.map((target) => (isTiedToNobody(target) ? { ...target, uav: null } : target)) };
 }
 
-/** The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned. */
+/** The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned.
+ *
+ * One for each of `orders`, at its place, then those of UAVs to which something is locked and which fly nothing yet.
+ */
 export function wishedOrders(orders, locks) {
-  const wished = new Map(orders.map(({ uav, targets }) => [uav, [...targets]]));
+  const wished = orders.map((order) => ({ ...order }));
   const rank = ({ at_start, at_end }) => (at_end ? 2 : at_start ? 1 : 0);
   for (const lock of [...locks].sort((a, b) => rank(a) - rank(b))) {
     const held = new Set(lock.targets);
-    const own = wished.get(lock.uav) ?? [];
-    const anchor = own.findIndex((key) => held.has(key));
-    for (const [uav, targets] of wished) wished.set(uav, targets.filter((key) => !held.has(key)));
-    const rest = wished.get(lock.uav) ?? [];
+    if (!wished.some(({ uav }) => uav === lock.uav)) wished.push({ uav: lock.uav, targets: [] });
+    const own = wished.find(({ uav }) => uav === lock.uav);
+    const anchor = own.targets.findIndex((key) => held.has(key));
+    for (const order of wished) order.targets = order.targets.filter((key) => !held.has(key));
+    const rest = own.targets;
     const at = lock.at_start ? 0 : lock.at_end || anchor < 0 ? rest.length : anchor;
-    wished.set(lock.uav, [...rest.slice(0, at), ...lock.targets, ...rest.slice(at)]);
+    own.targets = [...rest.slice(0, at), ...lock.targets, ...rest.slice(at)];
   }
-  return [...wished].map(([uav, targets]) => ({ uav, targets }));
+  return wished;
 }
 
 /** Whoever is given to another UAV than the one it was tied to is tied no more: the younger wish stands. */

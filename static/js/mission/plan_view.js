@@ -34,10 +34,9 @@ export function routesOf(plan) {
 /** Where each target stands in the plan, or would stand with what is locked: key → { sequence, letter, number }. */
 export function placesOf(plan, locks = []) {
   const places = new Map();
-  const orders = ordersOf(plan);
-  const wished = locks.length ? new Map(wishedOrders(orders, locks).map(({ uav, targets }) => [uav, targets])) : null;
-  for (const { sequence, letter, name } of routesOf(plan)) {
-    (wished?.get(name) ?? orders[sequence].targets).forEach((key, index) => places.set(key, { sequence, letter, number: index + 1 }));
+  const wished = wishedOrders(ordersOf(plan), locks);
+  for (const { sequence, letter } of routesOf(plan)) {
+    wished[sequence].targets.forEach((key, index) => places.set(key, { sequence, letter, number: index + 1 }));
   }
   return places;
 }

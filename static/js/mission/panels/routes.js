@@ -136,8 +136,8 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   /** Orders by the place of each route; what is locked to a UAV without a route is not drawn. */
   function wishesOf({ plan, selection }) {
     const known = new Set(selection.targets.map(({ key }) => key));
-    const wished = new Map(wishedOrders(ordersOf(plan), selection.locks ?? []).map(({ uav, targets }) => [uav, targets]));
-    return plan.result.routes.map(({ uav }) => (wished.get(uav) ?? []).filter((key) => known.has(key) || plan.targets.some((target) => target.key === key)));
+    const wished = wishedOrders(ordersOf(plan), selection.locks ?? []);
+    return plan.result.routes.map((_, sequence) => wished[sequence].targets.filter((key) => known.has(key) || plan.targets.some((target) => target.key === key)));
   }
 
   /** How good the plan is, what locking costs, and the way back. */
