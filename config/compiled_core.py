@@ -1,7 +1,8 @@
 """Where numba keeps the compiled core: beside the libraries, or in the state where the checkout is read-only.
 
 scripts/compile_core.py fills it at set-up, so that no request waits for a compiler. numba asks whether what it has kept is still good
-by looking at a function's own file, not at those of the functions it calls: the stamp is of all of them.
+by looking at a function's own file, not at those of the functions it calls: so the folder is named by a stamp of all of them, and
+nothing is ever read that was compiled from other sources.
 """
 
 import hashlib
@@ -17,6 +18,7 @@ from config.private_servers import PROJECT_DIR, state_directory
 SOURCE_FOLDERS = ("inspection/geodesy", "inspection/graph", "missions/routing")
 SHIPPED = PROJECT_DIR / ".venv" / "compiled"
 STAMP = "stamp"
+STAMP_LETTERS = 16  # of it are in the folder's name
 
 
 def compiled_stamp() -> str:
@@ -41,12 +43,13 @@ def is_compiled(folder: Path) -> bool:
 
 def compiled_directory() -> Path:
     """The folder to read and write, which numba does only where it may write."""
+    name = compiled_stamp()[:STAMP_LETTERS]
     if os.access(SHIPPED if SHIPPED.exists() else SHIPPED.parent, os.W_OK):
-        return SHIPPED
-    own = state_directory() / "compiled"
-    if not is_compiled(own) and is_compiled(SHIPPED):
+        return SHIPPED / name
+    own = state_directory() / "compiled" / name
+    if not is_compiled(own) and is_compiled(SHIPPED / name):
         with suppress(OSError):
-            _copy(SHIPPED, own)
+            _copy(SHIPPED / name, own)
     return own
 
 

@@ -15,7 +15,7 @@ def main() -> int:
         return 0
     if "--check" in sys.argv[1:]:
         return 1
-    shutil.rmtree(folder, ignore_errors=True)
+    shutil.rmtree(folder.parent, ignore_errors=True)  # with what was compiled from older sources
     folder.mkdir(parents=True)
     # Only now: numba reads where to keep things as it is imported.
     from inspection.graph import rehearsal as of_the_graph  # noqa: PLC0415

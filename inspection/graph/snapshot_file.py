@@ -78,7 +78,7 @@ def write_cache(folder: Path, content: bytes, *, content_sha256: str, version: i
         except OSError:  # there is one already: a broken one, or another process was faster with the same
             target.rename(Path(draft_name) / "replaced")
             draft.rename(target)
-    _remove_old(folder)
+    _remove_old(folder, but=version)
 
 
 def read_cache(
@@ -97,6 +97,8 @@ def read_cache(
             return None
         # Files with the same content are mapped once: where the cost of an edge is its length, half of the index is.
         mapped = {digest: _mapped(place / name) for name, digest in manifest["files"].items()}
+        if json.loads((place / MANIFEST).read_bytes()) != manifest:  # another snapshot took the place between the look and the mapping
+            return None
         arrays = {name.removesuffix(".npy"): mapped[digest] for name, digest in manifest["files"].items()}
         graph = flyable = _graph(arrays, version, ground_revision)
         if any(name.startswith(FLYABLE) for name in arrays):
@@ -173,11 +175,12 @@ def _hash_of_file(path: Path) -> str:
         return file_digest(file, "sha256").hexdigest()
 
 
-def _remove_old(folder: Path) -> None:
-    """Keep the newest versions, and remove drafts that a killed process left before the oldest of them was written."""
+def _remove_old(folder: Path, *, but: int) -> None:
+    """Keep the newest versions and this one, which after a restore is older; remove drafts that killed processes left before them."""
     versions = sorted((path for path in folder.iterdir() if path.name.isdigit()), key=lambda path: int(path.name), reverse=True)
     for path in versions[KEPT_FOLDERS:]:
-        shutil.rmtree(path, ignore_errors=True)
+        if path.name != str(but):
+            shutil.rmtree(path, ignore_errors=True)
     oldest_s = min((_modified_s(path) for path in versions[:KEPT_FOLDERS]), default=0.0)
     for path in folder.glob(".draft-*"):
         if _modified_s(path) < oldest_s:

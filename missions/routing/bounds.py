@@ -104,7 +104,9 @@ def _by_forest(arcs: Arcs, along_m: FloatArray, usable: BoolArray, certain: IntA
     all_m, reward_s = _ascent(apart_m, start_m, end_m, max(total_m, 1.0) * 1.2, steps, True, arcs.speed_mps)
     rest_m = all_m + work_m - reward_s * speed_mps
     all_s = (all_m + work_m) / speed_mps if rest_m >= 0 else reward_s + rest_m / slowest_mps
-    return float(max(mean_s, all_s))
+    # The end of a UAV that can do nothing is as far as no way: taken away again it leaves its rounding behind.
+    rounding_m = 16 * np.finfo(np.float64).eps * (abs(all_m) + abs(reward_s) * speed_mps)
+    return float(max(mean_s, all_s - rounding_m / slowest_mps))
 
 
 def _between_targets(

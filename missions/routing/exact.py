@@ -89,12 +89,12 @@ def _best(
             for part in range(sets):
                 if duration_s[number, part] > cap_s:
                     length_m[number, part] = np.inf
-        _share_by_total(flying, kind, length_m, duration_s, members, total_m, longest_s)
+        _share_by_total(flying, kind, length_m, duration_s, members if members == sets - 1 else -1, total_m, longest_s)
     else:
         _share_by_total(flying, kind, length_m, duration_s, -1, total_m, longest_s)
         members = sets - 1
-        if not np.isfinite(total_m[last - 1, members]):
-            members = _heaviest(weights, total_m[last - 1], longest_s[last - 1])
+    if not np.isfinite(total_m[last - 1, members]) or members < sets - 1:  # of several sets that weigh the same the one of the least total
+        members = _heaviest(weights, total_m[last - 1], longest_s[last - 1])
 
     order = np.empty((uavs, targets), dtype=np.int64)
     length = np.zeros(uavs, dtype=np.int64)

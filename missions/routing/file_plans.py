@@ -6,6 +6,8 @@ A graph file is an npz with lat, lon float64 (n,) [deg], u, v int32 (m,) node in
 import io
 import json
 import sys
+import zipfile
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -70,7 +72,7 @@ def read_graph(file: BinaryIO) -> FileGraph:
             del u, v, w
             labels = label(condensed)
             lon, lat = _column(stored["lon"], np.float64), _column(stored["lat"], np.float64)
-    except (KeyError, ValueError, OSError, EOFError) as error:
+    except (KeyError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise error if isinstance(error, InvalidFile) else InvalidFile(f"not a graph: {error}") from error
     if not len(lon) == len(lat) > 0 or not (np.isfinite(lon).all() and np.isfinite(lat).all()):
         raise InvalidFile("not a graph: it needs nodes, each with a place")

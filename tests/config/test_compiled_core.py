@@ -6,17 +6,17 @@ from pathlib import Path
 import pytest
 
 from config import compiled_core
-from config.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled
+from config.compiled_core import STAMP, STAMP_LETTERS, compiled_directory, compiled_stamp, is_compiled
 
 
 @pytest.fixture
 def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A compiled core as set-up leaves it, and a state of its own."""
-    folder = tmp_path / "checkout" / "compiled"
+    folder = tmp_path / "checkout" / "compiled" / compiled_stamp()[:STAMP_LETTERS]
     folder.mkdir(parents=True)
     (folder / "ways.nbi").write_text("compiled")
     (folder / STAMP).write_text(compiled_stamp())
-    monkeypatch.setattr(compiled_core, "SHIPPED", folder)
+    monkeypatch.setattr(compiled_core, "SHIPPED", folder.parent)
     monkeypatch.setenv("SPANWISE_VAR", str(tmp_path / "state"))
     return folder
 
@@ -33,20 +33,32 @@ def test_it_is_used_where_set_up_has_put_it(shipped):
 def test_a_read_only_checkout_is_copied_to_the_state_once(shipped, tmp_path, monkeypatch):
     make_read_only(monkeypatch)
     own = compiled_directory()
-    assert own == tmp_path / "state" / "compiled"
+    assert own == tmp_path / "state" / "compiled" / shipped.name
     assert (own / "ways.nbi").read_text() == "compiled"
     (own / "more.nbi").write_text("made since")
     assert (compiled_directory() / "more.nbi").exists()
 
 
-def test_a_copy_of_older_sources_is_replaced(shipped, tmp_path, monkeypatch):
-    own = tmp_path / "state" / "compiled"
+def test_a_copy_that_was_never_finished_is_replaced(shipped, tmp_path, monkeypatch):
+    own = tmp_path / "state" / "compiled" / shipped.name
     own.mkdir(parents=True)
-    (own / STAMP).write_text("older")
+    (own / "ways.nbi").write_text("half")
     make_read_only(monkeypatch)
     assert compiled_directory() == own
-    assert is_compiled(own)
-    assert [path.name for path in own.parent.iterdir()] == ["compiled"]
+    assert (own / "ways.nbi").read_text() == "compiled"
+    assert [path.name for path in own.parent.iterdir()] == [shipped.name]
+
+
+def test_nothing_is_read_that_was_compiled_from_other_sources(shipped, tmp_path, monkeypatch):
+    source = tmp_path / "core" / "ways.py"
+    source.parent.mkdir()
+    source.write_text("from numba import njit")
+    monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", (str(source.parent),))
+    before = compiled_directory()
+    source.write_text("from numba import njit, prange")
+    assert compiled_directory() != before
+    make_read_only(monkeypatch)
+    assert not compiled_directory().exists()
 
 
 def test_what_was_compiled_from_other_sources_is_not_taken_for_good(shipped):

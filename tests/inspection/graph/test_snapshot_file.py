@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from shapely import box
 
+from inspection.graph import snapshot_file
 from inspection.graph.flyable import flyable_part
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.legs import Attachment
@@ -102,6 +103,29 @@ def test_folders_of_old_versions_are_removed(tmp_path: Path):
     for version in (1, 2, 9, 10, 11, 12):
         write_cache(tmp_path, content, content_sha256=hash_of(content), version=version)
     assert sorted(int(path.name) for path in tmp_path.iterdir()) == [9, 10, 11, 12]
+
+
+def test_an_older_version_that_is_written_after_a_restore_stays(tmp_path: Path):
+    content = to_bytes(GRAPH)
+    for version in (101, 102, 103, 104, 7):
+        write_cache(tmp_path, content, content_sha256=hash_of(content), version=version)
+    assert read_cache(tmp_path, content_sha256=hash_of(content), version=7, ground_revision=1) is not None
+
+
+def test_files_that_are_exchanged_while_they_are_read_are_not_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    content, other = to_bytes(GRAPH), to_bytes(replace(GRAPH, position=GRAPH.position + 0.5))
+    write_cache(tmp_path, content, content_sha256=hash_of(content), version=1)
+    is_exchanged = False
+
+    def exchange(path: Path) -> np.ndarray:
+        nonlocal is_exchanged
+        if not is_exchanged:
+            is_exchanged = True
+            write_cache(tmp_path, other, content_sha256=hash_of(other), version=1)
+        return np.load(path, mmap_mode="r")
+
+    monkeypatch.setattr(snapshot_file, "_mapped", exchange)
+    assert read_cache(tmp_path, content_sha256=hash_of(content), version=1, ground_revision=1) is None
 
 
 def read_again(folder: Path, graph: InspectionGraph, tallest_m: float) -> InspectionGraph | None:

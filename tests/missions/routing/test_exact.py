@@ -6,7 +6,7 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from missions.routing import exact
@@ -19,7 +19,8 @@ seeds = st.integers(0, 1_000_000)
 
 
 @settings(max_examples=60, deadline=None)
-@given(seeds, st.integers(1, 3))
+@example(seed=247205, uavs=3)  # two targets weigh the same, and the longest route leads to neither
+@given(seed=seeds, uavs=st.integers(1, 3))
 def test_a_small_plan_is_the_best_there_is_whatever_the_problem_holds(seed: int, uavs: int) -> None:
     problem = mixed_problem(seed, uavs=uavs, targets=4 if uavs < 3 else 3)
     routes = exact.best_plan(problem)

@@ -126,6 +126,7 @@ def test_a_mission_with_faults_is_refused(mission):
         planned(mission)
 
 
-def test_a_file_that_is_no_npz_is_refused():
+@pytest.mark.parametrize("spoil", [lambda npz: b"no npz", lambda npz: npz[: len(npz) // 2], lambda npz: npz[:200] + bytes(60) + npz[260:]])
+def test_a_file_that_is_no_whole_npz_is_refused(spoil):
     with pytest.raises(InvalidFile):
-        read_graph(io.BytesIO(b"no npz"))
+        read_graph(io.BytesIO(spoil(graph_file().getvalue())))

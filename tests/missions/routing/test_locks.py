@@ -2,12 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from missions.routing.locks import reduced
-from missions.routing.problem import InvalidProblem, Lock, Problem, Routes, merit
+from missions.routing.problem import InvalidProblem, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
 from missions.routing.solver import solve
 from tests.missions.routing.random_problems import every_plan, honours, mixed_problem, random_problem
 
@@ -57,6 +58,28 @@ def test_locking_what_the_best_plan_has_anyway_costs_nothing(seed: int, data: st
             locks.append(Lock(uav, run, at_start=first == 0, at_end=last == len(route)))
     locked = solve(replace(problem, locks=tuple(locks)))
     assert merit(problem, locked.routes) == pytest.approx(merit(problem, free.routes), rel=1e-9)
+
+
+@pytest.mark.parametrize("locks", [(), (Lock(0, (0,)), Lock(0, (1,)), Lock(0, (2,))), (Lock(0, (1, 2)),)])
+def test_what_is_locked_is_left_out_before_anything_of_a_higher_priority(locks: tuple[Lock, ...]) -> None:
+    problem = Problem(
+        uavs=(UavStart(max_range_m=60.0),),
+        visits=tuple(Visit(target) for target in range(3)),
+        target_count=3,
+        from_start_m=np.array([[50.0, 1.0, 1.0]]),
+        between_m=np.array([[1.0, 100.0, 100.0], [100.0, 1.0, 1.0], [100.0, 1.0, 1.0]]),
+        to_start_m=np.ones((3, 1)),
+        objective=Objective.TOTAL,
+        priorities=(Priority.HIGH, Priority.LOW, Priority.LOW),
+        locks=locks,
+    )
+    assert [item.target for item in solve(problem).unassigned] == [1, 2]
+
+
+def test_of_one_priority_what_is_locked_stays() -> None:
+    problem = replace(random_problem(5, uavs=1, targets=6), priorities=())
+    most = replace(problem, uavs=(replace(problem.uavs[0], max_range_m=None, most_targets=2),), locks=(Lock(0, (4,)),))
+    assert 4 not in [item.target for item in solve(most).unassigned]
 
 
 def test_a_run_of_stretches_keeps_one_visit_for_each_pair_of_ends() -> None:
