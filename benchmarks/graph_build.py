@@ -35,7 +35,8 @@ from inspection import selectors, services  # noqa: E402
 from inspection.geodesy import LonLat  # noqa: E402
 from inspection.graph.access import clear_legs  # noqa: E402
 from inspection.graph.inspection_graph import InspectionGraph  # noqa: E402
-from inspection.graph.shortest_paths import Attachment, travel_between  # noqa: E402
+from inspection.graph.legs import Attachment  # noqa: E402
+from inspection.graph.ways import travel_between  # noqa: E402
 from inspection.graph.zone_index import zones_of_graph  # noqa: E402
 
 

@@ -1,5 +1,8 @@
 """The composition root: settings, addresses, servers; it knows every app and no app knows it."""
 
 from config.celery import app as celery_app
+from config.compiled_core import use_compiled_directory
+
+use_compiled_directory()
 
 __all__ = ["celery_app"]

@@ -102,6 +102,7 @@ MIDDLEWARE = [
 
 ROOT_URLCONF = "config.urls"
 WSGI_APPLICATION = "config.wsgi.application"
+ASGI_APPLICATION = "config.asgi.application"
 APPEND_SLASH = False
 
 TEMPLATES = [
@@ -129,6 +130,8 @@ DATABASES = {
         conn_health_checks=True,
     ),
 }
+# For workspace/prepared.py alone: Django's own statements go as text.
+DATABASES["default"].setdefault("OPTIONS", {})["prepare_threshold"] = 0
 DEFAULT_AUTO_FIELD = "django.db.models.BigAutoField"
 
 REDIS_URL = os.environ.get("REDIS_URL") or private_redis_url(STATE_DIR)
@@ -138,6 +141,17 @@ CACHES = {
         "LOCATION": REDIS_URL,
         "KEY_PREFIX": "spanwise",
         "OPTIONS": {"socket_connect_timeout": 1, "socket_timeout": 1},  # what the cache holds can be done without
+    },
+}
+
+# Words between programs and open pages. A page that hears none looks at the row itself, so Redis may be away, or come back empty.
+CHANNEL_LAYERS = {
+    "default": {
+        "BACKEND": "channels_redis.pubsub.RedisPubSubChannelLayer",
+        "CONFIG": {
+            "hosts": [{"address": REDIS_URL, "socket_connect_timeout": 1, "socket_timeout": None, "health_check_interval": 10}],
+            "prefix": "spanwise-live",
+        },
     },
 }
 
@@ -269,7 +283,7 @@ CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
     "look for gaps in a changed ground": {"task": "inspection.tasks.find_gaps", "schedule": 10.0, "options": {"expires": 10}},
-    "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 10.0, "options": {"expires": 10}},
+    "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 3.0, "options": {"expires": 3}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
     "fetch zone sets whose time has come": {
         "task": "inspection.tasks.fetch_due_subscriptions",
@@ -303,6 +317,8 @@ FLIGHT_RULES = FlightRules(
     max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
     cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
 )
+MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
+LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.

@@ -7,13 +7,13 @@ from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerSplitVie
 from config.health import healthz, readyz
 
 urlpatterns: list[URLPattern | URLResolver] = [
+    path("api/v1/", include("missions.urls")),  # first, with what is asked for most: addresses are tried one after the other
     path("healthz", healthz),
     path("readyz", readyz),
     path("api/schema", SpectacularAPIView.as_view(), name="schema"),
     path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),
-    path("api/v1/", include("missions.urls")),
     path("", include("workspace.page_urls")),
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),

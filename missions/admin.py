@@ -84,12 +84,12 @@ class _ReadOnlyInline(admin.TabularInline):
 
 class MissionUavInline(_ReadOnlyInline):
     model = MissionUav
-    fields = ["sequence", "name", "max_range_m", "cruise_speed_mps", "end_action"]
+    fields = ["sequence", "name", "max_range_m", "cruise_speed_mps", "end_action", "most_targets", "sensors"]
 
 
 class TargetInline(_ReadOnlyInline):
     model = InspectionTarget
-    fields = ["sequence", "label", "state", "unassigned_reason"]
+    fields = ["sequence", "label", "priority", "uav_name", "sensor", "state", "unassigned_reason"]
 
 
 class RouteInline(_ReadOnlyInline):
@@ -109,15 +109,15 @@ class MissionAdmin(ReadOnlyAdmin):
 
 @admin.register(MissionUav)
 class MissionUavAdmin(ReadOnlyAdmin):
-    list_display = ["name", "mission", "sequence", "max_range_m", "cruise_speed_mps", "end_action"]
+    list_display = ["name", "mission", "sequence", "max_range_m", "cruise_speed_mps", "end_action", "most_targets"]
     list_select_related = ["mission"]
     search_fields = ["name", "mission__name"]
 
 
 @admin.register(InspectionTarget)
 class InspectionTargetAdmin(ReadOnlyAdmin):
-    list_display = ["label", "mission", "sequence", "state", "unassigned_reason"]
-    list_filter = ["state", "unassigned_reason"]
+    list_display = ["label", "mission", "sequence", "priority", "uav_name", "sensor", "state", "unassigned_reason"]
+    list_filter = ["state", "priority", "unassigned_reason"]
     list_select_related = ["mission"]
     search_fields = ["label", "mission__name"]
 

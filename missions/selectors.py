@@ -7,7 +7,9 @@ from django.db.models import Prefetch, Q, QuerySet
 
 from inspection.selectors import UNREAD_OF_A_LINE
 from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint
-from workspace.models import AuditEntry, Organisation
+from workspace.models import OPEN_STATES, AuditEntry, Job, Organisation
+
+PLAN_MISSION = "missions.tasks.plan_mission"
 
 
 def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, deleted: bool = False) -> Mission:
@@ -26,6 +28,12 @@ def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, del
 def revision_of_mission(organisation_id: int, mission_id: UUID) -> int | None:
     """The number behind the ETag, by one column of one row; None for a mission that is not there."""
     return Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("revision", flat=True).first()
+
+
+def open_plan_of_mission(mission: Mission) -> UUID | None:
+    """The job that is planning the mission at present, the youngest if there are several."""
+    jobs = Job.objects.filter(organisation=mission.organisation_id, state__in=OPEN_STATES, task=PLAN_MISSION)
+    return jobs.filter(parameters__mission=str(mission.pk)).order_by("-created_at").values_list("pk", flat=True).first()
 
 
 def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:

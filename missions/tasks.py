@@ -1,65 +1,36 @@
 """Large plans, solved by a worker: with progress, and with an ear for the user who wants to stop."""
 
-import logging
-import time
 from collections.abc import Callable
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 from django.conf import settings
-from django.db import DatabaseError, connection
 
 from inspection.selectors import NoGraph
 from missions import services
 from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
+from missions.services.best_so_far import OnPlanProgress, PlanProgress
+from workspace.errors import DATABASE_AWAY
+from workspace.job_watch import JobWatch
 from workspace.models import Job
-from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, report_progress, start_job
-
-logger = logging.getLogger(__name__)
+from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
 
 SOFT_LIMIT_S = 540
 HARD_LIMIT_S = 600
-REPORT_INTERVAL_S = 1.0  # how often the job's row hears of the progress, and the solver of a wish to stop
 
 STOPPED = "Stopped; the best plan until then is kept"
 NO_GRAPH = "There is no network yet: import infrastructure first, or wait until it has been linked."
 
 
-class _Watch:
-    """Carries progress to the job's row and, the other way, the wish to stop. Never raises: OR-tools calls it from C++."""
-
-    def __init__(self, job: Job) -> None:
-        self.job = job
-        self.is_cancelled = False
-        self.progress, self.message = 0.0, job.message
-        self._reported_at_s = -REPORT_INTERVAL_S
-
-    def on_progress(self, progress: float, message: str) -> None:
-        self.progress, self.message = progress, message
-        self.stop()
-
-    def stop(self) -> bool:
-        now_s = time.monotonic()
-        if not self.is_cancelled and now_s - self._reported_at_s >= REPORT_INTERVAL_S:
-            self._reported_at_s = now_s
-            try:
-                report_progress(job=self.job, progress=self.progress, message=self.message)
-            except JobCancelled:
-                self.is_cancelled = True
-            except DatabaseError as error:
-                logger.warning("progress of job %s is not stored: %s", self.job.pk, error)
-                connection.close_if_unusable_or_obsolete()
-        return self.is_cancelled
-
-
-def _work(job_id: str, do: Callable[[Job, _Watch], None]) -> None:
+def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     """Take the job, do it, and write down how it ended. Safe to run twice: a job is held by one worker, and finished once."""
     job = start_job(job_id=job_id)
     if job is None:
         return
     try:
-        do(job, _Watch(job))
+        with JobWatch(job) as watch:
+            do(job, watch)
     except JobCancelled:
         confirm_cancelled(job=job)
     except InvalidRequest as error:
@@ -76,20 +47,29 @@ def _work(job_id: str, do: Callable[[Job, _Watch], None]) -> None:
         fail_job(job=job, code="nothing_to_plan", message="A mission needs at least one UAV and one target.")
     except SoftTimeLimitExceeded:
         fail_job(job=job, code="took_too_long", message=f"No plan within {SOFT_LIMIT_S // 60} min. Split the mission.")
+    except DATABASE_AWAY:
+        raise  # the lease runs out, and the job is taken up again
     except Exception:
         fail_job(job=job, code="internal", message="The planner failed; the error is in the log.")
         raise
+
+
+def _noted_by(watch: JobWatch) -> OnPlanProgress:
+    def note(progress: PlanProgress) -> None:
+        watch.note(progress.share, progress.message, progress.draw)
+
+    return note
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def solve_plan(job_id: str) -> None:
     """A plan that is not stored: it becomes the job's result. Stopped on the way, it is the best plan found until then."""
 
-    def do(job: Job, watch: _Watch) -> None:
+    def do(job: Job, watch: JobWatch) -> None:
         plan = services.make_plan(
             request=services.request_from_json(job.parameters["request"]),
             stop=watch.stop,
-            on_progress=watch.on_progress,
+            on_progress=_noted_by(watch),
             search_s=settings.ROUTING_RULES.large_plan_search_s,
         )
         finish_job(job=job, result=plan, message=STOPPED if watch.is_cancelled else "Planned")
@@ -101,11 +81,11 @@ def solve_plan(job_id: str) -> None:
 def plan_mission(job_id: str) -> None:
     """A mission's plan, stored if the mission is still the one that was asked for; stopped on the way, the best found until then."""
 
-    def do(job: Job, watch: _Watch) -> None:
+    def do(job: Job, watch: JobWatch) -> None:
         services.plan_mission_for_job(
             job=job,
             stop=watch.stop,
-            on_progress=watch.on_progress,
+            on_progress=_noted_by(watch),
             search_s=settings.ROUTING_RULES.large_plan_search_s,
             message=lambda: STOPPED if watch.is_cancelled else "Planned",
         )

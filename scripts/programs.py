@@ -33,6 +33,7 @@ class Program:
         return [sys.executable, "-m", "scripts.start_program", *options, "--", *self.command]
 
 
+BACKLOG = "4096"  # connections that wait for a program: as many as Linux allows unless told (net.core.somaxconn)
 SERVERS_STAGE, PROGRAM_STAGE = 1, 2
 SERVERS = ("postgresql", "redis")
 
@@ -109,8 +110,11 @@ def _worker(places: Places, queue: str, processes: int) -> Program:
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
     granian = [sys.executable, "-m", "granian", "--interface", "wsgi", "--uds", str(sockets / "web.sock"), "--workers", "2"]
-    granian += ["--no-ws", "--blocking-threads", "4", "--backlog", "1024", "--http", "1", "--workers-kill-timeout", "10"]
+    granian += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "10"]
     granian += ["--respawn-failed-workers", "--respawn-interval", "0.5", "--log-level", "warning", "config.wsgi:application"]
+    live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
+    live += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "5", "--respawn-failed-workers", "--respawn-interval", "0.5"]
+    live += ["--log-level", "warning", "config.asgi:application"]
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
     return [
@@ -121,6 +125,14 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
             folder=places.process("web"),
             patience_s=20,
             stale_files=[sockets / "web.sock"],
+        ),
+        Program(
+            name="live",
+            stage=PROGRAM_STAGE,
+            command=live,
+            folder=places.process("live"),
+            patience_s=10,
+            stale_files=[sockets / "live.sock"],
         ),
         _worker(places, "data", 1),
         _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),

@@ -1,12 +1,16 @@
 """The reverse proxy (nginx): its configuration for one installation, without anything of the machine's own."""
 
 import os
+import resource
 from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import urlsplit
 
 from scripts.places import CannotStart, Places
 
+MOST_FILES = 65_536
+FILES_BESIDE = 256  # what nginx has open beside connections
+BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)
 LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
 
 # A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
@@ -121,6 +125,30 @@ def _proxied(location: str, name: str, headers: str, scheme: str, *, compression
         }}"""
 
 
+def _websockets(scheme: str) -> str:
+    """What /ws/ is passed on to. A socket may be silent for as long as the program that speaks on it, three times over."""
+    return f"""
+        location /ws/ {{
+            proxy_pass http://live;
+            proxy_http_version 1.1;
+            proxy_set_header Upgrade $http_upgrade;
+            proxy_set_header Connection $connection_upgrade;
+            proxy_set_header Host $http_host;
+            proxy_set_header X-Forwarded-For $visitor;
+            proxy_set_header X-Forwarded-Proto {scheme};
+            proxy_connect_timeout 5s;
+            proxy_read_timeout 60s;
+            proxy_send_timeout 30s;
+            proxy_buffering off;
+            error_page 502 504 = @api_unavailable;
+        }}"""
+
+
+def _file_limit() -> int:
+    """How many files nginx may have open: a connection to a browser is one, and the one behind it another."""
+    return min(MOST_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
+
+
 def configuration(places: Places, sockets: Path, port: int) -> str:
     """The text of nginx.conf."""
     folder = places.process("proxy")
@@ -158,9 +186,9 @@ daemon off;
 pid {_quoted(folder / "nginx.pid")};
 error_log stderr warn;
 worker_processes 1;
-worker_rlimit_nofile 8192;
+worker_rlimit_nofile {_file_limit()};
 events {{
-    worker_connections 4096;
+    worker_connections {_file_limit() - FILES_BESIDE};
 }}
 http {{
     types {{
@@ -177,7 +205,7 @@ http {{
     }}
     {visitor}
     log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
-    access_log /dev/stdout line;
+    access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
     tcp_nopush on;
@@ -191,14 +219,21 @@ http {{
     gzip_proxied any;
     gzip_vary on;
     gzip_min_length 512;
-    gzip_comp_level 4;
+    gzip_comp_level 2;
     gzip_types {COMPRESSED};
     upstream web {{
         server {_quoted(f"unix:{sockets / 'web.sock'}")} max_fails=0;
-        keepalive 16;
+        keepalive 64;
+    }}
+    upstream live {{
+        server {_quoted(f"unix:{sockets / 'live.sock'}")} max_fails=0;
+    }}
+    map $http_upgrade $connection_upgrade {{
+        "" close;
+        default upgrade;
     }}
     server {{
-        listen 127.0.0.1:{port};
+        listen 127.0.0.1:{port} backlog={BACKLOG};
         location /static/ {{
             alias {_quoted(f"{places.static}/")};
             add_header Cache-Control no-cache;
@@ -209,7 +244,7 @@ http {{
             alias "{_quoted(places.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
-        }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}{links}
+        }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}{links}{_websockets(scheme)}
 {failures_for_people}
 {failures_for_programs}
     }}

@@ -11,6 +11,7 @@ import argparse
 import ctypes
 import os
 import pwd
+import resource
 import signal
 from pathlib import Path
 
@@ -60,6 +61,9 @@ def main() -> None:
         raise OSError(ctypes.get_errno(), "prctl(PR_SET_PDEATHSIG)")
     if os.getppid() != supervisor:
         raise SystemExit("the supervisor has gone")
+    files, most_files = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if files < most_files:  # a thousand open pages are a thousand files
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most_files, most_files))
     os.execvp(options.command[0], options.command)  # noqa: S606 - no shell, the command is the supervisor's
 
 

@@ -146,8 +146,10 @@ def script_catalogue(language: str) -> dict[str, str | list[str]]:
 
 def missing_in_scripts(language: str) -> list[Text]:
     known = script_catalogue(language)
-    return [
-        text for text in script_texts() if isinstance(text, str) != isinstance(known.get(text if isinstance(text, str) else text[0]), str)
+    single = [text for text in script_texts() if isinstance(text, str)]
+    counted = [text for text in script_texts() if not isinstance(text, str)]
+    return [text for text in single if not isinstance(known.get(text), str)] + [
+        text for text in counted if not isinstance(known.get(text[0]), list)
     ]
 
 

@@ -12,7 +12,6 @@ from typing import Any
 
 from django.db import transaction
 from django.utils.translation import gettext as _
-from rest_framework.renderers import JSONRenderer
 from rest_framework.request import Request
 from rest_framework.response import Response
 
@@ -44,7 +43,7 @@ def idempotent(handler: Handler) -> Handler:
             kept = IdempotencyKey.objects.select_for_update().get(user=request.user, key=key)
             if kept.status is None:
                 response = handler(view, request, *args, **kwargs)
-                _keep(kept, response)
+                _keep(kept, response, view)
                 return response
         if kept.request_sha256 != digest:
             raise ApiProblem(422, "idempotency_conflict", _("This Idempotency-Key was used for another request."))
@@ -58,11 +57,11 @@ def _digest(request: Request) -> str:
     return hashlib.sha256(f"{request.method} {request.get_full_path()}\n{body}".encode()).hexdigest()
 
 
-def _keep(kept: IdempotencyKey, response: Response) -> None:
+def _keep(kept: IdempotencyKey, response: Response, view: Any) -> None:
     if response.status_code >= 400:  # an error that was returned, not raised: nothing of it stays
         transaction.set_rollback(True)
         return
     kept.status = response.status_code
     kept.headers = {name: response[name] for name in KEPT_HEADERS if name in response}
-    kept.body = json.loads(JSONRenderer().render(response.data) or b"null")
+    kept.body = json.loads(view.get_renderers()[0].render(response.data) or b"null")
     kept.save(update_fields=["status", "headers", "body"])

@@ -1,37 +1,49 @@
 """Carries a job's progress out of a long transaction, renews its lease, and brings the wish to stop back in.
 
 Inside a transaction nothing of a job's row may be written: nobody would see it before the end, and whoever wants to cancel would wait
-for it. So a thread of its own, with its own connection, does that once a second; also while the database works on one long statement.
+for it. So a thread of its own, with its own connection, does that once a second; also while the database works on one long statement,
+or the processor on one long search.
 """
 
 import logging
 import threading
+import time
+from collections.abc import Callable
 from types import TracebackType
+from typing import Any
 
-from django.db import DatabaseError, connection, connections
+from django.db import connection, connections
 
 from workspace.models import Job
-from workspace.services import JobCancelled, report_progress
+from workspace.services import JobCancelled, JobLost, report_progress
 
 logger = logging.getLogger(__name__)
 
 INTERVAL_S = 1.0
 
+Draw = Callable[[], Any]
+
 
 class JobWatch:
-    """`with JobWatch(job) as watch: work(progress=watch.progress)`. progress raises JobCancelled once somebody has asked to stop."""
+    """`with JobWatch(job) as watch: work(progress=watch.progress)`. progress raises JobCancelled once somebody has asked to stop.
+
+    Work that wants to keep what it has found uses `note` and `stop` instead, which raise nothing.
+    """
 
     def __init__(self, job: Job, *, interval_s: float = INTERVAL_S) -> None:
         self.job = job
         self._interval_s = interval_s
         self._share, self._message = job.progress, job.message
+        self._draw: Draw | None = None
         self._stopped = threading.Event()
         self._is_cancelled = threading.Event()
+        self._is_inline = False
+        self._reported_at_s = time.monotonic()
         self._thread = threading.Thread(target=self._run, name=f"watch of job {job.pk}", daemon=True)
 
     def __enter__(self) -> "JobWatch":
         if connection.in_atomic_block:  # a caller's own transaction, as in tests: the thread could see nothing of it
-            self._stopped.set()
+            self._is_inline = True
         else:
             self._thread.start()
         return self
@@ -41,13 +53,34 @@ class JobWatch:
         if self._thread.ident is not None:
             self._thread.join()
 
+    @property
+    def is_cancelled(self) -> bool:
+        return self._is_cancelled.is_set()
+
     def progress(self, message: str, share: float) -> None:
         self._message, self._share = message, share
         self.check()
 
     def check(self) -> None:
-        if self._is_cancelled.is_set():
+        if self.is_cancelled:
             raise JobCancelled
+
+    def note(self, share: float, message: str, draw: Draw | None = None) -> None:
+        """How far it is, and how to draw the best found so far: drawn once a report, however often there is a better one."""
+        self._share, self._message = share, message
+        if draw is not None:
+            self._draw = draw
+        self._report_inline()
+
+    def stop(self) -> bool:
+        """Whether somebody has asked to stop, or another worker has the job by now. Never raises: searches call it from C++."""
+        self._report_inline()
+        return self.is_cancelled
+
+    def _report_inline(self) -> None:
+        if self._is_inline and time.monotonic() - self._reported_at_s >= self._interval_s:
+            self._reported_at_s = time.monotonic()
+            self._report()
 
     def _run(self) -> None:
         try:
@@ -57,11 +90,29 @@ class JobWatch:
             connections.close_all()  # this thread's alone
 
     def _report(self) -> None:
+        best = self._drawn()
+        if not self._told(best) and best is not None:
+            self._told(None)  # the lease is renewed, whatever the best was
+
+    def _told(self, best: Any) -> bool:
         try:
-            report_progress(job=self.job, progress=self._share, message=self._message)
-        except JobCancelled:
+            report_progress(job=self.job, progress=self._share, message=self._message, best=best)
+        except JobLost:
             self._is_cancelled.set()
             self._stopped.set()
-        except DatabaseError as error:
-            logger.warning("progress of job %s is not stored: %s", self.job.pk, error)
+        except JobCancelled:
+            self._is_cancelled.set()  # the lease is renewed until the end: the best until now is still being written up
+        except Exception as error:
+            logger.warning("progress of job %s is not stored: %r", self.job.pk, error)
             connection.close_if_unusable_or_obsolete()
+            return False
+        return True
+
+    def _drawn(self) -> Any:
+        """The best so far; None where there is nothing new, or it cannot be drawn."""
+        draw, self._draw = self._draw, None
+        try:
+            return draw() if draw else None
+        except Exception:
+            logger.exception("the best of job %s so far cannot be drawn", self.job.pk)
+            return None

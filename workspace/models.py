@@ -185,10 +185,14 @@ class JobState(models.TextChoices):
     CANCELLED = "cancelled", "Cancelled"
 
 
+OPEN_STATES = (JobState.QUEUED, JobState.RUNNING)
+
+
 class Job(models.Model):
     """A promise to do something that takes longer than a request. The row is the truth; the queue is a hint.
 
-    A worker holds a job by a lease; a job whose lease has run out, or that was never picked up, is queued again.
+    A worker holds a job by a lease; a job whose lease has run out, or that was never picked up, is queued again. The number of the
+    attempt is the lease's own: whatever an earlier attempt still writes meets no row.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
@@ -199,6 +203,7 @@ class Job(models.Model):
     parameters = models.JSONField(default=dict)
     progress = models.FloatField(default=0.0, help_text="0 to 1")
     message = models.CharField(max_length=300, blank=True)
+    best = models.JSONField(null=True, blank=True, help_text="the best found so far, while it runs")
     result = models.JSONField(null=True, blank=True)
     error = models.JSONField(null=True, blank=True)
     attempts = models.PositiveSmallIntegerField(default=0)
@@ -214,14 +219,17 @@ class Job(models.Model):
             models.CheckConstraint(condition=models.Q(state__in=JobState.values), name="job_state_known"),
             models.CheckConstraint(condition=models.Q(progress__gte=0, progress__lte=1), name="job_progress_share"),
         ]
-        indexes = [models.Index(fields=["state", "lease_expires_at"], name="job_open_idx")]
+        indexes = [
+            models.Index(fields=["state", "lease_expires_at"], name="job_open_idx"),
+            models.Index(fields=["created_by"], condition=models.Q(state__in=["queued", "running"]), name="job_open_of_user_idx"),
+        ]
 
     def __str__(self) -> str:
         return f"{self.task} {self.id}"
 
     @property
     def is_open(self) -> bool:
-        return self.state in {JobState.QUEUED, JobState.RUNNING}
+        return self.state in OPEN_STATES
 
 
 class AuditEntry(models.Model):

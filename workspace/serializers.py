@@ -21,13 +21,17 @@ class ErrorSerializer(serializers.Serializer):
 
 
 class JobSerializer(serializers.ModelSerializer):
-    """Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`."""
+    """Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`.
+
+    While a plan is being searched for, `best` is the best until now, at most once a second: `value` and the lower `bound` in `unit`
+    (metres, or seconds where the longest route counts), how many targets are left out, and the `routes` as lines.
+    """
 
     state = serializers.ChoiceField(choices=JobState.choices)
 
     class Meta:
         model = Job
-        fields = ["id", "task", "state", "progress", "message", "result", "error", "created_at", "started_at", "finished_at"]
+        fields = ["id", "task", "state", "progress", "message", "best", "result", "error", "created_at", "started_at", "finished_at"]
         read_only_fields = fields
 
     def to_representation(self, instance: Job) -> dict[str, Any]:
@@ -39,10 +43,10 @@ class JobSerializer(serializers.ModelSerializer):
 
 
 class ListedJobSerializer(JobSerializer):
-    """A job in a list: without its result, which may be large."""
+    """A job in a list: without what may be large."""
 
     class Meta(JobSerializer.Meta):
-        fields = [name for name in JobSerializer.Meta.fields if name != "result"]
+        fields = [name for name in JobSerializer.Meta.fields if name not in {"best", "result"}]
         read_only_fields = fields
 
 

@@ -4,6 +4,7 @@ import hashlib
 import secrets
 from collections.abc import Iterable
 from datetime import datetime, timedelta
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -12,8 +13,10 @@ from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from workspace.live import publish_job
 from workspace.models import (
     DEFAULT_ORGANISATION_ID,
+    OPEN_STATES,
     ApiToken,
     AuditEntry,
     IdempotencyKey,
@@ -24,17 +27,29 @@ from workspace.models import (
     Role,
     User,
 )
+from workspace.prepared import prepared_rows
 
-LEASE_S = 60  # a worker that says nothing for so long is taken for dead
+LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
 QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
-MAX_ATTEMPTS = 3
+MAX_ATTEMPTS = 5
 IDEMPOTENCY_KEPT = timedelta(hours=48)
 USE_NOTED_EVERY = timedelta(minutes=1)
 ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: one at a time takes the role away, or an administrator's access
 
 
 class JobCancelled(Exception):
-    """The job was cancelled by a user, or another worker finished it."""
+    """A user has asked the job to stop."""
+
+
+class JobLost(JobCancelled):
+    """Another worker holds the job by now, or it has ended: whatever this one still finds is of no use."""
+
+
+class TooManyJobs(Exception):
+    """The user has as many jobs waiting and running as one may have."""
+
+    def __init__(self, limit: int) -> None:
+        super().__init__(_("%(limit)s of your jobs are waiting or running already. Wait for one, or stop it.") % {"limit": limit})
 
 
 class NoAdministratorLeft(ValueError):
@@ -55,11 +70,17 @@ def create_api_token(*, user: User, name: str, expires_at: datetime) -> str:
     return token
 
 
+# Nobody waits for the disk: after a failure of power the last uses of a fraction of a second may be forgotten.
+_NOTE_USE = """
+    WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
+    UPDATE workspace_apitoken SET last_used_at = %s FROM quick WHERE id = %s"""
+
+
 def note_use(*, token: ApiToken) -> None:
     """When it was used last, to the minute: a script that asks often writes seldom."""
     now = timezone.now()
     if token.last_used_at is None or now - token.last_used_at >= USE_NOTED_EVERY:
-        ApiToken.objects.filter(pk=token.pk).update(last_used_at=now)
+        prepared_rows(_NOTE_USE, [now, token.pk])
 
 
 def record_change(
@@ -87,6 +108,23 @@ def create_job(*, organisation: Organisation, created_by: User | None, task: str
     return Job.objects.create(organisation=organisation, created_by=created_by, task=task, parameters=parameters, message=message)
 
 
+def create_job_within(
+    limit: int, *, organisation: Organisation, created_by: User, task: str, parameters: dict[str, Any], message: str = ""
+) -> Job:
+    """As create_job, for a user with fewer than `limit` open jobs of this app. Raises TooManyJobs; of two at once the second waits."""
+    with transaction.atomic():
+        User.objects.select_for_update(no_key=True).filter(pk=created_by.pk).values_list("pk").first()
+        refuse_jobs_beyond(limit, user=created_by, task=task)
+        return create_job(organisation=organisation, created_by=created_by, task=task, parameters=parameters, message=message)
+
+
+def refuse_jobs_beyond(limit: int, *, user: User, task: str) -> None:
+    """Raises TooManyJobs when the user has `limit` open jobs, or more, of the app that the task is of."""
+    app = task.partition(".")[0]
+    if Job.objects.filter(created_by=user, state__in=OPEN_STATES, task__startswith=f"{app}.").count() >= limit:
+        raise TooManyJobs(limit)
+
+
 def start_job(*, job_id: UUID | str) -> Job | None:
     """Take the job for this worker, or return None if it is finished, cancelled or held by another worker."""
     now = timezone.now()
@@ -106,18 +144,24 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         job.attempts += 1
         job.started_at = now
         job.lease_expires_at = now + timedelta(seconds=LEASE_S)
+        job.best = None
         job.save()
+        transaction.on_commit(partial(publish_job, job.pk))
     return job
 
 
-def report_progress(*, job: Job, progress: float, message: str = "") -> None:
-    """Store how far the job is and renew its lease. Raises JobCancelled when the user has asked to stop."""
-    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None)
-    changed = held.update(
-        progress=min(max(progress, 0.0), 1.0), message=message[:300], lease_expires_at=timezone.now() + timedelta(seconds=LEASE_S)
-    )
-    if not changed:
-        raise JobCancelled
+def report_progress(*, job: Job, progress: float, message: str = "", best: Any = None) -> None:
+    """Store how far the job is, the best found so far if there is something new, and renew its lease.
+
+    Raises JobCancelled when the user has asked to stop (the lease is renewed all the same: what was found is still to be kept), and
+    JobLost when this worker does not hold the job any more.
+    """
+    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
+    values: dict[str, Any] = {"lease_expires_at": timezone.now() + timedelta(seconds=LEASE_S)}
+    told = values | {"progress": min(max(progress, 0.0), 1.0), "message": message[:300]} | ({} if best is None else {"best": best})
+    if not held.filter(cancel_requested_at=None).update(**told):
+        raise JobCancelled if held.update(**values) else JobLost
+    publish_job(job.pk)
 
 
 def cancel_is_requested(*, job: Job) -> bool:
@@ -126,22 +170,20 @@ def cancel_is_requested(*, job: Job) -> bool:
 
 def finish_job(*, job: Job, result: Any = None, message: str = "") -> bool:
     """Store the result once. False if another worker finished the job, or the user cancelled it, in the meantime."""
-    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
-    return bool(
-        held.update(
-            state=JobState.DONE, progress=1.0, result=result, message=message[:300], finished_at=timezone.now(), lease_expires_at=None
-        )
-    )
+    return _end(job, state=JobState.DONE, progress=1.0, result=result, message=message[:300])
 
 
 def fail_job(*, job: Job, code: str, message: str) -> None:
-    Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts).update(
-        state=JobState.FAILED,
-        error={"code": code, "message": message},
-        message=message[:300],
-        finished_at=timezone.now(),
-        lease_expires_at=None,
-    )
+    _end(job, state=JobState.FAILED, error={"code": code, "message": message}, message=message[:300])
+
+
+def _end(job: Job, **values: Any) -> bool:
+    """End the job if this attempt still holds it. An attempt whose lease another one has taken ends nothing."""
+    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
+    ended = bool(held.update(**values, best=None, finished_at=timezone.now(), lease_expires_at=None))
+    if ended:
+        transaction.on_commit(partial(publish_job, job.pk))
+    return ended
 
 
 def _give_up(job: Job) -> None:
@@ -150,9 +192,7 @@ def _give_up(job: Job) -> None:
 
 def confirm_cancelled(*, job: Job) -> None:
     """A worker has seen the request to stop and has stopped. Nothing happens if another worker has taken the job over since."""
-    Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts).update(
-        state=JobState.CANCELLED, message="Cancelled", finished_at=timezone.now(), lease_expires_at=None
-    )
+    _end(job, state=JobState.CANCELLED, message="Cancelled")
 
 
 def cancel_job(*, job: Job) -> Job:
@@ -168,6 +208,7 @@ def cancel_job(*, job: Job) -> Job:
                 locked.finished_at = now
                 locked.lease_expires_at = None
             locked.save()
+            transaction.on_commit(partial(publish_job, locked.pk))
     return locked
 
 
@@ -178,6 +219,7 @@ def requeue_lost_jobs() -> list[Job]:
     """
     now = timezone.now()
     patience = timedelta(seconds=QUEUE_PATIENCE_S)
+    lost = []
     with transaction.atomic():
         for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):
             if job.cancel_requested_at is not None:
@@ -185,11 +227,10 @@ def requeue_lost_jobs() -> list[Job]:
             elif job.attempts >= MAX_ATTEMPTS:
                 _give_up(job)
             else:
-                Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=None)
-        waiting = Job.objects.select_for_update(skip_locked=True).filter(
-            Q(lease_expires_at=None) | Q(lease_expires_at__lt=now), state=JobState.QUEUED, created_at__lt=now - patience
-        )
-        jobs = list(waiting)
+                Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=now)
+                lost.append(job.pk)  # sent at once, however new it is
+        is_due = Q(pk__in=lost) | Q(lease_expires_at=None, created_at__lt=now - patience) | Q(lease_expires_at__lt=now)
+        jobs = list(Job.objects.select_for_update(skip_locked=True).filter(is_due, state=JobState.QUEUED))
         Job.objects.filter(pk__in=[job.pk for job in jobs]).update(lease_expires_at=now + patience)
     return jobs
 

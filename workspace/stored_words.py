@@ -11,6 +11,7 @@ TEMPLATES = (
     gettext_noop("Looking up the targets"),
     gettext_noop("Measuring the ways between the targets"),
     gettext_noop("Working out heights and checking every leg"),
+    gettext_noop("Working out what the locked parts cost"),
     gettext_noop("Planned"),
     gettext_noop("Stopped; the best plan until then is kept"),
     gettext_noop("Cancelled"),

@@ -10,7 +10,7 @@ from rest_framework.views import APIView
 
 from workspace import selectors, services
 from workspace.errors import ApiProblem
-from workspace.models import Job, JobState, User
+from workspace.models import OPEN_STATES, Job, JobState, User
 from workspace.paging import page_of
 from workspace.permissions import CURATORS, PLANNERS
 from workspace.schema import PAGE_PARAMETERS
@@ -28,7 +28,12 @@ class JobList(APIView):
     @extend_schema(
         operation_id="list_jobs",
         summary="Jobs of one's organisation, newest first",
-        parameters=[OpenApiParameter("state", str, enum=JobState.values), *PAGE_PARAMETERS],
+        parameters=[
+            OpenApiParameter("state", str, enum=JobState.values),
+            OpenApiParameter("open", bool, description="true: only those that wait or run"),
+            OpenApiParameter("mine", bool, description="true: only those that one has started oneself"),
+            *PAGE_PARAMETERS,
+        ],
         responses=JobPageSerializer,
     )
     def get(self, request: Request) -> Response:
@@ -38,7 +43,11 @@ class JobList(APIView):
                 message = f"Known states are {', '.join(JobState.values)}."
                 raise ApiProblem(400, "invalid", f"state: {message}", details={"state": [message]})
             jobs = jobs.filter(state=state)
-        page = page_of(request, jobs.defer("result", "parameters"), order=("-created_at", "-pk"))
+        if request.query_params.get("open") == "true":
+            jobs = jobs.filter(state__in=OPEN_STATES)
+        if request.query_params.get("mine") == "true":
+            jobs = jobs.filter(created_by=request.user)
+        page = page_of(request, jobs.defer("best", "result", "parameters"), order=("-created_at", "-pk"))
         return Response({"results": ListedJobSerializer(page.rows, many=True).data, "next": page.next})
 
 

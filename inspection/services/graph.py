@@ -11,6 +11,7 @@ from django.db import connection, transaction
 from inspection.graph.build import build
 from inspection.graph.snapshot_file import to_bytes
 from inspection.models import GraphSnapshot
+from inspection.selectors.graph import write_planner_files
 from inspection.selectors.ground import ground_revision
 from inspection.selectors.ground_data import ground_data, has_flyable_assets
 
@@ -66,6 +67,8 @@ def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnap
         arrays_sha256=sha256(content).hexdigest(),
         build_s=perf_counter() - started_s,
     )
+    # Before the commit: whoever sees the snapshot finds its files and its index.
+    write_planner_files(snapshot.version, content, snapshot.arrays_sha256)
     newest = list(GraphSnapshot.objects.values_list("version", flat=True)[:KEPT_SNAPSHOTS])
     GraphSnapshot.objects.filter(version__lt=newest[-1]).delete()
     return snapshot

@@ -22,15 +22,16 @@ def legs_that_meet(line: NDArray[np.float64], zones: Sequence[BaseGeometry]) -> 
     """Pairs (leg, zone) that have a point in common; line has shape (n, 2), a leg is straight in lon/lat."""
     if len(line) < 2 or not len(zones):
         return []
-    legs = shapely.linestrings(np.stack([line[:-1], line[1:]], axis=1))
     west, south, east, north = line[:, 0].min(), line[:, 1].min(), line[:, 0].max(), line[:, 1].max()
+    boxes = shapely.bounds(zones)
+    near = ~((boxes[:, 0] > east) | (boxes[:, 2] < west) | (boxes[:, 1] > north) | (boxes[:, 3] < south))
+    if not near.any():
+        return []
+    legs = shapely.linestrings(np.stack([line[:-1], line[1:]], axis=1))
     meetings = []
-    for number, zone in enumerate(zones):
-        box = shapely.bounds(zone)
-        if box[0] > east or box[2] < west or box[1] > north or box[3] < south:
-            continue
-        shapely.prepare(zone)
-        meetings += [(int(leg), number) for leg in np.flatnonzero(shapely.intersects(zone, legs))]
+    for number in np.flatnonzero(near).tolist():
+        shapely.prepare(zones[number])
+        meetings += [(int(leg), number) for leg in np.flatnonzero(shapely.intersects(zones[number], legs))]
     return meetings
 
 

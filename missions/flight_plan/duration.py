@@ -1,13 +1,12 @@
 """How long a route takes."""
 
-from collections.abc import Sequence
-from itertools import pairwise
+import numpy as np
 
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import Waypoint
+from missions.flight_plan.waypoints import Waypoints
 
 
-def duration_s(waypoints: Sequence[Waypoint], *, length_m: float, cruise_speed_mps: float, lands: bool, rules: FlightRules) -> float:
+def duration_s(waypoints: Waypoints, *, length_m: float, cruise_speed_mps: float, lands: bool, rules: FlightRules) -> float:
     """Seconds from take-off to landing, or to the hover at the end: level flight, then every climb, then every hold.
 
     Climbs are added to the level flight although a UAV does both at once: this errs on the long side. Descents between waypoints are
@@ -15,8 +14,9 @@ def duration_s(waypoints: Sequence[Waypoint], *, length_m: float, cruise_speed_m
     """
     if not waypoints:
         return 0.0
-    vertical_m = waypoints[0].point.agl_m + sum(abs(right.relative_m - left.relative_m) for left, right in pairwise(waypoints))
+    relative_m = np.array(waypoints.relative_m)
+    vertical_m = waypoints.points.agl_m[0] + float(np.abs(np.diff(relative_m)).sum())
     if lands:
-        vertical_m += waypoints[-1].point.agl_m
-    hold_s = sum(waypoint.point.task.hold_s for waypoint in waypoints if waypoint.point.task is not None)
+        vertical_m += waypoints.points.agl_m[-1]
+    hold_s = sum(task.hold_s for task in waypoints.points.task if task is not None)
     return length_m / cruise_speed_mps + vertical_m / rules.climb_speed_mps + hold_s

@@ -1,23 +1,31 @@
 """How high a UAV flies over what, and what that is above sea level and above its take-off."""
 
 import math
-from collections.abc import Callable, Sequence
-from itertools import pairwise
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
+from inspection.graph.flyable import UNTAGGED_HEIGHT_M
+from inspection.graph.inspection_graph import NodeKind
 from inspection.terrain.heights import amsl_m, counted_from
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import RoutePoint, Waypoint, point_between
+from missions.flight_plan.waypoints import RoutePoints, Waypoints, point_between
 
 FloatArray = NDArray[np.float64]
 GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
 
 SAMPLE_SPACING_M = 50.0  # how densely the ground under a leg is looked at
 # Heights where no tag states one, towards the upper end of what is common, so that the error is on the safe side.
-DEFAULT_HEIGHT_M = {"pole": 14.0, "portal": 20.0, "tower": 45.0, "line": 45.0, "railway": 8.0, "bridge": 30.0}
+DEFAULT_HEIGHT_M = {
+    "pole": 14.0,
+    "portal": 20.0,
+    "tower": UNTAGGED_HEIGHT_M[NodeKind.SUPPORT],
+    "line": UNTAGGED_HEIGHT_M[NodeKind.LINE_VERTEX],
+    "railway": UNTAGGED_HEIGHT_M[NodeKind.RAILWAY],
+    "bridge": UNTAGGED_HEIGHT_M[NodeKind.BRIDGE],
+}
 LINE_HEIGHT_M = ((300_000, 60.0), (100_000, 45.0), (50_000, 30.0), (1, 14.0))  # supports of a line of so many volts or more
 
 
@@ -35,9 +43,10 @@ def is_above_limit(height_m: float, rules: FlightRules) -> bool:
     return height_m + rules.clearance_m > rules.max_agl_m
 
 
-def pass_agl_m(height_m: float, rules: FlightRules) -> float:
-    """Height above ground at which an asset is passed."""
-    return max(rules.transit_agl_m, height_m + rules.clearance_m)
+def pass_agl_m(heights_m: FloatArray, rules: FlightRules) -> FloatArray:
+    """Heights above ground at which assets of these heights are passed, (n,)."""
+    passed_m: FloatArray = np.maximum(rules.transit_agl_m, heights_m + rules.clearance_m)
+    return passed_m
 
 
 def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
@@ -45,18 +54,16 @@ def inspection_agl_m(height_m: float, rules: FlightRules) -> float:
     return height_m + rules.clearance_m if height_m > 0 else rules.transit_agl_m
 
 
-def with_heights(
-    points: Sequence[RoutePoint], ground_heights_m: GroundHeights | None, rules: FlightRules
-) -> tuple[tuple[Waypoint, ...], bool]:
+def with_heights(points: RoutePoints, ground_heights_m: GroundHeights | None, rules: FlightRules) -> tuple[Waypoints, bool]:
     """Waypoints with all three heights, and whether flat ground had to be assumed: without a terrain model, or where it has a gap.
 
     Where the ground between two points bulges or sags by more than the tolerance, waypoints are put in on the straight lon/lat line
     between them. If the ground is unknown in even one place, nothing is put in and no height above sea level is given.
     """
-    flat = tuple(Waypoint(point, None, point.agl_m) for point in points)
+    flat = Waypoints(points, None, points.agl_m)
     if ground_heights_m is None or not points:
         return flat, bool(points)
-    position = np.array([point.position for point in points])
+    position = points.positions()
     shares = [np.arange(count) / count for count in _sample_counts(position)]  # from each leg's start up to but without its end
     samples = [start + share[:, None] * (end - start) for start, end, share in zip(position[:-1], position[1:], shares, strict=True)]
     ground_m = ground_heights_m(np.concatenate([*samples, position[-1:]]))
@@ -64,27 +71,28 @@ def with_heights(
         return flat, True
 
     take_off_m = float(ground_m[0])
-    waypoints = []
-    first = 0
-    for (left, right), share in zip(pairwise(points), shares, strict=True):
+    flown, under = RoutePoints(), [take_off_m]
+    first = kept = 0
+    for leg, share in enumerate(shares):
         under_m = ground_m[first : first + len(share) + 1]  # the next leg's first sample is this leg's end
         first += len(share)
-        waypoints.append(_waypoint(left, float(under_m[0]), take_off_m))
-        for bend in _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m):
-            waypoints.append(_waypoint(point_between(left, right, float(share[bend])), float(under_m[bend]), take_off_m))
-    waypoints.append(_waypoint(points[-1], float(ground_m[-1]), take_off_m))
-    return tuple(waypoints), False
+        bends = _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m)
+        if bends:
+            flown.extend(points, kept, leg + 1)
+            kept = leg + 1
+            for bend in bends:
+                flown.append(point_between(points[leg], points[leg + 1], float(share[bend])))
+                under.append(float(under_m[bend]))
+        under.append(float(under_m[-1]))
+    flown.extend(points, kept, len(points))
+    ground = np.array(under)
+    above_sea_m = amsl_m(np.array(flown.agl_m), "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
+    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
+    return Waypoints(flown, above_sea_m.tolist(), above_take_off_m.tolist()), False
 
 
 def _sample_counts(position: FloatArray) -> list[int]:
     return [max(1, math.ceil(length_m / SAMPLE_SPACING_M)) for length_m in distance_m(position[:-1], position[1:]).tolist()]
-
-
-def _waypoint(point: RoutePoint, ground_m: float, take_off_m: float) -> Waypoint:
-    ground = np.array([ground_m])
-    above_sea_m = amsl_m(np.array([point.agl_m]), "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
-    above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
-    return Waypoint(point, float(above_sea_m[0]), float(above_take_off_m[0]))
 
 
 def _bends(share: FloatArray, ground_m: FloatArray, tolerance_m: float) -> list[int]:

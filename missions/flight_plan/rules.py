@@ -16,3 +16,8 @@ class FlightRules:
     def __post_init__(self) -> None:
         if not 0 < self.transit_agl_m <= self.max_agl_m:
             raise ValueError(f"transit_agl_m ({self.transit_agl_m}) must be above 0 and not above max_agl_m ({self.max_agl_m})")
+
+    @property
+    def tallest_m(self) -> float:
+        """An asset that is higher cannot be flown over with clearance."""
+        return self.max_agl_m - self.clearance_m

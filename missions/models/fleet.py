@@ -13,6 +13,7 @@ class EndAction(models.TextChoices):
     HOVER = "hover", "Hover at the last target"
     RETURN = "return", "Return to start"
     LAND = "land", "Land at the last target"
+    BASE = "base", "Land at the nearest base"
 
 
 class UavType(models.Model):

@@ -4,12 +4,15 @@ import uuid
 
 from django.conf import settings
 from django.contrib.gis.db import models
+from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
 from django.db.models.functions import Now
 
 from inspection.models import Asset
 from missions.models.fleet import EndAction, Uav
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
+
+LONGEST_SENSOR = 100
 
 
 class MissionState(models.TextChoices):
@@ -46,6 +49,8 @@ class Mission(models.Model):
     total_length_m = models.FloatField(null=True, blank=True)
     longest_route_m = models.FloatField(null=True, blank=True)
     last_plan = models.JSONField(null=True, blank=True, help_text="summary of the plan before the present one, to compare with")
+    locks = models.JSONField(default=list, blank=True, help_text="runs of targets that one UAV flies in this order; targets by sequence")
+    plan_quality = models.JSONField(null=True, blank=True, help_text="bound, gap and method of the plan, and what its locks cost")
     plan_warnings = models.JSONField(default=list, blank=True, help_text="what the plan says about UAVs that cannot start")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)
@@ -75,12 +80,17 @@ class MissionUav(models.Model):
     max_range_m = models.FloatField(null=True, blank=True)
     cruise_speed_mps = models.FloatField()
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
+    most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
+    sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
 
     class Meta:
         ordering = ["sequence"]
         verbose_name = "UAV in a mission"
         verbose_name_plural = "UAVs in missions"
-        constraints = [models.UniqueConstraint(fields=["mission", "sequence"], name="mission_uav_sequence")]
+        constraints = [
+            models.UniqueConstraint(fields=["mission", "sequence"], name="mission_uav_sequence"),
+            models.CheckConstraint(condition=Q(most_targets=None) | Q(most_targets__gte=1), name="mission_uav_does_something"),
+        ]
 
     def __str__(self) -> str:
         return self.name
@@ -94,6 +104,12 @@ class TargetState(models.TextChoices):
     FAILED = "failed", "Failed"
 
 
+class TargetPriority(models.TextChoices):
+    LOW = "low", "Low"
+    NORMAL = "normal", "Normal"
+    HIGH = "high", "High"
+
+
 class InspectionTarget(models.Model):
     """What is to be inspected: an asset, a point or stretch on one, or a bare position. It outlives a vanished asset."""
 
@@ -104,6 +120,9 @@ class InspectionTarget(models.Model):
     position = models.PointField(srid=4326, null=True, blank=True, help_text="empty: the asset's centre, or the whole line")
     stretch = models.LineStringField(srid=4326, null=True, blank=True, help_text="two points on the asset; empty = not a stretch")
     task = models.JSONField(default=dict, help_text="see missions/routing/problem.py, Task")
+    priority = models.CharField(max_length=6, choices=TargetPriority.choices, default=TargetPriority.NORMAL)
+    uav_name = models.CharField(max_length=100, blank=True, help_text="the only UAV that may do it; empty = any")
+    sensor = models.CharField(max_length=LONGEST_SENSOR, blank=True, help_text="that its UAV must have; empty = any")
     state = models.CharField(max_length=20, choices=TargetState.choices, default=TargetState.PENDING)
     unassigned_reason = models.CharField(max_length=40, blank=True)
     unassigned_message = models.CharField(max_length=500, blank=True)
@@ -113,6 +132,7 @@ class InspectionTarget(models.Model):
         constraints = [
             models.UniqueConstraint(fields=["mission", "sequence"], name="target_sequence", deferrable=models.Deferrable.DEFERRED),
             models.CheckConstraint(condition=Q(state__in=TargetState.values), name="target_state_known"),
+            models.CheckConstraint(condition=Q(priority__in=TargetPriority.values), name="target_priority_known"),
         ]
 
     def __str__(self) -> str:

@@ -2,17 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.access import clear_legs, node_locator
-from inspection.graph.inspection_graph import InspectionGraph, NodeKind
+from inspection.graph.access import clear_legs
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.legs import Attachment, DirectLeg
 from inspection.graph.nearness import chord, on_unit_sphere
-from inspection.graph.shortest_paths import Attachment, DirectLeg, Travel, travel_between
+from inspection.graph.route_index import asset_places, node_tree
+from inspection.graph.ways import Travel, travel_between
 from inspection.graph.zone_index import ZoneIndex
 
 FloatArray = NDArray[np.float64]
@@ -37,34 +39,11 @@ class AccessRules:
     zone_clearance_m: float
 
 
-class _AssetPlaces:
-    """Which node stands for a tower or bridge, and which edges for a line or railway."""
-
-    def __init__(self, graph: InspectionGraph) -> None:
-        single = np.flatnonzero(np.isin(graph.node_kind, (NodeKind.SUPPORT, NodeKind.BRIDGE)))
-        self.node_of = dict(zip(graph.node_asset[single].tolist(), single.tolist(), strict=True))
-        self._edges_by_asset = np.argsort(graph.edge_asset, kind="stable")
-        self._assets = graph.edge_asset[self._edges_by_asset]
-
-    def edges_of(self, asset: int) -> NDArray[np.int64]:
-        first, last = np.searchsorted(self._assets, [asset, asset + 1])
-        return self._edges_by_asset[first:last]
-
-
-_places_of_graph: WeakKeyDictionary[InspectionGraph, _AssetPlaces] = WeakKeyDictionary()
-
-
-def _asset_places(graph: InspectionGraph) -> _AssetPlaces:
-    if graph not in _places_of_graph:
-        _places_of_graph[graph] = _AssetPlaces(graph)
-    return _places_of_graph[graph]
-
-
 def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> list[Attachment]:
     """How a terminal meets the network: at its own node, along its own line, else over access legs that are clear of zones."""
     if terminal.asset is not None:
-        places = _asset_places(graph)
-        node = places.node_of.get(terminal.asset)
+        places = asset_places(graph)
+        node = places.node_of(terminal.asset)
         if node is not None and tuple(graph.position[node]) == tuple(terminal.position):
             return [Attachment(node, 0.0, 0.0)]
         along = _along_own_line(graph, zones, terminal.position, places.edges_of(terminal.asset), rules)
@@ -81,11 +60,8 @@ def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, ru
 
 def is_near_network(graph: InspectionGraph, position: LonLat, radius_m: float) -> bool:
     """Whether any node lies within the radius, zones or not."""
-    tree = node_locator(graph).tree
-    if tree is None:
-        return False
-    _, nearest = tree.query(on_unit_sphere(np.array([position]))[0])
-    return float(distance_m(graph.position[nearest], np.array(position))[0]) <= radius_m
+    nearest = node_tree(graph).nearest(position, 1)
+    return bool(len(nearest)) and float(distance_m(graph.position[nearest], np.array([position]))[0]) <= radius_m
 
 
 def _along_own_line(
@@ -114,7 +90,7 @@ def _along_own_line(
 
 def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLat]) -> float:
     """The greatest tagged height among the supports at the vertices of a line's stretch; 0 if none is tagged."""
-    nodes = np.unique(graph.edge[_asset_places(graph).edges_of(asset)])
+    nodes = np.unique(graph.edge[asset_places(graph).edges_of(asset)])
     tagged = nodes[graph.node_height_m[nodes] > 0]
     vertices = {tuple(position) for position in course}
     heights_m = [float(graph.node_height_m[node]) for node in tagged if tuple(graph.position[node].tolist()) in vertices]
@@ -140,7 +116,7 @@ def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: Z
 
 @dataclass(frozen=True, eq=False)
 class Ways:
-    """Metres and paths between u starts and v visits: the ends of each are terminals."""
+    """Metres and paths between u starts and v visits, and on to the bases: the ends of each are terminals."""
 
     travel: Travel
     uavs: int
@@ -148,6 +124,7 @@ class Ways:
     uav_legs: tuple[tuple[Attachment, ...], ...]  # how each start meets the network; none: not at all
     entry_legs: tuple[tuple[Attachment, ...], ...]  # how each visit's entry does, and its exit
     exit_legs: tuple[tuple[Attachment, ...], ...]
+    bases: int = 0
 
     @property
     def from_start_m(self) -> FloatArray:
@@ -159,7 +136,21 @@ class Ways:
 
     @property
     def to_start_m(self) -> FloatArray:
-        return self.travel.length_m[self.uavs :, self.visits :]
+        return self.travel.length_m[self.uavs :, self.visits : self.visits + self.uavs]
+
+    @cached_property
+    def nearest_base(self) -> NDArray[np.int64]:
+        """The base to which the way from each visit's end costs least, (v,); any where none can be reached."""
+        cost = self.travel.cost[self.uavs :, self.visits + self.uavs :]
+        return cost.argmin(axis=1) if self.bases else np.zeros(self.visits, dtype=np.int64)
+
+    @cached_property
+    def to_base_m(self) -> FloatArray:
+        """Metres from each visit's end to its nearest base, (v,); inf where none can be reached."""
+        if not self.bases:
+            return np.full(self.visits, np.inf)
+        to_base_m: FloatArray = self.travel.length_m[self.uavs + np.arange(self.visits), self.visits + self.uavs + self.nearest_base]
+        return to_base_m
 
     def out(self, uav: int, visit: int) -> NDArray[np.int64]:
         return self.travel.path(uav, visit)
@@ -170,6 +161,9 @@ class Ways:
     def home(self, visit: int, uav: int) -> NDArray[np.int64]:
         return self.travel.path(self.uavs + visit, self.visits + uav)
 
+    def to_base(self, visit: int) -> NDArray[np.int64]:
+        return self.travel.path(self.uavs + visit, self.visits + self.uavs + int(self.nearest_base[visit]))
+
 
 def ways_between(
     graph: InspectionGraph,
@@ -178,16 +172,17 @@ def ways_between(
     entries: Sequence[Terminal],
     exits: Sequence[Terminal],
     rules: AccessRules,
+    bases: Sequence[Terminal] = (),
 ) -> Ways:
-    """Least-cost ways from starts and exits to entries and starts.
+    """Least-cost ways from starts and exits to entries, starts and bases.
 
     A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
     """
     legs_of: dict[Terminal, list[Attachment]] = {}
-    for terminal in [*starts, *entries, *exits]:
+    for terminal in [*starts, *entries, *exits, *bases]:
         if terminal not in legs_of:
             legs_of[terminal] = attachments(graph, zones, terminal, rules)
-    sources, sinks = [*starts, *exits], [*entries, *starts]
+    sources, sinks = [*starts, *exits], [*entries, *starts, *bases]
     direct = direct_legs(sources, sinks, zones, rules)
 
     def travel() -> Travel:
@@ -207,4 +202,5 @@ def ways_between(
         uav_legs=tuple(tuple(legs_of[place]) for place in starts),
         entry_legs=tuple(tuple(legs_of[place]) for place in entries),
         exit_legs=tuple(tuple(legs_of[place]) for place in exits),
+        bases=len(bases),
     )

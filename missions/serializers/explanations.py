@@ -48,6 +48,8 @@ class ReachSerializer(serializers.Serializer):
     uav_id = serializers.IntegerField(allow_null=True)
     is_in_mission = serializers.BooleanField(help_text="false: another UAV of the fleet")
     is_grounded = serializers.BooleanField(help_text="it stands inside a zone, is retired or in maintenance")
+    is_allowed = serializers.BooleanField(help_text="the target is tied to no other UAV, and this one has its sensor")
+    most_targets = serializers.IntegerField(allow_null=True, help_text="that it may do at most")
     needed_m = serializers.FloatField(allow_null=True, help_text="the range it needs; null: there is no way")
     max_range_m = serializers.FloatField(allow_null=True)
     is_enough = serializers.BooleanField()
@@ -58,6 +60,7 @@ class TargetExplanationSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[
             "asset_gone", "inside_zone", "above_height_limit", "too_far_from_network", "no_path", "beyond_range", "not_with_the_others",
+            "not_allowed",
         ]
     )  # fmt: skip
     zones = ZoneNameSerializer(many=True, help_text="that hold it, or that bar the ways to it")
@@ -70,6 +73,8 @@ class TargetExplanationSerializer(serializers.Serializer):
     height_m = serializers.FloatField(allow_null=True)
     needed_height_m = serializers.FloatField(allow_null=True, help_text="above ground, to inspect it")
     height_limit_m = serializers.FloatField()
+    tied_to = serializers.CharField(allow_null=True, help_text="name of the only UAV that may do it")
+    sensor = serializers.CharField(help_text="that its UAV must have; may be empty")
     uavs = ReachSerializer(many=True)
 
 

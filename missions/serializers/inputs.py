@@ -8,13 +8,28 @@ from rest_framework import serializers
 
 from missions.fields import FiniteFloatField, PositionField
 from missions.fleet_selectors import uavs_of_organisation
-from missions.models import EndAction, Objective, Uav
+from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
-from missions.services import PlanRequest, TargetRequest, UavRequest
-
-FARTHEST_RANGE_M = 1e7
-FASTEST_MPS = 100.0
+from missions.serializers.limits import (
+    FARTHEST_RANGE_M,
+    FASTEST_MPS,
+    LARGEST_KEY,
+    LONGEST_SENSOR,
+    LONGEST_UAV_NAME,
+    MOST_SENSORS_OF_UAV,
+    MOST_TARGETS,
+)
+from missions.services import (
+    InvalidRequest,
+    LockRequest,
+    PlanRequest,
+    TargetRequest,
+    UavRequest,
+    priority_from_json,
+    refuse_contradictions,
+    with_bases,
+)
 
 
 class TaskSerializer(serializers.Serializer):
@@ -32,11 +47,20 @@ class UavInputSerializer(serializers.Serializer):
     """A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position."""
 
     id = serializers.IntegerField(required=False, allow_null=True)
-    name = serializers.CharField(max_length=100, required=False)
+    name = serializers.CharField(max_length=LONGEST_UAV_NAME, required=False)
     position = PositionField(required=False)
     max_range_m = FiniteFloatField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")
     cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    most_targets = serializers.IntegerField(
+        required=False, allow_null=True, min_value=1, max_value=MOST_TARGETS, help_text="null or missing: not limited"
+    )
+    sensors = serializers.ListField(
+        child=serializers.CharField(max_length=LONGEST_SENSOR),
+        required=False,
+        max_length=MOST_SENSORS_OF_UAV,
+        help_text="missing: the stored UAV's",
+    )
 
     def validate_max_range_m(self, value: float | None) -> float | None:
         return above_zero(value)
@@ -60,10 +84,19 @@ def above_zero(value: float | None) -> float | None:
 class TargetInputSerializer(serializers.Serializer):
     """An asset, a point (`position`) or `stretch` on one, or a bare `position`."""
 
-    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=2**63 - 1)
+    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=LARGEST_KEY)
     position = PositionField(required=False, allow_null=True)
     stretch = serializers.ListField(child=PositionField(), min_length=2, max_length=2, required=False, allow_null=True)
     task = TaskSerializer(required=False, allow_null=True)
+    priority = serializers.ChoiceField(
+        choices=TargetPriority.choices, required=False, help_text="a high one is never left out for any number of lower ones"
+    )
+    uav = serializers.CharField(
+        max_length=LONGEST_UAV_NAME, required=False, allow_null=True, help_text="name of the only UAV of the request that may do it"
+    )
+    sensor = serializers.CharField(
+        max_length=LONGEST_SENSOR, required=False, allow_null=True, allow_blank=True, help_text="only UAVs that have it may do it"
+    )
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if attrs.get("asset") is None and attrs.get("position") is None:
@@ -73,6 +106,33 @@ class TargetInputSerializer(serializers.Serializer):
         return attrs
 
 
+class LockListSerializer(serializers.ListSerializer):
+    """Counts before it looks at each: a target can be locked once, so that more than a plan may have are too many."""
+
+    def to_internal_value(self, data: Any) -> list[dict[str, Any]]:
+        most = settings.ROUTING_RULES.max_targets
+        if isinstance(data, list):
+            _no_more_than(most, data, "locks")
+            targets = [lock.get("targets") for lock in data if isinstance(lock, dict)]
+            _no_more_than(most, [target for listed in targets if isinstance(listed, list) for target in listed], "locked targets")
+        found: list[dict[str, Any]] = super().to_internal_value(data)
+        return found
+
+
+class LockSerializer(serializers.Serializer):
+    """Targets that one UAV flies in this order with nothing between, if wished as the first or the last of its route."""
+
+    uav = serializers.CharField(max_length=LONGEST_UAV_NAME, help_text="name of a UAV of the request")
+    targets = serializers.ListField(
+        child=serializers.IntegerField(min_value=0), allow_empty=False, help_text="indices of the targets, in the order flown"
+    )
+    at_start = serializers.BooleanField(required=False, default=False)
+    at_end = serializers.BooleanField(required=False, default=False)
+
+    class Meta:
+        list_serializer_class = LockListSerializer
+
+
 class OptionsSerializer(serializers.Serializer):
     """UAVs, targets and options, all optional: what a mission is made of."""
 
@@ -80,12 +140,16 @@ class OptionsSerializer(serializers.Serializer):
     targets = TargetInputSerializer(many=True, required=False)
     objective = serializers.ChoiceField(choices=Objective.choices, required=False, help_text="total: fly least; makespan: finish soonest")
     return_to_start = serializers.BooleanField(required=False)
+    locks = LockSerializer(many=True, required=False)
 
     def validate_uavs(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
         return _no_more_than(settings.ROUTING_RULES.max_uavs, value, "UAVs")
 
     def validate_targets(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
         return _no_more_than(settings.ROUTING_RULES.max_targets, value, "targets")
+
+    def validate_locks(self, value: list[dict[str, Any]]) -> tuple[LockRequest, ...]:
+        return tuple(LockRequest(lock["uav"], tuple(lock["targets"]), lock["at_start"], lock["at_end"]) for lock in value)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if "uavs" in attrs:
@@ -110,7 +174,7 @@ class OptionsSerializer(serializers.Serializer):
         return tuple(_uav_request(uav, stored.get(uav.get("id"))) for uav in uavs)
 
 
-def _no_more_than(limit: int, value: list[dict[str, Any]], what: str) -> list[dict[str, Any]]:
+def _no_more_than(limit: int, value: list[Any], what: str) -> list[Any]:
     if len(value) > limit:
         raise serializers.ValidationError(
             _("At most %(limit)s %(what)s; these are %(count)s.") % {"limit": limit, "what": what, "count": len(value)}
@@ -120,7 +184,12 @@ def _no_more_than(limit: int, value: list[dict[str, Any]], what: str) -> list[di
 
 def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
     if stored is None:
-        known = {"max_range_m": None, "cruise_speed_mps": settings.FLIGHT_RULES.cruise_speed_mps, "end_action": EndAction.HOVER}
+        known = {
+            "max_range_m": None,
+            "cruise_speed_mps": settings.FLIGHT_RULES.cruise_speed_mps,
+            "end_action": EndAction.HOVER,
+            "sensors": [],
+        }
     else:
         known = {
             "name": stored.name,
@@ -128,6 +197,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
             "max_range_m": stored.range_m,
             "cruise_speed_mps": stored.speed_mps,
             "end_action": stored.end_action,
+            "sensors": stored.sensors,
         }
     values = known | {field: uav[field] for field in uav if field != "id"}
     return UavRequest(
@@ -137,6 +207,8 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         cruise_speed_mps=values["cruise_speed_mps"],
         end_action=EndAction(values["end_action"]),
         uav=None if stored is None else stored.pk,
+        most_targets=values.get("most_targets"),
+        sensors=tuple(values["sensors"]),
     )
 
 
@@ -147,6 +219,9 @@ def _target_request(target: dict[str, Any]) -> TargetRequest:
         position=target.get("position"),
         stretch=(stretch[0], stretch[1]) if stretch else None,
         task=TaskSerializer().to_task(task) if task else None,
+        priority=priority_from_json(target.get("priority", TargetPriority.NORMAL)),
+        uav=target.get("uav") or "",
+        sensor=target.get("sensor") or "",
     )
 
 
@@ -155,6 +230,17 @@ class PlanInputSerializer(OptionsSerializer):
 
     uavs = UavInputSerializer(many=True, allow_empty=False)
     targets = TargetInputSerializer(many=True, allow_empty=False)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        """Wishes that contradict each other are refused, and the organisation's bases come in where they are needed."""
+        attrs = super().validate(attrs)
+        request = plan_request(attrs)
+        try:
+            refuse_contradictions(request)
+            attrs["bases"] = with_bases(request, self.context["organisation"]).bases
+        except InvalidRequest as error:
+            raise serializers.ValidationError({place: [fault] for place, fault in error.faults.items()}) from error
+        return attrs
 
     def to_request(self) -> PlanRequest:
         return plan_request(self.validated_data)
@@ -186,6 +272,8 @@ def plan_request(values: dict[str, Any]) -> PlanRequest:
         targets=values.get("targets", ()),
         objective=values.get("objective", RoutingObjective.TOTAL),
         return_to_start=values.get("return_to_start", False),
+        locks=values.get("locks", ()),
+        bases=values.get("bases", ()),
     )
 
 

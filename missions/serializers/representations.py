@@ -5,7 +5,8 @@ from typing import Any
 from inspection.selectors import asset_detail, asset_label
 from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
-from missions.services import FLAT_GROUND, TERRAIN_MODEL
+from missions.selectors import open_plan_of_mission
+from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
 from missions.stale_selectors import cause_json, is_stale, stale_causes, stale_reason
 
 
@@ -28,10 +29,12 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "stale_reason": stale_reason(causes),
         "stale_causes": [cause_json(cause) for cause in causes],
         "flat_ground_assumed": mission.flat_ground_assumed,
+        "locks": mission.locks,
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
         "targets": [_target(row) for row in mission.targets.all()],
         "plan": _plan(mission),
         "last_plan": mission.last_plan,
+        "planning_job": open_plan_of_mission(mission),
     }
 
 
@@ -67,6 +70,8 @@ def _uav(row: MissionUav) -> dict[str, Any]:
         "max_range_m": row.max_range_m,
         "cruise_speed_mps": row.cruise_speed_mps,
         "end_action": row.end_action,
+        "most_targets": row.most_targets,
+        "sensors": row.sensors,
     }
 
 
@@ -83,6 +88,9 @@ def _target(row: InspectionTarget) -> dict[str, Any]:
         "stretch": [list(end) for end in row.stretch.coords] if row.stretch else None,
         "is_point": row.position is not None,
         "task": row.task,
+        "priority": row.priority,
+        "uav": row.uav_name or None,
+        "sensor": row.sensor,
         "state": row.state,
         "unassigned_reason": row.unassigned_reason,
         "unassigned_message": row.unassigned_message,
@@ -103,6 +111,8 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "ground_revision": mission.ground_revision,
         "flat_ground_assumed": mission.flat_ground_assumed,
         "terrain": FLAT_GROUND if mission.flat_ground_assumed else TERRAIN_MODEL,
+        **(mission.plan_quality or NO_QUALITY),
+        "locks": mission.locks,
         "warnings": mission.plan_warnings,
         "routes": [_route(route, mission, sequence_of) for route in mission.routes.all()],
         "unassigned": [
@@ -116,13 +126,15 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
 def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[str, Any]:
     waypoints = list(route.waypoints.all())
     uav = route.mission_uav
+    targets = [sequence_of[waypoint.target_id] for waypoint in waypoints if waypoint.kind == WaypointKind.TARGET]
     return {
         "uav": uav.name,
         "uav_id": uav.uav_id,
         "end_action": EndAction.RETURN if mission.return_to_start else uav.end_action,
         "length_m": route.length_m,
         "duration_s": route.duration_s,
-        "targets": [sequence_of[waypoint.target_id] for waypoint in waypoints if waypoint.kind == WaypointKind.TARGET],
+        "targets": targets,
+        "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),
         "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,
         "waypoints": [
             {

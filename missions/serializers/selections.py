@@ -6,18 +6,19 @@ from rest_framework import serializers
 
 from inspection.selectors import asset_detail, asset_label
 from missions.fields import PositionField
-from missions.models import SavedSelection
+from missions.models import SavedSelection, TargetPriority
 from missions.selection_selectors import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
 from missions.serializers.shapes import TaskOutputSerializer
 
 
 class SelectionInputSerializer(OptionsSerializer):
-    """A name, and targets as in a mission; UAVs and options are not kept."""
+    """A name, and targets as in a mission; UAVs, what is tied or locked to them, and options are not kept."""
 
     uavs = None
     objective = None
     return_to_start = None
+    locks = None
     name = serializers.CharField(max_length=100)
     targets = TargetInputSerializer(many=True, allow_empty=False)
 
@@ -32,6 +33,8 @@ class SelectionTargetSerializer(serializers.Serializer):
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
     is_point = serializers.BooleanField()
     task = TaskOutputSerializer()
+    priority = serializers.ChoiceField(choices=TargetPriority.choices)
+    sensor = serializers.CharField(help_text="that its UAV must have; may be empty")
 
 
 class SelectionSummarySerializer(serializers.Serializer):
@@ -84,4 +87,6 @@ def _target(target: KeptTarget) -> dict[str, Any]:
         "stretch": value["stretch"],
         "is_point": value["position"] is not None,
         "task": value["task"],
+        "priority": value.get("priority", TargetPriority.NORMAL),
+        "sensor": value.get("sensor", ""),
     }

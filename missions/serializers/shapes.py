@@ -3,7 +3,7 @@
 from rest_framework import serializers
 
 from missions.fields import PositionField
-from missions.models import EndAction, MissionState, Objective, TargetState, WaypointKind
+from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
 from missions.routing.problem import TaskKind
 
 
@@ -37,6 +37,7 @@ class RouteSerializer(serializers.Serializer):
     length_m = serializers.FloatField(help_text="metres flown")
     duration_s = serializers.FloatField()
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
+    locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
     waypoints = WaypointSerializer(many=True)
 
@@ -44,8 +45,11 @@ class RouteSerializer(serializers.Serializer):
 class UnassignedSerializer(serializers.Serializer):
     target = serializers.IntegerField()
     reason = serializers.ChoiceField(
-        choices=["no_path", "inside_zone", "beyond_range", "too_far_from_network", "above_height_limit", "asset_gone"]
-    )
+        choices=[
+            "no_path", "inside_zone", "beyond_range", "too_far_from_network", "above_height_limit", "asset_gone", "not_allowed",
+            "most_targets",
+        ]
+    )  # fmt: skip
     message = serializers.CharField()
 
 
@@ -55,7 +59,37 @@ class WarningSerializer(serializers.Serializer):
     message = serializers.CharField()
 
 
-class PlanSerializer(serializers.Serializer):
+class PlanLockSerializer(serializers.Serializer):
+    """A locked run, as it was asked for."""
+
+    uav = serializers.CharField(help_text="name")
+    targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order flown")
+    at_start = serializers.BooleanField()
+    at_end = serializers.BooleanField()
+
+
+class WishSerializer(serializers.Serializer):
+    """What the locks cost: the plan less the plan that would be made without them."""
+
+    cost_m = serializers.FloatField(allow_null=True, help_text="of all routes; null where the two plans do not reach as many targets")
+    cost_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time, level flight and tasks; null as before")
+    free_total_m = serializers.FloatField(help_text="of all routes without the locks")
+    free_longest_s = serializers.FloatField(help_text="of the longest route in time without the locks, level flight and tasks")
+    left_out = serializers.IntegerField(help_text="how many targets fewer are reached because of the locks")
+
+
+class QualitySerializer(serializers.Serializer):
+    """How good a plan is: a bound that no plan can be better than, and how far above it this one is."""
+
+    lower_bound_m = serializers.FloatField(allow_null=True, help_text="of the total; null where the longest route counts")
+    lower_bound_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time; null where the total counts")
+    gap = serializers.FloatField(allow_null=True, help_text="the share of the plan's value above the bound, 0 to 1; null: not known")
+    is_proven = serializers.BooleanField(help_text="no plan is better")
+    method = serializers.CharField(help_text="how it was found; empty: not known")
+    wish = WishSerializer(allow_null=True, help_text="null where nothing is locked")
+
+
+class PlanSerializer(QualitySerializer):
     objective = serializers.ChoiceField(choices=Objective.choices)
     return_to_start = serializers.BooleanField()
     total_length_m = serializers.FloatField()
@@ -64,6 +98,7 @@ class PlanSerializer(serializers.Serializer):
     ground_revision = serializers.IntegerField()
     flat_ground_assumed = serializers.BooleanField()
     terrain = serializers.ChoiceField(choices=["flat ground assumed", "terrain model"])
+    locks = PlanLockSerializer(many=True)
     warnings = WarningSerializer(many=True)
     routes = RouteSerializer(many=True)
     unassigned = UnassignedSerializer(many=True)
@@ -102,6 +137,8 @@ class LastPlanSerializer(serializers.Serializer):
     return_to_start = serializers.BooleanField()
     total_length_m = serializers.FloatField()
     duration_s = serializers.FloatField(help_text="of the longest route in time")
+    locks = serializers.IntegerField(required=False, help_text="how many runs were locked")
+    quality = QualitySerializer(required=False, allow_null=True)
     routes = LastRouteSerializer(many=True)
     unassigned = LastTargetSerializer(many=True)
 
@@ -118,6 +155,8 @@ class MissionUavSerializer(serializers.Serializer):
     max_range_m = serializers.FloatField(allow_null=True)
     cruise_speed_mps = serializers.FloatField()
     end_action = serializers.ChoiceField(choices=EndAction.choices)
+    most_targets = serializers.IntegerField(allow_null=True)
+    sensors = serializers.ListField(child=serializers.CharField())
 
 
 class MissionTargetSerializer(serializers.Serializer):
@@ -130,6 +169,9 @@ class MissionTargetSerializer(serializers.Serializer):
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
     is_point = serializers.BooleanField(help_text="the operator picked `position`; else it is the whole asset or the stretch")
     task = TaskOutputSerializer()
+    priority = serializers.ChoiceField(choices=TargetPriority.choices)
+    uav = serializers.CharField(allow_null=True, help_text="name of the only UAV that may do it")
+    sensor = serializers.CharField(help_text="that its UAV must have; may be empty")
     state = serializers.ChoiceField(choices=TargetState.choices)
     unassigned_reason = serializers.CharField()
     unassigned_message = serializers.CharField()
@@ -164,10 +206,12 @@ class MissionSerializer(serializers.Serializer):
     stale_reason = serializers.CharField(help_text="the headline and the worst cause; empty where the ground is as it was")
     stale_causes = StaleCauseSerializer(many=True)
     flat_ground_assumed = serializers.BooleanField(allow_null=True)
+    locks = PlanLockSerializer(many=True)
     uavs = MissionUavSerializer(many=True)
     targets = MissionTargetSerializer(many=True)
     plan = PlanSerializer(allow_null=True)
     last_plan = LastPlanSerializer(allow_null=True, help_text="the plan before the present one, in short")
+    planning_job = serializers.UUIDField(allow_null=True, help_text="the job that is planning it at present")
 
 
 class MissionSummarySerializer(serializers.Serializer):

@@ -25,20 +25,36 @@ from missions.services.missions import (
     restore_mission,
 )
 from missions.services.places import places_of
-from missions.services.plan_json import FLAT_GROUND, TERRAIN_MODEL
+from missions.services.plan_json import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
 from missions.services.planning import GraphOutdated, make_plan
-from missions.services.requests import InvalidRequest, PlanRequest, TargetRequest, UavRequest, request_from_json, request_to_json
+from missions.services.requests import (
+    BaseRequest,
+    InvalidRequest,
+    LockRequest,
+    PlanRequest,
+    TargetRequest,
+    UavRequest,
+    lock_to_json,
+    priority_from_json,
+    request_from_json,
+    request_to_json,
+)
 from missions.services.uavs import change_uav, create_uav, delete_uav, restore_uav
+from missions.services.warming_up import warm_up
 from missions.services.why_route import explain_route
 from missions.services.why_target import explain_unreached_target
+from missions.services.wishes import refuse_contradictions, with_bases
 
 __all__ = [
     "FLAT_GROUND",
+    "NO_QUALITY",
     "TERRAIN_MODEL",
+    "BaseRequest",
     "FleetChanged",
     "FleetRowInUse",
     "GraphOutdated",
     "InvalidRequest",
+    "LockRequest",
     "MissionChange",
     "MissionChanged",
     "MissionFrozen",
@@ -64,6 +80,8 @@ __all__ = [
     "duplicate_mission",
     "explain_route",
     "explain_unreached_target",
+    "lock_to_json",
+    "locked_targets",
     "make_credential",
     "make_plan",
     "mavlink_signing_key",
@@ -71,6 +89,8 @@ __all__ = [
     "plan_mission",
     "plan_mission_for_job",
     "plannable_request",
+    "priority_from_json",
+    "refuse_contradictions",
     "request_from_json",
     "request_of_mission",
     "request_to_json",
@@ -81,4 +101,6 @@ __all__ = [
     "revoke_credential",
     "store_plan",
     "take_plan",
+    "warm_up",
+    "with_bases",
 ]

@@ -22,6 +22,8 @@ def summary_of_plan(*, mission: Mission) -> dict[str, Any] | None:
         "planned_at": mission.planned_at.isoformat(),
         "objective": mission.objective,
         "return_to_start": mission.return_to_start,
+        "locks": len(mission.locks),
+        "quality": mission.plan_quality,
         "total_length_m": mission.total_length_m,
         "duration_s": max((route["duration_s"] for route in summaries), default=0.0),
         "routes": summaries,

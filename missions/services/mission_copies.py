@@ -13,7 +13,7 @@ from workspace.models import User
 LONGEST_NAME = Mission._meta.get_field("name").max_length
 COPIED = (
     "organisation_id", "state", "objective", "return_to_start", "planned_at", "graph_version", "ground_revision", "flat_ground_assumed",
-    "total_length_m", "longest_route_m", "plan_warnings", "last_plan",
+    "total_length_m", "longest_route_m", "plan_warnings", "last_plan", "locks", "plan_quality",
 )  # fmt: skip
 
 

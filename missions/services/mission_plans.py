@@ -10,14 +10,17 @@ from django.utils import timezone
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
-from missions.routing.solver import OnProgress, Stop
+from missions.routing.solver import Stop
+from missions.services.best_so_far import OnPlanProgress
 from missions.services.missions import drop_plan, lock_mission, request_of_mission
 from missions.services.planning import make_plan
 from missions.services.requests import PlanRequest, request_from_json
+from missions.services.wishes import with_bases
 from workspace.models import Job, User
 from workspace.services import JobCancelled, finish_job, record_change
 
 PLANNING_TASK = "missions.tasks.solve_plan"
+QUALITY = ("lower_bound_m", "lower_bound_s", "gap", "is_proven", "method", "wish")  # of a plan's JSON, kept with its mission
 
 
 class NothingToPlan(Exception):
@@ -40,7 +43,7 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
     """Store the plan that a job has made already, if it was asked for just what the mission holds; False where it was not."""
     if job.task != PLANNING_TASK or not job.result or "request" not in job.parameters:
         return False
-    wanted, asked = request_of_mission(mission=mission), request_from_json(job.parameters["request"])
+    wanted, asked = plannable_request(mission=mission), request_from_json(job.parameters["request"])
     if len(asked.targets) != len(wanted.targets):
         return False
     targets = tuple(
@@ -54,14 +57,14 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:
-    """What the planner is asked for this mission. Raises NothingToPlan."""
+    """What the planner is asked for this mission, with today's bases. Raises NothingToPlan, or InvalidRequest where a base is missing."""
     request = request_of_mission(mission=mission)
     if not request.uavs or not request.targets:
         raise NothingToPlan
-    return request
+    return with_bases(request, mission.organisation)
 
 
-def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnProgress, search_s: float, message: Callable[[], str]) -> None:
+def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], str]) -> None:
     """Plan the job's mission, and store the plan and the job's end together: neither is ever there without the other.
 
     Once the user stops it, the best plan found until then is stored; `message` says at the end how it went. Raises JobCancelled if
@@ -93,6 +96,7 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
         locked.total_length_m = plan["total_length_m"]
         locked.longest_route_m = plan["longest_route_m"]
         locked.plan_warnings = plan["warnings"]
+        locked.plan_quality = {name: plan.get(name) for name in QUALITY}
         locked.revision += 1
         locked.save()
         _store_routes(locked, plan)

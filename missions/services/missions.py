@@ -14,7 +14,19 @@ from missions.models import EndAction, InspectionTarget, Mission, MissionState, 
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
 from missions.services.places import places_of
-from missions.services.requests import PlanRequest, TargetRequest, UavRequest, task_from_json, task_to_json
+from missions.services.requests import (
+    LockRequest,
+    PlanRequest,
+    TargetRequest,
+    UavRequest,
+    lock_from_json,
+    lock_to_json,
+    priority_from_json,
+    priority_to_json,
+    task_from_json,
+    task_to_json,
+)
+from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
@@ -39,14 +51,16 @@ class MissionChange:
     targets: tuple[TargetRequest, ...] | None = None
     objective: Objective | None = None
     return_to_start: bool | None = None
+    locks: tuple[LockRequest, ...] | None = None
 
     @property
     def drops_plan(self) -> bool:
-        return any(part is not None for part in (self.uavs, self.targets, self.objective, self.return_to_start))
+        return any(part is not None for part in (self.uavs, self.targets, self.objective, self.return_to_start, self.locks))
 
 
 def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
-    """Store a draft. Raises InvalidRequest if a target is not on the ground."""
+    """Store a draft. Raises InvalidRequest if a target is not on the ground, or wishes contradict each other."""
+    refuse_contradictions(request)
     targets = _target_rows(request.targets)
     with transaction.atomic():
         mission = Mission.objects.create(
@@ -55,6 +69,7 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
             name=name,
             objective=request.objective,
             return_to_start=request.return_to_start,
+            locks=[lock_to_json(lock) for lock in request.locks],
         )
         _store_uavs(mission, request.uavs)
         _store_targets(mission, targets)
@@ -63,26 +78,35 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
 
 
 def change_mission(*, mission: Mission, actor: User, change: MissionChange, expected_revision: int | None = None) -> Mission:
-    """Change a mission; new targets, UAVs or options drop its plan. Raises MissionChanged, MissionFrozen or InvalidRequest."""
+    """Change a mission; new targets, UAVs or options drop its plan, and new targets its locks, where no new ones come with them.
+
+    Raises MissionChanged, MissionFrozen or InvalidRequest.
+    """
     targets = None if change.targets is None else _target_rows(change.targets)
     with transaction.atomic():
         locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
         before = _summary(locked)
         picked = _what_is_picked(locked)
+        if change.drops_plan:
+            drop_plan(mission=locked)  # remembered with the options that it was made with
         if change.name is not None:
             locked.name = change.name
         if change.objective is not None:
             locked.objective = change.objective
         if change.return_to_start is not None:
             locked.return_to_start = change.return_to_start
-        if change.drops_plan:
-            drop_plan(mission=locked)
+        if change.locks is not None:
+            locked.locks = [lock_to_json(lock) for lock in change.locks]
+        elif targets is not None:
+            locked.locks = []
         if change.uavs is not None:
             locked.mission_uavs.all().delete()
             _store_uavs(locked, change.uavs)
         if targets is not None:
             locked.targets.all().delete()
             _store_targets(locked, targets)
+        if change.drops_plan:
+            refuse_contradictions(request_of_mission(mission=locked))
         _save(locked)
         action = "change" if change.drops_plan else "rename"
         note(locked, actor, action, before=before, after=_summary(locked) | _differences(picked, _what_is_picked(locked)))
@@ -145,6 +169,7 @@ def drop_plan(*, mission: Mission) -> None:
     mission.state = MissionState.DRAFT
     mission.planned_at = mission.graph_version = mission.ground_revision = mission.flat_ground_assumed = None
     mission.total_length_m = mission.longest_route_m = None
+    mission.plan_quality = None
     mission.plan_warnings = []
 
 
@@ -159,6 +184,8 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 cruise_speed_mps=row.cruise_speed_mps,
                 end_action=EndAction(row.end_action),
                 uav=row.uav_id,
+                most_targets=row.most_targets,
+                sensors=tuple(row.sensors),
             )
             for row in mission.mission_uavs.all()
         ),
@@ -168,11 +195,15 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 position=LonLat(*row.position.coords) if row.position else None,
                 stretch=(LonLat(*row.stretch.coords[0]), LonLat(*row.stretch.coords[-1])) if row.stretch else None,
                 task=task_from_json(row.task),
+                priority=priority_from_json(row.priority),
+                uav=row.uav_name,
+                sensor=row.sensor,
             )
             for row in mission.targets.all()
         ),
         objective=Objective(mission.objective),
         return_to_start=mission.return_to_start,
+        locks=tuple(lock_from_json(lock) for lock in mission.locks),
     )
 
 
@@ -190,6 +221,9 @@ def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:
                 position=Point(*target.position, srid=4326) if target.position else None,
                 stretch=LineString(*target.stretch, srid=4326) if target.stretch else None,
                 task=task_to_json(place.task),
+                priority=priority_to_json(target.priority),
+                uav_name=target.uav,
+                sensor=target.sensor,
             )
         )
     return rows
@@ -212,6 +246,8 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             max_range_m=uav.max_range_m,
             cruise_speed_mps=uav.cruise_speed_mps,
             end_action=uav.end_action,
+            most_targets=uav.most_targets,
+            sensors=list(uav.sensors),
         )
         for sequence, uav in enumerate(uavs)
     )
@@ -229,6 +265,7 @@ def _summary(mission: Mission) -> dict[str, Any]:
         "revision": mission.revision,
         "objective": str(mission.objective),
         "return_to_start": mission.return_to_start,
+        "locks": len(mission.locks),
         "total_length_m": mission.total_length_m,
         "graph_version": mission.graph_version,
     }

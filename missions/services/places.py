@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point
+from django.db import DEFAULT_DB_ALIAS
 from django.utils.translation import gettext as _
 from django.utils.translation import override
 
@@ -15,6 +16,7 @@ from missions.flight_plan.heights import FloatArray, asset_height_m
 from missions.flight_plan.stretches import PlaceOnLine, nearest_on_line, stretch_between
 from missions.routing.problem import Task, default_task
 from missions.services.requests import InvalidRequest, TargetRequest
+from workspace.prepared import prepared_rows
 
 NEAR_ASSET_M = 500.0  # a picked point farther from the asset than this is a mistake, not a point on it
 LINEAR = {AssetKind.LINE, AssetKind.RAILWAY}
@@ -42,6 +44,9 @@ def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]
 
     Raises InvalidRequest with every fault: an unknown asset, a point or stretch that is not on its asset.
     """
+    plain = _plain_places(targets)
+    if plain is not None:
+        return plain, []
     assets = Asset.objects.defer("tags", "node_osm_ids", "parts").in_bulk({target.asset for target in targets if target.asset is not None})
     places, gone, faults = [], [], {}
     for index, target in enumerate(targets):
@@ -62,14 +67,46 @@ def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]
     return places, gone
 
 
+_NEEDED = {
+    "id", "kind", "subtype", "ref", "name", "operator", "max_voltage_v", "line_id", "place_on_line", "places_on_line", "osm_type",
+    "osm_id", "height_m",
+}  # fmt: skip
+# What a whole tower or bridge needs, without its geometry; in the model's own order, in which `from_db` takes the values.
+_PLAIN_FIELDS = tuple(field.attname for field in Asset._meta.concrete_fields if field.attname in _NEEDED)
+_PLAIN_ASSETS = f"""
+    SELECT {", ".join(_PLAIN_FIELDS)}, ST_X(centre), ST_Y(centre) FROM inspection_asset
+    WHERE id = ANY(%s::bigint[]) AND kind = ANY(ARRAY['{AssetKind.TOWER}', '{AssetKind.BRIDGE}'])"""  # noqa: S608 - no value of anybody's
+
+
+def _plain_places(targets: Sequence[TargetRequest]) -> list[Place] | None:
+    """The places where all targets are whole towers and bridges, as most are in small plans; None where anything has to be looked into."""
+    keys = [target.asset for target in targets if target.asset is not None and target.position is None and target.stretch is None]
+    if len(keys) != len(targets):
+        return None
+    rows = {row[0]: row for row in prepared_rows(_PLAIN_ASSETS, [keys])}
+    if any(key not in rows for key in keys):
+        return None
+    places = []
+    with override("en"):  # once for all of them
+        for index, target in enumerate(targets):
+            row = rows[target.asset]
+            asset = Asset.from_db(DEFAULT_DB_ALIAS, _PLAIN_FIELDS, row[: len(_PLAIN_FIELDS)])
+            places.append(_place_of(asset, index, target, (LonLat(*row[len(_PLAIN_FIELDS) :]),), asset_label(asset)))
+    return places
+
+
 def position_label(position: LonLat) -> str:
     return f"{position.lat:.5f}, {position.lon:.5f}"
 
 
 def _place_on(asset: Asset, index: int, target: TargetRequest) -> Place:
     course = _course(asset, index, target)
-    with override("en"):  # it is stored, for readers of any language
+    with override("en"):  # the label is stored, for readers of any language
         label = asset_label(asset)
+    return _place_of(asset, index, target, course, label)
+
+
+def _place_of(asset: Asset, index: int, target: TargetRequest, course: tuple[LonLat, ...], label: str) -> Place:
     return Place(
         target=index,
         label=label,

@@ -1,17 +1,24 @@
 """A plan in the shape of the API."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from typing import Any
 
+import numpy as np
+
 from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.waypoints import Waypoint
+from missions.flight_plan.waypoints import Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
-from missions.services.requests import PlanRequest, task_to_json
+from missions.services.requests import PlanRequest, lock_to_json, task_to_json
+from missions.services.waypoint_text import line_text, waypoints_text
 
 FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
+NO_QUALITY: dict[str, Any] = {
+    "lower_bound_m": None, "lower_bound_s": None, "gap": None, "is_proven": False, "method": "", "wish": None,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -19,7 +26,7 @@ class PlannedRoute:
     """What one UAV flies; without targets it stays where it is."""
 
     targets: tuple[int, ...] = ()
-    waypoints: tuple[Waypoint, ...] = ()
+    waypoints: Waypoints | None = None
     line: FloatArray | None = None
     length_m: float = 0.0
     duration_s: float = 0.0
@@ -36,7 +43,11 @@ def plan_to_json(
     graph_version: int,
     ground_revision: int,
     has_terrain: bool,
+    quality: Mapping[str, Any],
+    as_text: bool = False,
 ) -> dict[str, Any]:
+    """as_text: lines and waypoints are ready JSON, which orjson alone takes; it writes the same bytes as of plain lists."""
+    coordinates, waypoints = (line_text, waypoints_text) if as_text else (np.ndarray.tolist, waypoints_to_json)
     lengths_m = [round(route.length_m, 3) for route in routes]
     flat_ground_assumed = not has_terrain or any(route.is_flat for route in routes)
     return {
@@ -48,6 +59,8 @@ def plan_to_json(
         "ground_revision": ground_revision,
         "flat_ground_assumed": flat_ground_assumed,
         "terrain": FLAT_GROUND if flat_ground_assumed else TERRAIN_MODEL,
+        **quality,
+        "locks": [lock_to_json(lock) for lock in request.locks],
         "warnings": list(warnings),
         "routes": [
             {
@@ -57,8 +70,9 @@ def plan_to_json(
                 "length_m": length_m,
                 "duration_s": round(route.duration_s, 1),
                 "targets": list(route.targets),
-                "geometry": None if route.line is None else {"type": "LineString", "coordinates": route.line.tolist()},
-                "waypoints": [waypoint_to_json(waypoint) for waypoint in route.waypoints],
+                "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
+                "geometry": None if route.line is None else {"type": "LineString", "coordinates": coordinates(route.line)},
+                "waypoints": [] if route.waypoints is None else waypoints(route.waypoints),
             }
             for uav, route, length_m in zip(request.uavs, routes, lengths_m, strict=True)
         ],
@@ -69,15 +83,41 @@ def plan_to_json(
     }
 
 
-def waypoint_to_json(waypoint: Waypoint) -> dict[str, Any]:
-    point = waypoint.point
-    return {
-        "position": list(point.position),
-        "kind": point.kind.value,
-        "asset": point.asset,
-        "target": point.target,
-        "task": task_to_json(point.task) if point.task else None,
-        "altitude_agl_m": round(point.agl_m, 2),
-        "altitude_amsl_m": None if waypoint.amsl_m is None else round(waypoint.amsl_m, 2),
-        "altitude_relative_m": round(waypoint.relative_m, 2),
-    }
+def locked_targets(flown: Sequence[int], runs: Iterable[Sequence[int]]) -> list[int]:
+    """Of the targets that a UAV flies those that are locked to it; runs are its locks."""
+    locked = {target for run in runs for target in run}
+    return [target for target in flown if target in locked] if locked else []
+
+
+def waypoints_to_json(waypoints: Waypoints) -> list[dict[str, Any]]:
+    points = waypoints.points
+    agl_m = _shown(points.agl_m)
+    return [
+        {
+            "position": position,
+            "kind": kind,
+            "asset": asset,
+            "target": target,
+            "task": task and task_to_json(task),
+            "altitude_agl_m": shown_agl_m,
+            "altitude_amsl_m": amsl_m,
+            "altitude_relative_m": relative_m,
+        }
+        for position, kind, asset, target, task, shown_agl_m, amsl_m, relative_m in zip(
+            points.position,
+            points.kind,
+            points.asset,
+            points.target,
+            points.task,
+            agl_m,
+            repeat(None, len(points)) if waypoints.amsl_m is None else _shown(waypoints.amsl_m),
+            agl_m if waypoints.relative_m is points.agl_m else _shown(waypoints.relative_m),
+            strict=True,
+        )
+    ]
+
+
+def _shown(heights_m: list[float]) -> list[float]:
+    """In centimetres. Most points of a route are passed at one of a few heights."""
+    shown = {height_m: round(height_m, 2) for height_m in set(heights_m)}
+    return [shown[height_m] for height_m in heights_m]

@@ -1,27 +1,29 @@
 """One plan from request to answer: places, ways, assignment, waypoints, heights, and the last look at the zones."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from django.conf import settings
 
 from inspection.geodesy import LonLat, path_length_m
-from inspection.selectors import current_graph, ground_heights_m, ground_revision, has_terrain, terrain_edition, zones_in_force
+from inspection.selectors import ground_revision, terrain_edition
+from inspection.selectors.graph import zones_of_edition
+from inspection.selectors.planning import Edition, edition_now, planning_ground
 from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
-from missions.flight_plan.duration import duration_s
-from missions.flight_plan.flyable_graph import flyable_graph, node_heights_m
-from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
-from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
-from missions.models import EndAction
-from missions.routing.problem import Problem, UavStart, Visit
-from missions.routing.solver import OnProgress, Stop, never, no_report, solve
-from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
+from missions.flight_plan.flyable_graph import flyable_graph
+from missions.routing.problem import Visit
+from missions.routing.progress import OnProgress, Progress
+from missions.routing.solver import Stop, never
+from missions.routing.terminals import AccessRules, Terminal, ways_between
+from missions.services.assignment import assignment, quality_of, solve_assignment
+from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch, unheard
+from missions.services.drawing import Drawing
 from missions.services.places import Place, places_of
 from missions.services.plan_json import PlannedRoute, plan_to_json
-from missions.services.refusals import Scene, asset_gone, groundings, place_height_m, refused_place, unreached_place
+from missions.services.refusals import Scene, asset_gone, groundings, refused_place, zone_at
 from missions.services.requests import PlanRequest
+from missions.services.unreached import unreached_places
 
 
 class GraphOutdated(Exception):
@@ -32,10 +34,19 @@ class GraphOutdated(Exception):
 
 
 def make_plan(
-    *, request: PlanRequest, stop: Stop = never, on_progress: OnProgress = no_report, seed: int = 7, search_s: float = 0.0
+    *,
+    request: PlanRequest,
+    stop: Stop = never,
+    on_progress: OnPlanProgress = unheard,
+    seed: int = 7,
+    search_s: float = 0.0,
+    as_text: bool = False,
 ) -> dict[str, Any]:
-    """The plan in the shape of the API. Raises InvalidRequest, NoGraph or GraphOutdated."""
-    on_progress(0.0, "Looking up the targets")
+    """The plan in the shape of the API, on demand with parts of it `as_text` (see plan_to_json).
+
+    Raises InvalidRequest, NoGraph or GraphOutdated.
+    """
+    on_progress(PlanProgress(0.0, "Looking up the targets"))
     every_place, gone = places_of(request.targets)
     scene = current_scene()
     refusals = {place.target: refused_place(place, scene) for place in every_place}
@@ -44,7 +55,9 @@ def make_plan(
     grounded = groundings(request.uavs, scene)
     uavs = [number for number in range(len(request.uavs)) if number not in grounded]
 
-    on_progress(0.05, "Measuring the ways between the targets")
+    bases = [base for base in request.bases if zone_at(base.position, scene) is None]
+
+    on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
     visits, courses = visits_of_places(places)
     ways = ways_between(
         scene.graph,
@@ -53,45 +66,58 @@ def make_plan(
         entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         rules=scene.access,
+        bases=[Terminal(base.position) for base in bases],
     )
-    problem = Problem(
-        uavs=tuple(UavStart(request.uavs[uav].max_range_m, end_action(request, uav) is EndAction.RETURN) for uav in uavs),
-        visits=tuple(visits),
-        target_count=len(places),
-        from_start_m=ways.from_start_m,
-        between_m=ways.between_m,
-        to_start_m=ways.to_start_m,
-        objective=request.objective,
+    asked = assignment(request, uavs, places, visits, ways, grounded)
+    sketch = Sketch(
+        asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )
-    solution = solve(
-        problem, stop=stop, on_progress=lambda share, message: on_progress(0.1 + 0.85 * share, message), seed=seed, search_s=search_s
-    )
-    visits_of = problem.visits_of_target()
-    left_out += [unreached_place(places[item.target], item, visits_of[item.target], ways, scene) for item in solution.unassigned]
+    solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
+    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene)
 
-    on_progress(0.95, "Working out heights and checking every leg")
+    on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
+    edition = scene.edition
     while True:
-        ground_before = terrain_edition()
-        drawing = _Drawing(request, scene, places, visits, courses, ways)
+        ground_before = terrain_edition() if edition != scene.edition else None
+        drawing = Drawing(request, scene, places, visits, courses, ways, bases, edition)
         flown = {uav: drawing.route(uav, number, solution.routes[number]) for number, uav in enumerate(uavs) if solution.routes[number]}
-        routes = [flown.get(uav, PlannedRoute(end_action=end_action(request, uav))) for uav in range(len(request.uavs))]
-        revision = _look_at_zones_again(routes, scene)
-        if terrain_edition() == ground_before:  # else the heights belong to another ground than the revision says
-            break
+        routes = [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
+        now = _look_at_zones_again(routes, scene)
+        if now == edition or (ground_before is not None and terrain_edition() == ground_before):
+            break  # else the heights belong to another ground than the revision says
+        edition = now
     return plan_to_json(
         request,
         routes,
         left_out,
         [{"code": why.code, "uav": number, "message": why.message} for number, why in grounded.items()],
         graph_version=scene.graph.version,
-        ground_revision=revision,
+        ground_revision=now[0],
         has_terrain=drawing.ground is not None,
+        quality=quality_of(
+            solution,
+            lock_cost,
+            request.objective,
+            total_m=sum(route.length_m for route in routes),
+            longest_s=max(route.duration_s for route in routes),
+        ),
+        as_text=as_text,
     )
+
+
+def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:
+    """What the solver says of the search, in the words of the whole plan."""
+
+    def hear(told: Progress) -> None:
+        draw = None if told.best_routes is None else lambda: sketch.of(told)
+        on_progress(PlanProgress(0.1 + 0.85 * told.share, told.message, draw))
+
+    return hear
 
 
 def current_scene() -> Scene:
     linking, routing, flight = settings.GRAPH_RULES, settings.ROUTING_RULES, settings.FLIGHT_RULES
-    graph = current_graph()
+    ground = planning_ground()
     access = AccessRules(
         access_leg_m=routing.access_leg_m,
         direct_leg_m=routing.direct_leg_m,
@@ -99,11 +125,7 @@ def current_scene() -> Scene:
         off_network_factor=linking.off_network_factor,
         zone_clearance_m=linking.zone_clearance_m,
     )
-    return Scene(graph, flyable_graph(graph, flight), zones_in_force(), access, flight)
-
-
-def end_action(request: PlanRequest, uav: int) -> EndAction:
-    return EndAction.RETURN if request.return_to_start else request.uavs[uav].end_action
+    return Scene(ground.graph, flyable_graph(ground.graph, flight), ground.zones, access, flight, ground.edition)
 
 
 def visits_of_places(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
@@ -111,91 +133,25 @@ def visits_of_places(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[L
     visits, courses = [], []
     for number, place in enumerate(places):
         length_m = path_length_m(np.array(place.course))
-        visits.append(Visit(number, is_reversed=False, length_m=length_m))
+        visits.append(Visit(number, is_reversed=False, length_m=length_m, service_s=place.task.hold_s))
         courses.append(place.course)
         if place.is_stretch:
-            visits.append(Visit(number, is_reversed=True, length_m=length_m))
+            visits.append(Visit(number, is_reversed=True, length_m=length_m, service_s=place.task.hold_s))
             courses.append(tuple(reversed(place.course)))
     return visits, courses
 
 
-class _Drawing:
-    """Turns the visits of one UAV into its waypoints."""
-
-    def __init__(
-        self,
-        request: PlanRequest,
-        scene: Scene,
-        places: Sequence[Place],
-        visits: Sequence[Visit],
-        courses: Sequence[tuple[LonLat, ...]],
-        ways: Ways,
-    ) -> None:
-        self.request = request
-        self.scene = scene
-        self.places = places
-        self.visits = visits
-        self.courses = courses
-        self.ways = ways
-        self.ground = ground_heights_m if has_terrain() else None
-        self.node_height_m = node_heights_m(scene.graph)
-
-    def route(self, uav: int, start: int, order: Sequence[int]) -> PlannedRoute:
-        """uav is the UAV's number in the request, start its number among those that fly."""
-        flight, asked = self.scene.flight, self.request.uavs[uav]
-        action = end_action(self.request, uav)
-        legs = [self.ways.out(start, order[0]), *(self.ways.onward(left, right) for left, right in pairwise(order))]
-        points = route_points(
-            start=asked.position,
-            transit_agl_m=flight.transit_agl_m,
-            targets=[self._target(visit) for visit in order],
-            ways=[self._passed(nodes) for nodes in legs],
-            way_home=self._passed(self.ways.home(order[-1], start)) if action is EndAction.RETURN else None,
-        )
-        points = with_short_legs(points, flight.longest_leg_m)
-        waypoints, is_flat = with_heights(points, self.ground, flight)
-        length_m = path_length_m(np.array([point.position for point in points]))
-        return PlannedRoute(
-            targets=tuple(self.places[self.visits[visit].target].target for visit in order),
-            waypoints=waypoints,
-            line=line_of([waypoint.point for waypoint in waypoints]),
-            length_m=length_m,
-            duration_s=duration_s(
-                waypoints,
-                length_m=length_m,
-                cruise_speed_mps=asked.cruise_speed_mps,
-                lands=action is not EndAction.HOVER,
-                rules=flight,
-            ),
-            end_action=action,
-            is_flat=is_flat,
-        )
-
-    def _target(self, visit: int) -> TargetPoints:
-        place = self.places[self.visits[visit].target]
-        agl_m = inspection_agl_m(place_height_m(place, self.scene), self.scene.flight)
-        return TargetPoints(place.target, self.courses[visit], agl_m, place.task, place.asset)
-
-    def _passed(self, nodes: np.ndarray) -> list[PassedNode]:
-        graph = self.scene.graph
-        positions, assets, heights_m = graph.position[nodes].tolist(), graph.node_asset[nodes].tolist(), self.node_height_m[nodes].tolist()
-        return [
-            PassedNode(LonLat(*position), pass_agl_m(height_m, self.scene.flight), asset if asset >= 0 else None)
-            for position, asset, height_m in zip(positions, assets, heights_m, strict=True)
-        ]
-
-
-def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> int:
-    """Check every leg against the zones in force at this moment; returns the ground's revision that they belong to."""
-    revision = ground_revision()
-    zones = zones_in_force()
+def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> Edition:
+    """Check every leg against the zones in force at this moment; returns the ground's edition that they belong to."""
+    now = edition_now()
+    zones = zones_of_edition(now)
     for route in routes:
         if route.line is None:
             continue
         try:
-            refuse_legs_in_zones(route.line, list(zones.polygons))
+            refuse_legs_in_zones(route.line, zones.polygons)
         except RouteMeetsZone as error:
-            if scene.graph.ground_revision < ground_revision():  # asked anew: the zones may be younger than `revision`
+            if scene.graph.ground_revision < ground_revision():  # asked anew: the zones may be younger than `now`
                 raise GraphOutdated(zones.names[error.zone]) from error
             raise
-    return revision
+    return now

@@ -1,4 +1,4 @@
-"""Why a target is left out of a plan before or after the routes are found, and why a UAV stays on the ground."""
+"""Why a target is left out of a plan before any route is looked for, and why a UAV stays on the ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.zone_index import ZoneIndex
+from inspection.selectors.planning import Edition
 from missions.fleet_selectors import states_out_of_service
 from missions.flight_plan.heights import is_above_limit
 from missions.flight_plan.rules import FlightRules
 from missions.models import UavState
-from missions.routing.problem import Reason, Unassigned
-from missions.routing.terminals import AccessRules, Ways, is_near_network, tallest_support_m
+from missions.routing.terminals import AccessRules, tallest_support_m
 from missions.services.places import Place
 from missions.services.requests import UavRequest
 
@@ -27,6 +27,7 @@ class Scene:
     zones: ZoneIndex
     access: AccessRules
     flight: FlightRules
+    edition: Edition  # of the ground, when the plan was begun
 
 
 @dataclass(frozen=True)
@@ -111,19 +112,3 @@ def _zone_along(course: tuple[LonLat, ...], scene: Scene) -> str | None:
         if found is not None:
             return found[1]
     return f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
-
-
-def unreached_place(place: Place, item: Unassigned, visits: list[int], ways: Ways, scene: Scene) -> LeftOut:
-    """The solver's reason in full: where it found no way, whether that is the distance to the network or the zones around."""
-    if item.reason is not Reason.NO_PATH or not ways.uavs:
-        return LeftOut(place.target, item.reason.value, item.message)
-    reach = f"{scene.access.access_leg_m / 1_000:g} km"
-    if not any(ways.entry_legs[visit] for visit in visits):
-        if any(is_near_network(scene.graph, end, scene.access.access_leg_m) for end in (place.course[0], place.course[-1])):
-            return LeftOut(
-                place.target, Reason.NO_PATH.value, f"Every straight way to it from the network within {reach} meets a no-fly zone."
-            )
-        return LeftOut(place.target, "too_far_from_network", f"It is more than {reach} from the network.")
-    if not any(ways.uav_legs):
-        return LeftOut(place.target, Reason.NO_PATH.value, f"No UAV has a clear way of up to {reach} to the network from where it stands.")
-    return LeftOut(place.target, item.reason.value, item.message)

@@ -5,7 +5,7 @@ from typing import Any
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
-from missions.routing.problem import Objective, Task, TaskKind
+from missions.routing.problem import Objective, Priority, Task, TaskKind
 
 
 @dataclass(frozen=True)
@@ -16,24 +16,58 @@ class UavRequest:
     cruise_speed_mps: float
     end_action: EndAction
     uav: int | None = None  # primary key of a stored UAV
+    most_targets: int | None = None
+    sensors: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class TargetRequest:
-    """An asset, a point or stretch on one, or a bare position. Neither asset nor position: the asset has been deleted."""
+    """An asset, a point or stretch on one, or a bare position. Neither asset nor position: the asset has been deleted.
+
+    `uav` is the name of the only UAV that may do it, `sensor` what its UAV must have; empty: any.
+    """
 
     asset: int | None = None
     position: LonLat | None = None
     stretch: tuple[LonLat, LonLat] | None = None
     task: Task | None = None
+    priority: Priority = Priority.NORMAL
+    uav: str = ""
+    sensor: str = ""
+
+
+@dataclass(frozen=True)
+class LockRequest:
+    """A run of targets, by their places in the request, that the UAV of this name flies in this order with nothing between."""
+
+    uav: str
+    targets: tuple[int, ...]
+    at_start: bool = False
+    at_end: bool = False
+
+
+@dataclass(frozen=True)
+class BaseRequest:
+    """A place where UAVs may land."""
+
+    name: str
+    position: LonLat
 
 
 @dataclass(frozen=True)
 class PlanRequest:
+    """`bases` are those of the organisation when the plan was asked for; only filled in where a UAV is to land at one."""
+
     uavs: tuple[UavRequest, ...]
     targets: tuple[TargetRequest, ...]
     objective: Objective
     return_to_start: bool
+    locks: tuple[LockRequest, ...] = ()
+    bases: tuple[BaseRequest, ...] = ()
+
+    def end_action(self, uav: int) -> EndAction:
+        """What the UAV does in the end: the wish that all return comes first."""
+        return EndAction.RETURN if self.return_to_start else self.uavs[uav].end_action
 
 
 class InvalidRequest(Exception):
@@ -52,6 +86,22 @@ def task_from_json(value: dict[str, Any] | None) -> Task | None:
     return Task(TaskKind(value["kind"]), float(value["hold_s"])) if value else None
 
 
+def priority_to_json(priority: Priority) -> str:
+    return priority.name.lower()
+
+
+def priority_from_json(value: str) -> Priority:
+    return Priority[value.upper()]
+
+
+def lock_to_json(lock: LockRequest) -> dict[str, Any]:
+    return {"uav": lock.uav, "targets": list(lock.targets), "at_start": lock.at_start, "at_end": lock.at_end}
+
+
+def lock_from_json(value: dict[str, Any]) -> LockRequest:
+    return LockRequest(value["uav"], tuple(value["targets"]), value["at_start"], value["at_end"])
+
+
 def request_to_json(request: PlanRequest) -> dict[str, Any]:
     return {
         "uavs": [
@@ -62,6 +112,8 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "cruise_speed_mps": uav.cruise_speed_mps,
                 "end_action": uav.end_action.value,
                 "uav": uav.uav,
+                "most_targets": uav.most_targets,
+                "sensors": list(uav.sensors),
             }
             for uav in request.uavs
         ],
@@ -71,15 +123,21 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "position": list(target.position) if target.position else None,
                 "stretch": [list(end) for end in target.stretch] if target.stretch else None,
                 "task": task_to_json(target.task) if target.task else None,
+                "priority": priority_to_json(target.priority),
+                "uav": target.uav,
+                "sensor": target.sensor,
             }
             for target in request.targets
         ],
         "objective": request.objective.value,
         "return_to_start": request.return_to_start,
+        "locks": [lock_to_json(lock) for lock in request.locks],
+        "bases": [{"name": base.name, "position": list(base.position)} for base in request.bases],
     }
 
 
 def request_from_json(value: dict[str, Any]) -> PlanRequest:
+    """A job may have been stored before there were priorities, ties, sensors, limits, locks and bases."""
     return PlanRequest(
         uavs=tuple(
             UavRequest(
@@ -89,6 +147,8 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 cruise_speed_mps=uav["cruise_speed_mps"],
                 end_action=EndAction(uav["end_action"]),
                 uav=uav["uav"],
+                most_targets=uav.get("most_targets"),
+                sensors=tuple(uav.get("sensors", ())),
             )
             for uav in value["uavs"]
         ),
@@ -98,9 +158,14 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 position=LonLat(*target["position"]) if target["position"] else None,
                 stretch=(LonLat(*target["stretch"][0]), LonLat(*target["stretch"][1])) if target["stretch"] else None,
                 task=task_from_json(target["task"]),
+                priority=priority_from_json(target.get("priority", "normal")),
+                uav=target.get("uav", ""),
+                sensor=target.get("sensor", ""),
             )
             for target in value["targets"]
         ),
         objective=Objective(value["objective"]),
         return_to_start=value["return_to_start"],
+        locks=tuple(lock_from_json(lock) for lock in value.get("locks", ())),
+        bases=tuple(BaseRequest(base["name"], LonLat(*base["position"])) for base in value.get("bases", ())),
     )

@@ -7,7 +7,7 @@ from django.db import IntegrityError, transaction
 
 from missions.models import SavedSelection
 from missions.services.places import places_of
-from missions.services.requests import TargetRequest, task_to_json
+from missions.services.requests import TargetRequest, priority_to_json, task_to_json
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
@@ -59,6 +59,8 @@ def _as_kept(targets: Sequence[TargetRequest]) -> list[dict[str, Any]]:
             "position": list(target.position) if target.position else None,
             "stretch": [list(end) for end in target.stretch] if target.stretch else None,
             "task": task_to_json(place.task),
+            "priority": priority_to_json(target.priority),
+            "sensor": target.sensor,
             "label": place.label[:255],
         }
         for place in places

@@ -1,7 +1,7 @@
 """Why a UAV flies its route: how far it is straight, what keeping to the lines and going round zones costs, and what another would fly."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -19,7 +19,7 @@ from missions.flight_plan.flyable_graph import flyable_graph
 from missions.models import EndAction
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene, end_action, visits_of_places
+from missions.services.planning import current_scene, visits_of_places
 from missions.services.refusals import Scene, zone_at
 from missions.services.requests import InvalidRequest, PlanRequest
 
@@ -39,6 +39,7 @@ class _Field:
     along_m: list[float]
     visits_of: dict[int, list[int]]  # by the request's number of the target
     uav_of: dict[int, int]  # from the request's number of the UAV to that of the ways
+    bases: list[LonLat]
 
 
 def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int) -> dict[str, Any]:
@@ -50,12 +51,13 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
     field = _field(request, wanted, scene, scene.graph, scene.zones)
     order = _best_order(request, field, uav, routes[uav])
     legs_m = _legs_m(request, field, uav, order)
-    straight_m = _straight_m(request, field, uav, order)
     along_m = sum(field.along_m[visit] for visit in order)
     length_m = sum(legs_m) + along_m
     if not np.isfinite(length_m):
         raise InvalidRequest({"routes": _("A target of this route cannot be reached any more. Plan again.")})
-    detours = _detours(request, scene, uav, routes[uav], legs_m)
+    straight_m = _straight_m(request, field, uav, order)
+    end = _end(request, field, uav, order[-1])
+    detours = _detours(request, scene, uav, routes[uav], legs_m, [] if end is None else [end[0]])
     round_zones_m = None if detours is None else sum(extra_m for extra_m, _ in detours)
     return {
         "uav": uav,
@@ -73,6 +75,7 @@ def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: Inspecti
     every_place, _gone = places_of(request.targets)
     places = [place for place in every_place if place.target in wanted]
     visits, courses = visits_of_places(places)
+    bases = [base.position for base in request.bases if zone_at(base.position, scene) is None]
     flying = [number for number, asked in enumerate(request.uavs) if zone_at(asked.position, scene) is None]
     ways = ways_between(
         graph,
@@ -81,11 +84,14 @@ def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: Inspecti
         entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         rules=scene.access,
+        bases=[Terminal(base) for base in bases],
     )
     visits_of: dict[int, list[int]] = {}
     for number, visit in enumerate(visits):
         visits_of.setdefault(places[visit.target].target, []).append(number)
-    return _Field(places, ways, courses, [visit.length_m for visit in visits], visits_of, {uav: place for place, uav in enumerate(flying)})
+    return _Field(
+        places, ways, courses, [visit.length_m for visit in visits], visits_of, {uav: place for place, uav in enumerate(flying)}, bases
+    )
 
 
 def _best_order(request: PlanRequest, field: _Field, uav: int, targets: Sequence[int]) -> list[int]:
@@ -99,8 +105,8 @@ def _best_order(request: PlanRequest, field: _Field, uav: int, targets: Sequence
             visit: min((metres + float(field.ways.between_m[last, visit]), [*order, visit]) for last, (metres, order) in best.items())
             for visit in field.visits_of[target]
         }
-    home_m = field.ways.to_start_m[:, start] if _returns(request, uav) else np.zeros(len(field.along_m))
-    return min((metres + float(home_m[last]), order) for last, (metres, order) in best.items())[1]
+    end_m = _end_m(request, field, uav)
+    return min((metres + (0.0 if end_m is None else float(end_m[last])), order) for last, (metres, order) in best.items())[1]
 
 
 def _start(field: _Field, uav: int) -> int:
@@ -109,32 +115,46 @@ def _start(field: _Field, uav: int) -> int:
     return field.uav_of[uav]
 
 
-def _returns(request: PlanRequest, uav: int) -> bool:
-    return end_action(request, uav) is EndAction.RETURN
+def _end_m(request: PlanRequest, field: _Field, uav: int) -> np.ndarray | None:
+    """Metres from the end of each visit to where the UAV's route ends; None if it ends over its last target."""
+    action = request.end_action(uav)
+    if action is EndAction.RETURN:
+        return field.ways.to_start_m[:, _start(field, uav)]
+    return field.ways.to_base_m if action is EndAction.BASE else None
+
+
+def _end(request: PlanRequest, field: _Field, uav: int, last: int) -> tuple[LonLat, np.ndarray] | None:
+    """Where the route ends and the nodes on the way there from its last visit; None if it ends over its last target."""
+    action = request.end_action(uav)
+    if action is EndAction.RETURN:
+        return request.uavs[uav].position, field.ways.home(last, _start(field, uav))
+    return (field.bases[field.ways.nearest_base[last]], field.ways.to_base(last)) if action is EndAction.BASE else None
 
 
 def _legs_m(request: PlanRequest, field: _Field, uav: int, order: Sequence[int]) -> list[float]:
-    """Metres of each leg without the stretches: to each visit, and home if the UAV returns."""
+    """Metres of each leg without the stretches: to each visit, and on to where the route ends."""
     start = _start(field, uav)
     legs_m = [float(field.ways.from_start_m[start, order[0]])]
     legs_m += [float(field.ways.between_m[left, right]) for left, right in pairwise(order)]
-    return [*legs_m, float(field.ways.to_start_m[order[-1], start])] if _returns(request, uav) else legs_m
+    end_m = _end_m(request, field, uav)
+    return legs_m if end_m is None else [*legs_m, float(end_m[order[-1]])]
 
 
 def _straight_m(request: PlanRequest, field: _Field, uav: int, order: Sequence[int]) -> list[float]:
-    home = request.uavs[uav].position
-    froms = [home, *(field.courses[visit][-1] for visit in order)]
-    tos = [*(field.courses[visit][0] for visit in order), home]
-    legs_m: list[float] = distance_m(np.array(froms), np.array(tos)).tolist()
-    return legs_m if _returns(request, uav) else legs_m[:-1]
+    end = _end(request, field, uav, order[-1])
+    froms = [request.uavs[uav].position, *(field.courses[visit][-1] for visit in order)]
+    tos = [*(field.courses[visit][0] for visit in order), *([] if end is None else [end[0]])]
+    legs_m: list[float] = distance_m(np.array(froms[: len(tos)]), np.array(tos)).tolist()
+    return legs_m
 
 
 def _detours(
-    request: PlanRequest, scene: Scene, uav: int, targets: Sequence[int], legs_m: Sequence[float]
+    request: PlanRequest, scene: Scene, uav: int, targets: Sequence[int], legs_m: Sequence[float], ends: Sequence[LonLat]
 ) -> list[tuple[float, list[tuple[int, str]]]] | None:
-    """For each leg the metres that zones cost it, and the zones that bar its shorter way; None where that is too much to work out."""
+    """For each leg the metres that zones cost it, and the zones that bar its shorter way; None where that cannot be worked out."""
     positions = [
         request.uavs[uav].position,
+        *ends,
         *(at for place in places_of(request.targets)[0] if place.target in targets for at in place.course),
     ]
     (west, south), (east, north) = np.min(positions, axis=0) - BOX_MARGIN_DEG, np.max(positions, axis=0) + BOX_MARGIN_DEG
@@ -144,22 +164,26 @@ def _detours(
     if max(east - west, north - south) > MOST_BOX_DEG:
         return None
     graph = flyable_graph(build(ground_without_zones((west, south, east, north)), settings.GRAPH_RULES).graph, scene.flight)
-    own = PlanRequest((request.uavs[uav],), request.targets, request.objective, request.return_to_start)
+    own = replace(request, uavs=(request.uavs[uav],), locks=())
     field = _field(own, set(targets), scene, graph, ZoneIndex([], [], []))
     order = _best_order(own, field, 0, targets)
     free_m = _legs_m(own, field, 0, order)
+    if not np.isfinite(sum(free_m)):
+        return None
     froms = [request.uavs[uav].position, *(field.courses[visit][-1] for visit in order)]
-    tos = [*(field.courses[visit][0] for visit in order), request.uavs[uav].position]
+    tos = [field.courses[visit][0] for visit in order]
     nodes = [field.ways.out(0, order[0]), *(field.ways.onward(left, right) for left, right in pairwise(order))]
-    if len(free_m) > len(nodes):
-        nodes.append(field.ways.home(order[-1], 0))
+    end = _end(own, field, 0, order[-1])
+    if end is not None:
+        tos.append(end[0])
+        nodes.append(end[1])
     found = []
-    for flown_m, least_m, start, end, passed in zip(legs_m, free_m, froms, tos, nodes, strict=False):
+    for flown_m, least_m, left, right, passed in zip(legs_m, free_m, froms, tos, nodes, strict=False):
         extra_m = flown_m - least_m
         if not (np.isfinite(extra_m) and extra_m >= LEAST_DETOUR_M):
             found.append((0.0, []))
             continue
-        line = np.concatenate([np.array([start]), graph.position[passed], np.array([end])])
+        line = np.concatenate([np.array([left]), graph.position[passed], np.array([right])])
         met = scene.zones.meets(line[:-1], line[1:])
         barring = {scene.zones.first_met(LonLat(*line[leg]), LonLat(*line[leg + 1])) for leg in np.flatnonzero(met).tolist()}
         found.append((extra_m, sorted(zone for zone in barring if zone is not None)))

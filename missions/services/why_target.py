@@ -1,5 +1,6 @@
 """Why no route visits a target: the zone, the distance or the range behind it, and which UAV could fly there."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,7 @@ from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.graph.access import node_locator
-from inspection.graph.nearness import on_unit_sphere
+from inspection.graph.route_index import node_tree
 from inspection.graph.zone_index import widen
 from missions.fleet_selectors import uavs_of_organisation
 from missions.flight_plan.heights import is_above_limit
@@ -17,10 +17,12 @@ from missions.models import EndAction, UavState
 from missions.routing.problem import Objective, Problem, UavStart
 from missions.routing.reach import needed_range_m
 from missions.routing.terminals import Terminal, Ways, ways_between
+from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene, end_action, visits_of_places
-from missions.services.refusals import Scene, groundings, place_height_m
-from missions.services.requests import PlanRequest, UavRequest
+from missions.services.planning import current_scene, visits_of_places
+from missions.services.refusals import Scene, groundings, place_height_m, zone_at
+from missions.services.requests import PlanRequest, TargetRequest, UavRequest
+from missions.services.wishes import may_do, stored_bases
 from workspace.models import Organisation
 
 MOST_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
@@ -41,6 +43,8 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
         "height_m": None,
         "needed_height_m": None,
         "height_limit_m": scene.flight.max_agl_m,
+        "tied_to": request.targets[target].uav or None,
+        "sensor": request.targets[target].sensor,
         "uavs": [],
     }
     if not found:
@@ -58,26 +62,37 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
     on_the_ground = groundings(asked, scene)
     grounded = [number in on_the_ground for number in range(len(asked))]
-    ways, needed_m = _needs(request, asked, place, scene)
+    fleet = replace(request, uavs=tuple(asked), bases=stored_bases(organisation))  # a spare UAV may land at one where none asked does
+    ways, needed_m = _needs(fleet, place, scene)
     uavs = [
         {
             "name": uav.name,
             "uav_id": uav.uav,
             "is_in_mission": number < len(request.uavs),
             "is_grounded": grounded[number],
+            "is_allowed": may_do(uav, request.targets[target]),
+            "most_targets": uav.most_targets,
             "needed_m": float(needed_m[number]) if np.isfinite(needed_m[number]) and not grounded[number] else None,
             "max_range_m": uav.max_range_m,
-            "is_enough": bool(np.isfinite(needed_m[number]) and not grounded[number] and needed_m[number] <= (uav.max_range_m or np.inf)),
+            "is_enough": bool(
+                np.isfinite(needed_m[number])
+                and not grounded[number]
+                and may_do(uav, request.targets[target])
+                and needed_m[number] <= (uav.max_range_m or np.inf)
+            ),
         }
         for number, uav in enumerate(asked)
     ]
-    reason, barring = _reason(place, [uav for uav in uavs if uav["is_in_mission"]], ways, scene)
+    reason, barring = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, scene)
     return said | {"reason": reason, "zones": barring, "uavs": uavs}
 
 
-def _reason(place: Place, uavs: list[dict[str, Any]], ways: Ways, scene: Scene) -> tuple[str, list[dict[str, Any]]]:
+def _reason(wished: TargetRequest, place: Place, uavs: list[dict[str, Any]], ways: Ways, scene: Scene) -> tuple[str, list[dict[str, Any]]]:
     if any(uav["is_enough"] for uav in uavs):
         return "not_with_the_others", []
+    uavs = [uav for uav in uavs if uav["is_allowed"]]
+    if all(uav["is_grounded"] for uav in uavs) and (wished.uav or wished.sensor):
+        return "not_allowed", []
     if any(uav["needed_m"] is not None for uav in uavs):
         return "beyond_range", []
     if not any(ways.entry_legs) and _network_m(place, scene) > scene.access.access_leg_m:
@@ -87,12 +102,11 @@ def _reason(place: Place, uavs: list[dict[str, Any]], ways: Ways, scene: Scene) 
 
 def _network_m(place: Place, scene: Scene) -> float:
     """Metres to the nearest node of the network from the nearer end."""
-    tree = node_locator(scene.graph).tree
-    if tree is None:
-        return float("inf")
-    ends = np.array([place.course[0], place.course[-1]])
-    _, nearest = tree.query(on_unit_sphere(ends))
-    return float(distance_m(ends, scene.graph.position[nearest]).min())
+    gaps_m = []
+    for end in (place.course[0], place.course[-1]):
+        for node in node_tree(scene.graph).nearest(end, 1).tolist():
+            gaps_m += distance_m(np.array([end]), scene.graph.position[[node]]).tolist()
+    return min(gaps_m, default=float("inf"))
 
 
 def _zones_at(place: Place, scene: Scene) -> list[dict[str, Any]]:
@@ -136,29 +150,31 @@ def _spare_uavs(request: PlanRequest, place: Place, organisation: Organisation) 
         at = LonLat(*uav.location.coords)
         away_m = float(distance_m(np.array([at]), np.array([place.course[0]]))[0])
         if uav.range_m is None or away_m <= uav.range_m:
-            found.append((away_m, UavRequest(uav.name, at, uav.range_m, uav.speed_mps, EndAction(uav.end_action), uav.pk)))
+            spare = UavRequest(uav.name, at, uav.range_m, uav.speed_mps, EndAction(uav.end_action), uav.pk, sensors=tuple(uav.sensors))
+            found.append((away_m, spare))
     return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MOST_SPARE]]
 
 
-def _needs(request: PlanRequest, asked: list[UavRequest], place: Place, scene: Scene) -> tuple[Ways, np.ndarray]:
+def _needs(fleet: PlanRequest, place: Place, scene: Scene) -> tuple[Ways, np.ndarray]:
     """The least range with which each UAV could do the place alone; inf where there is no way."""
     visits, courses = visits_of_places([place])
     ways = ways_between(
         scene.graph,
         scene.zones,
-        starts=[Terminal(uav.position) for uav in asked],
+        starts=[Terminal(uav.position) for uav in fleet.uavs],
         entries=[Terminal(course[0], place.asset) for course in courses],
         exits=[Terminal(course[-1], place.asset) for course in courses],
         rules=scene.access,
+        bases=[Terminal(base.position) for base in fleet.bases if zone_at(base.position, scene) is None],
     )
-    fleet = PlanRequest(tuple(asked), request.targets, request.objective, request.return_to_start)
     problem = Problem(
-        uavs=tuple(UavStart(uav.max_range_m, end_action(fleet, number) is EndAction.RETURN) for number, uav in enumerate(asked)),
+        uavs=tuple(UavStart(uav.max_range_m, route_end(fleet, number)) for number, uav in enumerate(fleet.uavs)),
         visits=tuple(visits),
         target_count=1,
         from_start_m=ways.from_start_m,
         between_m=ways.between_m,
         to_start_m=ways.to_start_m,
         objective=Objective.TOTAL,
+        to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(fleet.uavs))),
     )
     return ways, needed_range_m(problem).min(axis=1)

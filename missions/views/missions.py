@@ -20,15 +20,13 @@ from missions.serializers import inputs, shapes
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import MissionChange
 from missions.views.mission_filters import FILTER_PARAMETERS, asked_filter, asked_order
-from missions.views.plans import is_small, job_answer, planning_message
+from missions.views.plans import is_small, job_answer, planning_job
 from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Job, User
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
-from workspace.services import create_job
-from workspace.tasks import send_job_on_commit
 from workspace.throttling import ScopedRate
 
 IF_MATCH = OpenApiParameter(
@@ -80,14 +78,7 @@ def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int
         services.plan_mission(mission=mission, actor=user, expected_revision=revision)
         return answer_mission(user, mission.pk, status=status)
     services.plannable_request(mission=mission)
-    job = create_job(
-        organisation=user.organisation,
-        created_by=user,
-        task="missions.tasks.plan_mission",
-        parameters={"mission": str(mission.pk), "revision": revision},
-        message=planning_message(targets),
-    )
-    send_job_on_commit(job)
+    job = planning_job(user, selectors.PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, targets)
     return job_answer(job, mission=str(mission.pk))
 
 

@@ -1,24 +1,51 @@
 """Plans that are answered, not stored."""
 
+from typing import Any
+from uuid import UUID
+
 from django.conf import settings
 from django.urls import reverse
-from drf_spectacular.utils import OpenApiResponse, extend_schema
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import services
 from missions.serializers.inputs import PlanInputSerializer
+from missions.serializers.plain_request import plain_request
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.views.problems import api_problems
+from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
-from workspace.models import Job
-from workspace.services import create_job
+from workspace.models import Job, JobState, User
+from workspace.renderers import FastJSONRenderer
+from workspace.services import TooManyJobs, create_job_within, refuse_jobs_beyond
+from workspace.stored_words import in_words
 from workspace.tasks import send_job_on_commit
 from workspace.throttling import ScopedRate
+from workspace.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
+
+SOLVE_PLAN = "missions.tasks.solve_plan"
+JOBS_RETRY_AFTER_S = 10
+STATUS_OF_FAILURE = {
+    "invalid": 400,
+    "nothing_to_plan": 400,
+    "no_graph": 503,
+    "graph_outdated": 503,
+    "took_too_long": 503,
+    "worker_lost": 503,
+}
+
+PREFER = OpenApiParameter(
+    "Prefer",
+    str,
+    OpenApiParameter.HEADER,
+    description="`wait=N`: for a large plan, wait up to N seconds for it (RFC 7240). 200 with the plan if it is done by then, else 202.",
+)
 
 
 class PlanList(APIView):
+    renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]
     throttle_scope = "plans"
 
@@ -26,37 +53,90 @@ class PlanList(APIView):
         operation_id="make_plan",
         summary="Plan routes for several UAVs, without storing them",
         description="Up to 12 targets are planned at once; more become a job, whose result is the plan.",
+        parameters=[PREFER],
         request=PlanInputSerializer,
         responses={200: PlanSerializer, 202: OpenApiResponse(JobLinkSerializer, description="A job plans it; see Location.")},
     )
-    @idempotent
     def post(self, request: Request) -> Response:
-        organisation = request.user.organisation
-        serializer = PlanInputSerializer(data=request.data, context={"organisation": organisation})
-        serializer.is_valid(raise_exception=True)
-        asked = serializer.to_request()
+        response = self._answer(request)
+        wait_s = preferred_wait_s(request)
+        if response.status_code == 202 and wait_s is not None:  # after the commit, or no worker would see the job
+            return _awaited(response, wait_s)
+        return response
+
+    @idempotent
+    def _answer(self, request: Request) -> Response:
+        if not is_small(_target_count(request.data)):
+            refuse_too_many_jobs(request.user)
+        asked = plain_request(request.data) or _read(request)
         with api_problems():
             if is_small(len(asked.targets)):
-                return Response(services.make_plan(request=asked))
+                return Response(services.make_plan(request=asked, as_text=True))
             services.places_of(asked.targets)  # says at once what a worker would find wrong later
-            job = create_job(
-                organisation=organisation,
-                created_by=request.user,
-                task="missions.tasks.solve_plan",
-                parameters={"request": services.request_to_json(asked)},
-                message=planning_message(len(asked.targets)),
-            )
-        send_job_on_commit(job)
-        return job_answer(job)
+        return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
+
+
+def _read(request: Request) -> services.PlanRequest:
+    serializer = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
+    serializer.is_valid(raise_exception=True)
+    return serializer.to_request()
 
 
 def is_small(targets: int) -> bool:
     return targets <= settings.ROUTING_RULES.small_plan_targets
 
 
-def planning_message(targets: int) -> str:
-    return f"Planning {targets} targets"
+def _target_count(body: Any) -> int:
+    """Of a body that nobody has looked at yet."""
+    targets = body.get("targets") if isinstance(body, dict) else None
+    return len(targets) if isinstance(targets, list) else 0
+
+
+def refuse_too_many_jobs(user: User) -> None:
+    """429 for whoever has as many large plans waiting and running as one may have: before any work."""
+    try:
+        refuse_jobs_beyond(settings.MOST_OPEN_PLANS, user=user, task=SOLVE_PLAN)
+    except TooManyJobs as error:
+        raise _too_many(error) from error
+
+
+def planning_job(user: User, task: str, parameters: dict[str, Any], targets: int) -> Job:
+    """A job that plans so many targets, on its way to a worker once this transaction is committed."""
+    try:
+        job = create_job_within(
+            settings.MOST_OPEN_PLANS,
+            organisation=user.organisation,
+            created_by=user,
+            task=task,
+            parameters=parameters,
+            message=f"Planning {targets} targets",
+        )
+    except TooManyJobs as error:  # two requests at the same moment
+        raise _too_many(error) from error
+    send_job_on_commit(job)
+    return job
+
+
+def _too_many(error: TooManyJobs) -> ApiProblem:
+    return ApiProblem(429, "too_many_jobs", str(error), retry_after_s=JOBS_RETRY_AFTER_S)
 
 
 def job_answer(job: Job, **more: str) -> Response:
     return Response({"job": str(job.pk), **more}, status=202, headers={"Location": reverse("api-job", args=[job.pk])})
+
+
+def _awaited(response: Response, wait_s: int) -> Response:
+    """The plan itself if its job ends in time; else the answer as it was, with the job's address."""
+    try:
+        job = wait_for_job(UUID(response.data["job"]), wait_s)
+    except NoRoomToWait:
+        return response
+    if job is not None and job.state == JobState.FAILED:
+        code, message = str(job.error["code"]), in_words(str(job.error["message"]))
+        status = STATUS_OF_FAILURE.get(code, 500)
+        raise ApiProblem(status, code, message, retry_after_s=JOBS_RETRY_AFTER_S if status == 503 else None)
+    headers = {name: response[name] for name in ("Location", "Idempotency-Replayed") if name in response}
+    if job is not None and job.state == JobState.DONE:
+        return Response(job.result, headers=headers | {"Preference-Applied": f"wait={wait_s}"})
+    response["Preference-Applied"] = f"wait={wait_s}"
+    return response

@@ -1,6 +1,7 @@
 """From assets and zones in the database to the graph that planners hold."""
 
 import json
+import shutil
 from io import StringIO
 from pathlib import Path
 
@@ -14,8 +15,12 @@ from django.utils import timezone
 
 from inspection import selectors, services, tasks
 from inspection.geodesy import LonLat
+from inspection.graph.flyable import flyable_part
 from inspection.graph.inspection_graph import NodeKind
+from inspection.graph.legs import Attachment
+from inspection.graph.route_index import route_index
 from inspection.graph.rules import LinkingRules
+from inspection.graph.ways import travel_between
 from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
 
@@ -232,3 +237,28 @@ def test_an_export_without_a_graph_or_to_no_folder_says_why(line, tmp_path):
     with pytest.raises(CommandError, match="cannot be written"):
         call_command("export_graph", str(tmp_path / "missing" / "graph.npz"))
     assert not connection.needs_rollback
+
+
+def test_the_task_leaves_the_index_ready_for_planners(line, settings):
+    snapshot = services.build_graph()
+    assert (settings.GRAPH_CACHE_DIR / str(snapshot.version) / "labels.label_hub.npy").exists()
+    index = route_index(selectors.current_graph())
+    assert isinstance(index.labels.label_cost.base, np.memmap)
+
+
+def test_an_old_snapshot_without_an_index_gets_one_when_it_is_loaded(line, settings):
+    snapshot = services.build_graph()
+    shutil.rmtree(settings.GRAPH_CACHE_DIR)
+    graph = selectors.graph_of_version(snapshot.version)
+    assert isinstance(route_index(graph).labels.label_cost.base, np.memmap)
+    assert travel_between(graph, [[Attachment(0, 0.0, 0.0)]], [[Attachment(1, 0.0, 0.0)]]).length_m[0, 0] > 0
+
+
+def test_a_tower_too_tall_to_be_flown_over_is_left_out_of_the_stored_part(line, settings):
+    Asset.objects.filter(osm_id=3).update(height_m=119.0)
+    services.mark_ground_changed()
+    services.build_graph()
+    graph = selectors.current_graph()
+    flyable = flyable_part(graph, settings.FLIGHT_RULES.tallest_m)
+    assert (graph.node_count, flyable.node_count) == (3, 2)
+    assert isinstance(flyable.position.base, np.memmap)

@@ -14,7 +14,7 @@ from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Job, Role, User
-from workspace.services import start_job
+from workspace.services import MAX_ATTEMPTS, start_job
 
 pytestmark = pytest.mark.django_db
 
@@ -193,7 +193,7 @@ def test_a_job_that_was_delivered_twice_is_done_once(client: Client) -> None:
 
 def test_a_worker_that_dies_again_and_again_makes_the_proposal_refused(client: Client) -> None:
     proposal = propose(client, zone_file(("A", 9.0)))
-    for _ in range(3):
+    for _ in range(MAX_ATTEMPTS):
         assert start_job(job_id=proposal["job"]["id"])
         Job.objects.update(lease_expires_at="2020-01-01T00:00Z")
     assert start_job(job_id=proposal["job"]["id"]) is None

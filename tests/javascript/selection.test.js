@@ -63,3 +63,21 @@ test("a key names asset and place", () => {
   assert.equal(keyOf({ asset: 9, position: [10.5, 50.5] }), "9 10.50000,50.50000");
   assert.equal(keyOf({ asset: 9 }), "9");
 });
+
+test("a UAV whose name is taken in the mission gets a free one there", () => {
+  const typed = { ...heron, id: null };
+  const other = (id, name = "Heron") => ({ ...heron, id, name });
+  const names = [other(3), other(4), other(5, "Heron 2"), other(6)].reduce(withUav, { ...EMPTY, uavs: [typed] }).uavs.map(({ name }) => name);
+  assert.deepEqual(names, ["Heron", "Heron 2", "Heron 3", "Heron 2 2", "Heron 4"]);
+  const long = "H".repeat(100);
+  assert.equal(withUav({ ...EMPTY, uavs: [other(3, long)] }, other(4, long)).uavs[1].name, `${"H".repeat(98)} 2`);
+});
+
+test("one asset twice in a mission keeps its two places, also in a lock", () => {
+  const row = { asset: 5, label: "Tower 5", detail: "", kind: "tower", position: [10, 50], is_point: false, stretch: null, task: null };
+  const locks = [{ uav: "Heron", targets: [1, 0], at_start: true, at_end: false }];
+  const selection = selectionOf({ objective: "total", return_to_start: true, uavs: [heron], targets: [row, row], locks });
+  assert.deepEqual(requestOf(selection).locks, locks);
+  assert.deepEqual(requestOf(selection).targets, [{ asset: 5 }, { asset: 5 }]);
+  assert.equal(withoutTargets(selection, [selection.targets[0].key]).targets.length, 1);
+});

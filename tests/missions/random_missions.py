@@ -12,7 +12,7 @@ from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
 from missions.models import EndAction
 from missions.routing.problem import Objective
-from missions.services import PlanRequest, TargetRequest, UavRequest
+from missions.services import BaseRequest, PlanRequest, TargetRequest, UavRequest
 
 ZONES = 40
 
@@ -72,7 +72,8 @@ class Region:
             for number in range(draw.randint(1, 2))
         )
         targets = tuple(self._target(draw, near, nearby) for _ in range(draw.randint(1, 4)))
-        return PlanRequest(uavs, targets, draw.choice(list(Objective)), draw.random() < 0.3)
+        bases = tuple(BaseRequest(f"Base {number}", _moved(draw, draw.choice(near), 0.02)) for number in range(2))
+        return PlanRequest(uavs, targets, draw.choice(list(Objective)), draw.random() < 0.3, bases=bases)
 
     def _target(self, draw: random.Random, near: list[tuple[float, float]], nearby: list[tuple[int, str]]) -> TargetRequest:
         if not nearby or draw.random() < 0.15:

@@ -6,7 +6,9 @@ import pytest
 from django.test import Client
 
 from inspection.models import Asset
+from inspection.selectors.ground_data import ground_without_zones
 from missions.models import Uav
+from missions.services import why_route as why_route_service
 from tests.inspection import ground
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
@@ -75,6 +77,16 @@ def test_a_target_out_of_range_says_what_each_uav_needs_and_who_of_the_fleet_cou
     assert post(client, "plans", body | {"uavs": [TERN | {"max_range_m": 900.0}, {"id": spare}]}).json()["unassigned"] == []
 
 
+def test_a_spare_uav_may_land_at_a_base_where_none_of_the_plan_does(here: World, client: Client) -> None:
+    post(client, "uavs", {"name": "Kite", "position": list(UAV_AT), "end_action": "base", "max_range_m": 50_000.0})
+    body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 100.0}]}
+    assert {uav["name"]: uav["is_enough"] for uav in why_target(client, body)["uavs"]} == {"Tern": False, "Kite": False}  # no base
+    post(client, "bases", {"name": "North", "position": [10.012, 56.0005]})
+    own, spare = why_target(client, body)["uavs"]
+    assert (own["is_enough"], spare["is_enough"]) == (False, True)
+    assert spare["needed_m"] > own["needed_m"]  # the way to the base, too
+
+
 def test_a_retired_uav_is_not_offered(here: World, client: Client) -> None:
     post(client, "uavs", {"name": "Kite", "position": list(UAV_AT)})
     Uav.objects.update(state="retired")
@@ -131,6 +143,37 @@ def test_a_route_that_a_later_zone_cuts_off_is_not_explained(here: World, client
     rebuild()
     answer = post(client, "plans/why-route", body | {"routes": [route["targets"] for route in plan["routes"]], "uav": 0})
     assert (answer.status_code, list(answer.json()["error"]["details"])) == (400, ["routes"])
+
+
+def refused_route(client: Client, body: dict[str, Any]) -> None:
+    answer = post(client, "plans/why-route", body | {"routes": [[0]], "uav": 0})
+    assert (answer.status_code, list(answer.json()["error"]["details"])) == (400, ["routes"])
+
+
+def test_a_route_with_no_way_home_is_not_explained(here: World, client: Client) -> None:
+    refused_route(client, plan_body(island()[0], return_to_start=True))
+    body = plan_body(here.towers[2], return_to_start=True)
+    why_route(client, body)
+    zone_around((here.towers[2].centre.x, here.towers[2].centre.y), half_deg=0.0002)
+    refused_route(client, body)
+
+
+@pytest.mark.parametrize("base_lon", [10.012, 10.9], ids=["inside a zone", "out of reach"])
+def test_a_route_with_no_way_to_a_base_is_not_explained(here: World, client: Client, base_lon: float) -> None:
+    post(client, "bases", {"name": "North", "position": [base_lon, 56.0005]})
+    zone_around((10.012, 56.0005), half_deg=0.0003)
+    refused_route(client, plan_body(here.towers[2]) | {"uavs": [TERN | {"end_action": "base"}]})
+
+
+def test_a_route_is_explained_where_the_zones_alone_cannot_be_thought_away(here: World, client: Client, monkeypatch: Any) -> None:
+    far = ground.tower((10.09, 56.0))
+    power_line([here.towers[5], far])
+    zone_around((10.010, 56.003), half_deg=0.0005)
+    body = plan_body(far, return_to_start=True)
+    monkeypatch.setattr(why_route_service, "ground_without_zones", lambda box: ground_without_zones((0.0, 0.0, 0.001, 0.001)))
+    said, plan = why_route(client, body)
+    assert said["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
+    assert (said["round_zones_m"], said["zones"]) == (None, [])
 
 
 def test_a_place_where_there_is_no_network_at_all_has_no_distance_to_it(here: World, client: Client) -> None:

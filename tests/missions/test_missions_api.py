@@ -58,7 +58,7 @@ def test_a_reopened_mission_names_its_targets_as_the_list_of_assets_does(client:
     number_supports()
     targets = [*here.towers, here.line, here.bridge, {"position": [10.0, 56.3]}]
     mission = post(client, "missions", mission_body(*targets)).json()
-    with django_assert_num_queries(8):  # session, user, organisation, mission, UAVs, targets, routes, ground
+    with django_assert_num_queries(9):  # session, user, organisation, mission, UAVs, targets, routes, ground, its open job
         opened = client.get(f"/api/v1/missions/{mission['id']}").json()
     names = [(target["label"], target["detail"]) for target in opened["targets"]]
     assert names[:6] == [(f"Tower {place} of 6", "110 kV AEP") for place in range(1, 7)]
@@ -293,10 +293,18 @@ def test_a_jobs_plan_is_not_stored_on_a_mission_that_was_changed_meanwhile(here:
     assert not Route.objects.exists()
 
 
+def test_a_mission_names_the_job_that_is_planning_it(here: World, client: Client) -> None:
+    mission, job = large_mission(here, client)
+    address = f"/api/v1/missions/{mission.pk}"
+    assert client.get(address).json()["planning_job"] == str(job.pk)
+    Job.objects.filter(pk=job.pk).update(state="done")
+    assert client.get(address).json()["planning_job"] is None
+
+
 def test_a_stopped_job_stores_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:
     settings.ROUTING_RULES = replace(settings.ROUTING_RULES, large_plan_search_s=0.3)
     mission, job = large_mission(here, client)
-    with mock.patch("missions.tasks._Watch.stop", return_value=True):
+    with mock.patch("workspace.job_watch.JobWatch.stop", return_value=True):
         tasks.plan_mission(str(job.pk))
     job.refresh_from_db()
     mission.refresh_from_db()
@@ -353,5 +361,14 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
     patch(client, f"uavs/{uav}", {"position": [11.0, 57.0]})
     opened = client.get(f"/api/v1/missions/{mission['id']}").json()
     assert opened["uavs"] == [
-        {"id": uav, "name": "Tern 9", "position": list(UAV_AT), "max_range_m": 9_000.0, "cruise_speed_mps": 12.0, "end_action": "hover"}
+        {
+            "id": uav,
+            "name": "Tern 9",
+            "position": list(UAV_AT),
+            "max_range_m": 9_000.0,
+            "cruise_speed_mps": 12.0,
+            "end_action": "hover",
+            "most_targets": None,
+            "sensors": [],
+        }
     ]

@@ -14,7 +14,7 @@ from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import EndAction, Uav
 from missions.routing.problem import Objective, Task, TaskKind
-from missions.services import GraphOutdated, InvalidRequest, TargetRequest, make_plan
+from missions.services import BaseRequest, GraphOutdated, InvalidRequest, TargetRequest, make_plan
 from tests.inspection import ground
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, island, power_line, rebuild, request, uav, world, zone_around
 
@@ -262,9 +262,11 @@ def test_when_no_uav_can_take_off_every_target_says_so() -> None:
 @pytest.mark.parametrize("action", list(EndAction))
 def test_the_end_of_a_route_is_what_the_uav_does_at_the_end(action: EndAction) -> None:
     here = world()
-    (route,) = make_plan(request=request(here.towers[3], uavs=(uav(end_action=action),)))["routes"]
+    base = BaseRequest("North", LonLat(10.02, 56.001))
+    (route,) = make_plan(request=request(here.towers[3], uavs=(uav(end_action=action),), bases=(base,)))["routes"]
     assert route["end_action"] == action
-    assert places(route)[-1] == (UAV_AT if action is EndAction.RETURN else (TOWER_LONS[3], LINE_LAT))
+    elsewhere = {EndAction.RETURN: UAV_AT, EndAction.BASE: base.position}
+    assert places(route)[-1] == elsewhere.get(action, (TOWER_LONS[3], LINE_LAT))
     assert route["waypoints"][-1]["kind"] == "end"
 
 

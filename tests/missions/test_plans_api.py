@@ -11,9 +11,12 @@ from django.test import Client
 from missions import tasks
 from missions.models import Mission
 from missions.routing import solver
+from missions.routing.progress import Progress
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world, zone_around
+from tests.workspace.counters import forget_counts
 from tests.workspace.people import client_of, somebody
+from workspace import job_watch
 from workspace.models import Job, JobState, Organisation, Role
 from workspace.services import cancel_job
 
@@ -134,6 +137,7 @@ def test_a_zone_newer_than_the_graph_makes_the_answer_try_again(here: World, cli
 
 
 def test_the_rate_of_plans_is_limited_per_user(here: World, client: Client, settings: Any) -> None:
+    forget_counts()
     with mock.patch("workspace.throttling.ScopedRate.THROTTLE_RATES", {"plans": "3/hour"}):
         answers = [post(client, "plans", plan_body(here.towers[0])).status_code for _ in range(4)]
         other = post(client_of(somebody()), "plans", plan_body(here.towers[0])).status_code
@@ -161,28 +165,33 @@ def test_a_large_plan_with_an_unknown_asset_is_refused_before_it_becomes_a_job(h
     assert not Job.objects.exists()
 
 
-def large_job(here: World, client: Client) -> Job:
-    return Job.objects.get(pk=post(client, "plans", plan_body(*many(here))).json()["job"])
+def large_job(here: World, client: Client, **more: Any) -> Job:
+    return Job.objects.get(pk=post(client, "plans", plan_body(*many(here), **more)).json()["job"])
 
 
-def test_a_job_stopped_while_it_runs_ends_before_its_time_with_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:
+@pytest.mark.parametrize("locks", [[], [{"uav": "Tern", "targets": [5, 2]}]], ids=["free", "locked"])
+def test_a_job_stopped_while_it_runs_ends_before_its_time_with_the_best_plan_until_then(
+    here: World, client: Client, settings: Any, locks: list[Any]
+) -> None:
     settings.ROUTING_RULES = replace(settings.ROUTING_RULES, large_plan_search_s=60.0)
-    job = large_job(here, client)
+    job = large_job(here, client, locks=locks)
     reported: list[float] = []
 
-    def report(*, job: Job, progress: float, message: str = "") -> None:
+    def report(*, job: Job, progress: float, **more: Any) -> None:
         reported.append(progress)
         if len(reported) == 3:
             cancel_job(job=job)
-        original(job=job, progress=progress, message=message)
+        original(job=job, progress=progress, **more)
 
-    original = tasks.report_progress
-    with mock.patch("missions.tasks.report_progress", report), mock.patch("missions.tasks.REPORT_INTERVAL_S", 0.05):
+    original = job_watch.report_progress
+    with mock.patch("workspace.job_watch.report_progress", report), mock.patch("missions.tasks.JobWatch", watching_often):
         tasks.solve_plan(str(job.pk))
     job.refresh_from_db()
     assert (job.state, job.message) == (JobState.DONE, "Stopped; the best plan until then is kept")
     assert sorted(job.result["routes"][0]["targets"]) == list(range(LARGE))
     assert (job.finished_at - job.started_at).total_seconds() < 30.0  # of a search of 60 s
+    assert job.result["routes"][0]["locked"] == [target for lock in locks for target in lock["targets"]]
+    assert (job.result["wish"] is not None) == bool(locks)
 
 
 def test_a_job_cancelled_before_it_starts_is_never_solved(here: World, client: Client) -> None:
@@ -230,9 +239,47 @@ def test_a_stored_uav_brings_its_values_and_the_request_overrides_them(here: Wor
 def test_a_planner_whose_database_is_away_for_a_moment_goes_on(here: World, client: Client) -> None:
     job = large_job(here, client)
     away = mock.Mock(side_effect=[OperationalError("the server closed the connection"), None])
-    with mock.patch("missions.tasks.report_progress", away), mock.patch("missions.tasks.REPORT_INTERVAL_S", 0.0):
-        watch = tasks._Watch(job)
-        watch.on_progress(0.5, "half way")
-        watch.on_progress(0.6, "on the way again")
+    with mock.patch("workspace.job_watch.report_progress", away), job_watch.JobWatch(job, interval_s=0.0) as watch:
+        watch.note(0.5, "half way")
+        watch.note(0.6, "on the way again")
+        assert watch.is_cancelled is False
     assert away.call_count == 2
-    assert watch.is_cancelled is False
+
+
+def test_a_database_that_is_away_leaves_the_job_for_the_next_worker(here: World, client: Client) -> None:
+    job = large_job(here, client)
+    with mock.patch("missions.services.make_plan", side_effect=OperationalError("gone")), pytest.raises(OperationalError):
+        tasks.solve_plan(str(job.pk))
+    job.refresh_from_db()
+    assert job.state == JobState.RUNNING  # until its lease runs out
+
+
+def test_the_best_route_so_far_is_drawn_while_it_is_searched_for(here: World, client: Client) -> None:
+    job = large_job(here, client)
+    drawn = []
+
+    def report(*, best: Any = None, **more: Any) -> None:
+        drawn.append(best)
+
+    def solve(problem: Any, *, on_progress: Any, **more: Any) -> Any:
+        order = tuple(range(len(problem.visits)))
+        on_progress(Progress(0.5, "half way", (order,), bound=100.0))
+        return original(problem, on_progress=on_progress, **more)
+
+    original = solver.solve
+    with (
+        mock.patch("workspace.job_watch.report_progress", report),
+        mock.patch("missions.tasks.JobWatch", watching_often),
+        mock.patch("missions.services.assignment.solve", solve),
+    ):
+        tasks.solve_plan(str(job.pk))
+    best = next(entry for entry in drawn if entry)
+    assert (best["unit"], best["bound"], best["left_out"]) == ("m", 100.0, 0)
+    assert best["value"] > 0
+    (feature,) = best["routes"]["features"]
+    assert (feature["properties"], feature["geometry"]["type"]) == ({"uav": 0, "targets": LARGE}, "LineString")
+    assert feature["geometry"]["coordinates"][0] == pytest.approx(list(UAV_AT))
+
+
+def watching_often(job: Job) -> job_watch.JobWatch:
+    return job_watch.JobWatch(job, interval_s=0.02)

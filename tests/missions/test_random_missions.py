@@ -16,10 +16,10 @@ from inspection.geodesy import distance_m, path_length_m
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.selectors import zones_in_force
 from inspection.services import import_osm
-from missions.models import EndAction
 from missions.routing.problem import Problem, UavStart, Visit
 from missions.routing.terminals import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
 from missions.services import PlanRequest, make_plan
+from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
 from missions.services.planning import current_scene
 from missions.services.refusals import Scene
@@ -132,11 +132,11 @@ class _Model:
         self.starts = [Terminal(request.uavs[uav].position) for uav in self.uavs]
         self.entries = [Terminal(course[0], place.asset) for place, course in self.courses]
         self.exits = [Terminal(course[-1], place.asset) for place, course in self.courses]
-        self.ways: Ways = ways_between(scene.graph, scene.zones, self.starts, self.entries, self.exits, scene.access)
+        bases = [Terminal(base.position) for base in request.bases if not scene.zones.contains([base.position], near)[0]]
+        self.ways: Ways = ways_between(scene.graph, scene.zones, self.starts, self.entries, self.exits, scene.access, bases)
         self.problem = Problem(
             uavs=tuple(
-                UavStart(request.uavs[uav].max_range_m, request.return_to_start or request.uavs[uav].end_action is EndAction.RETURN)
-                for uav in self.uavs
+                UavStart(request.uavs[uav].max_range_m, route_end(request, uav), request.uavs[uav].cruise_speed_mps) for uav in self.uavs
             ),
             visits=tuple(self.visits),
             target_count=len(self.open),
@@ -144,6 +144,7 @@ class _Model:
             between_m=self.ways.between_m,
             to_start_m=self.ways.to_start_m,
             objective=request.objective,
+            to_base_m=np.repeat(self.ways.to_base_m[:, None], len(self.uavs), axis=1),
         )
 
     def assert_distances_are_networkxs(self, network: nx.Graph) -> None:

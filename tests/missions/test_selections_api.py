@@ -33,7 +33,7 @@ def test_a_selection_comes_back_as_it_was_kept(client: Client) -> None:
     stretch = [[10.0, 56.0], [10.01, 56.01]]
     kept = keeps(
         client,
-        {"asset": mast.pk, "task": {"kind": "hold", "hold_s": 45}},
+        {"asset": mast.pk, "task": {"kind": "hold", "hold_s": 45}, "priority": "high", "sensor": "Lidar"},
         {"asset": way.pk, "stretch": stretch},
         {"asset": way.pk, "position": [10.005, 56.005]},
         {"position": [10.2, 56.2]},
@@ -46,8 +46,9 @@ def test_a_selection_comes_back_as_it_was_kept(client: Client) -> None:
     assert [target["label"] for target in body["targets"]] == ["T 1", "North", "North", "56.20000, 10.20000"]
     assert body["targets"][0] == {
         "asset": mast.pk, "label": "T 1", "detail": "138 kV", "length_m": None, "kind": "tower", "position": [10.0, 56.0], "stretch": None,
-        "is_point": False, "task": {"kind": "hold", "hold_s": 45.0},
+        "is_point": False, "task": {"kind": "hold", "hold_s": 45.0}, "priority": "high", "sensor": "Lidar",
     }  # fmt: skip
+    assert [(target["priority"], target["sensor"]) for target in body["targets"][1:]] == [("normal", "")] * 3
     assert [target["stretch"] for target in body["targets"]] == [None, stretch, None, None]
     assert [target["is_point"] for target in body["targets"]] == [False, False, True, True]
 

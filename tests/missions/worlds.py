@@ -66,9 +66,14 @@ def zone_around(centre: tuple[float, float], half_deg: float = 0.001, *, with_gr
 
 
 def uav(
-    position: tuple[float, float] = UAV_AT, *, name: str = "Tern", max_range_m: float | None = None, end_action: EndAction = EndAction.HOVER
+    position: tuple[float, float] = UAV_AT,
+    *,
+    name: str = "Tern",
+    max_range_m: float | None = None,
+    end_action: EndAction = EndAction.HOVER,
+    **wishes: Any,
 ) -> UavRequest:
-    return UavRequest(name, LonLat(*position), max_range_m, 12.0, end_action)
+    return UavRequest(name, LonLat(*position), max_range_m, 12.0, end_action, **wishes)
 
 
 def request(
@@ -76,6 +81,7 @@ def request(
     uavs: tuple[UavRequest, ...] | None = None,
     objective: Objective = Objective.TOTAL,
     return_to_start: bool = False,
+    **wishes: Any,
 ) -> PlanRequest:
     asked = tuple(target if isinstance(target, TargetRequest) else TargetRequest(target.pk) for target in targets)
-    return PlanRequest((uav(),) if uavs is None else uavs, asked, objective, return_to_start)
+    return PlanRequest((uav(),) if uavs is None else uavs, asked, objective, return_to_start, **wishes)

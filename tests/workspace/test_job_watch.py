@@ -4,7 +4,7 @@ import threading
 import time
 from collections.abc import Callable
 from datetime import timedelta
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import pytest
 from django.db import connection, transaction
@@ -70,6 +70,22 @@ def test_the_lease_is_renewed_while_one_long_statement_runs(job: Job) -> None:
     with JobWatch(job, interval_s=OFTEN_S), connection.cursor() as cursor:
         cursor.execute("SELECT pg_sleep(0.5)")
     assert stored(job).lease_expires_at > timezone.now() + timedelta(seconds=LEASE_S / 2)
+
+
+def _fails() -> dict[str, float]:
+    raise IndexError("nothing to draw")
+
+
+@pytest.mark.parametrize("draw", [_fails, object], ids=["cannot be drawn", "cannot be stored"])
+def test_the_lease_is_renewed_whatever_becomes_of_the_drawing(job: Job, draw: Callable[[], Any]) -> None:
+    Job.objects.update(lease_expires_at=timezone.now())
+    with JobWatch(job, interval_s=OFTEN_S) as watch:
+        watch.note(0.3, "searching", draw)
+        wait_until(lambda: stored(job).message == "searching")
+        assert stored(job).lease_expires_at > timezone.now()
+        watch.note(0.6, "better", lambda: {"value": 7.0})
+        wait_until(lambda: stored(job).best == {"value": 7.0})
+        assert not watch.stop()
 
 
 def test_a_wish_to_stop_reaches_the_work_at_its_next_look_and_nothing_is_written(job: Job) -> None:

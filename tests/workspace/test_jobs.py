@@ -19,6 +19,7 @@ from workspace.services import (
     MAX_ATTEMPTS,
     QUEUE_PATIENCE_S,
     JobCancelled,
+    JobLost,
     cancel_is_requested,
     cancel_job,
     confirm_cancelled,
@@ -140,6 +141,43 @@ def test_the_sweep_queues_what_a_dead_worker_held() -> None:
     assert start_job(job_id=job.pk) is not None
 
 
+def test_the_sweep_sends_a_lost_job_at_once_however_new_it_is() -> None:
+    job = running_job()
+    lose(job)
+    assert requeue_lost_jobs() == [job]
+
+
+def test_a_worker_whose_job_was_put_back_cannot_finish_it() -> None:
+    job = running_job()
+    lose(job)
+    requeue_lost_jobs()
+    assert not finish_job(job=job, result="late")
+    with pytest.raises(JobLost):
+        report_progress(job=job, progress=0.9)
+    assert state(job) == JobState.QUEUED
+
+
+def test_the_best_so_far_is_there_until_the_job_ends() -> None:
+    job = running_job()
+    report_progress(job=job, progress=0.5, best={"value": 3})
+    report_progress(job=job, progress=0.6)
+    job.refresh_from_db()
+    assert job.best == {"value": 3}
+    finish_job(job=job, result=1)
+    job.refresh_from_db()
+    assert job.best is None
+
+
+def test_a_cancelled_job_keeps_its_lease_while_the_worker_writes_up_what_it_has() -> None:
+    job = running_job()
+    cancel_job(job=job)
+    lose(job)
+    with pytest.raises(JobCancelled):
+        report_progress(job=job, progress=0.5)
+    assert requeue_lost_jobs() == []
+    assert finish_job(job=job, result="the best until then")
+
+
 def test_the_sweep_leaves_alone_what_is_worked_on_and_what_is_new() -> None:
     grow_old(running_job())
     new_job()
@@ -243,6 +281,20 @@ def test_a_list_of_jobs_leaves_their_results_out(django_assert_num_queries: Any)
     assert len(listed) == len(jobs)
     assert "result" not in listed[0]
     assert client.get(f"/api/v1/jobs/{jobs[0].pk}").json()["result"] == {"routes": []}
+
+
+def test_a_page_that_is_loaded_again_finds_the_open_jobs_of_its_user() -> None:
+    user, other = somebody(), somebody()
+    waiting, running, done, of_another = new_job(user), new_job(user), new_job(user), new_job(other)
+    Job.objects.filter(pk=running.pk).update(state=JobState.RUNNING)
+    Job.objects.filter(pk=done.pk).update(state=JobState.DONE)
+
+    def listed(query: str) -> set[str]:
+        return {job["id"] for job in client_of(user).get(f"/api/v1/jobs?{query}").json()["results"]}
+
+    assert listed("open=true&mine=true") == {str(waiting.pk), str(running.pk)}
+    assert listed("open=true") == {str(waiting.pk), str(running.pk), str(of_another.pk)}
+    assert listed("mine=true") == {str(waiting.pk), str(running.pk), str(done.pk)}
 
 
 def test_pages_of_jobs_follow_one_another_newest_first() -> None:

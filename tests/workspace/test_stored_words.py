@@ -27,10 +27,17 @@ def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
 
 
 @pytest.mark.parametrize(
-    "path", ["missions/services/planning.py", "missions/routing/solver.py", "inspection/osm/reader.py", "inspection/services/osm_import.py"]
+    "path",
+    [
+        "missions/services/planning.py",
+        "missions/services/assignment.py",
+        "missions/routing/solver.py",
+        "inspection/osm/reader.py",
+        "inspection/services/osm_import.py",
+    ],
 )
 def test_every_step_of_a_job_has_a_word_in_german(path: str) -> None:
-    steps = re.findall(r'progress\((?:[\d.]+, )?"([^"]+)"|_tell\(progress, "([^"]+)"', (ROOT / path).read_text())
+    steps = re.findall(r'[pP]rogress\((?:[\d.]+(?: \+ [\w./ ]+)?, )?"([^"]+)"|_tell\(progress, "([^"]+)"', (ROOT / path).read_text())
     assert steps
     with override("de"):
         assert [step for pair in steps for step in pair if step and in_words(step) == step] == []

@@ -1,9 +1,9 @@
 """How often a user may ask, with Redis and without."""
 
 import pytest
-from django.core.cache import cache
 from redis.exceptions import ConnectionError as RedisAway
 
+from tests.workspace.counters import forget_counts
 from tests.workspace.people import client_of, somebody
 from workspace.throttling import ScopedRate
 
@@ -13,7 +13,7 @@ pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.echo_urls
 @pytest.fixture(autouse=True)
 def three_an_hour(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ScopedRate, "THROTTLE_RATES", {"plans": "3/hour"})
-    cache.clear()
+    forget_counts()
 
 
 def statuses(number: int = 5) -> list[int]:
@@ -39,7 +39,7 @@ def test_without_redis_nobody_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
     def away(*args: object, **options: object) -> None:
         raise RedisAway("no socket")
 
-    monkeypatch.setattr(cache, "add", away)
+    monkeypatch.setattr("workspace.throttling._count", away)
     assert statuses() == [200] * 5
 
 

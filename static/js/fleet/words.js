@@ -16,6 +16,7 @@ export const ENDS = [
   ["hover", t("Hover over its last target")],
   ["return", t("Return to start")],
   ["land", t("Land at its last target")],
+  ["base", t("Land at the nearest base")],
 ];
 
 export const MISSION_STATES = {

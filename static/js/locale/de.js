@@ -14,7 +14,8 @@ import map from "./de/map.js";
 import mission from "./de/mission.js";
 import missionPanels from "./de/mission_panels.js";
 import missions from "./de/missions.js";
+import planning from "./de/planning.js";
 import terrain from "./de/terrain.js";
 import zones from "./de/zones.js";
 
-export default { ...account, ...admin, ...administration, ...assets, ...draw, ...fleet, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...terrain, ...zones };
+export default { ...account, ...admin, ...administration, ...assets, ...draw, ...fleet, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...planning, ...terrain, ...zones };

@@ -73,6 +73,7 @@ export function mapStyle(palette, options) {
       [TILES]: { type: "vector", tiles: [options.tilesAddress], minzoom: 0, maxzoom: 15 },
       "picked-shapes": { type: "geojson", data: NOTHING },
       routes: { type: "geojson", data: NOTHING },
+      "routes-so-far": { type: "geojson", data: NOTHING },
       "strip-point": { type: "geojson", data: NOTHING },
       "many-targets": { type: "geojson", data: NOTHING },
       selection: { type: "geojson", data: NOTHING },
@@ -163,6 +164,13 @@ function routeLayers(palette) {
       filter: whereDashed(true),
       layout: { "line-join": "round" },
       paint: { "line-color": routeColour(palette), "line-width": routeWidth(), "line-offset": ROUTE_OFFSET, "line-dasharray": [6, 2] },
+    },
+    {
+      id: "routes-so-far",
+      type: "line",
+      source: "routes-so-far",
+      layout: { "line-join": "round" },
+      paint: { "line-color": routeColour(palette), "line-width": routeWidth(-0.8), "line-offset": ROUTE_OFFSET, "line-opacity": 0.8, "line-dasharray": [2, 1.5] },
     },
     {
       id: "routes-arrows",

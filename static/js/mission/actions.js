@@ -4,9 +4,12 @@ import { ApiError, signInAddress } from "../api.js";
 import { t } from "../text.js";
 import { createConflicts } from "./conflicts.js";
 import { createFleetActions } from "./fleet_actions.js";
+import { createLocking } from "./locking.js";
+import { settled } from "./locks.js";
 import { createPicking } from "./picking.js";
 import { createPlanning } from "./planning.js";
 import { showBoth } from "./panels/both.js";
+import { createRunningJob } from "./running_job.js";
 import { createSaving } from "./saving.js";
 
 const wordsOf = (error) => (error instanceof ApiError ? error.message : t("Something failed on this page. Reload it; your selection is kept in this browser."));
@@ -14,7 +17,7 @@ const wordsOf = (error) => (error instanceof ApiError ? error.message : t("Somet
 /** page: { mission, canPlan, userName }; drafts: see draft.js. */
 export function createActions(store, history, page, drafts) {
   const selection = () => store.state.selection;
-  const change = (next) => history.changeTo(next);
+  const change = (next) => history.changeTo(settled(next));
 
   /** Stays until the next try; with `untilChanged` until the selection is another one. */
   function problem(title, text, actions = [], { untilChanged = false } = {}) {
@@ -32,10 +35,10 @@ export function createActions(store, history, page, drafts) {
     } else problem(title, wordsOf(error), actions, how);
   }
 
-  const context = { store, history, selection, change, problem, failed, page, drafts, running: { stopping: null } };
+  const context = { store, history, selection, change, problem, failed, page, drafts, running: { stopping: null }, runningJob: createRunningJob({ user: page.userId }) };
   const { waitForJob, ...planning } = createPlanning(context);
   let saving = null;
   const conflicts = createConflicts(context, () => saving, showBoth);
   saving = createSaving(context, waitForJob, conflicts);
-  return { failed, ...createPicking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context) };
+  return { failed, ...createPicking(context), ...createLocking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context) };
 }

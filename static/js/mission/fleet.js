@@ -1,7 +1,7 @@
 /** Fleet and mission together, as values. */
 
 import { routeLetter } from "../map/palette.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { lengthText, speedText } from "../units.js";
 
 /** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, range, speed and end. */
@@ -44,11 +44,12 @@ export function isAskedFor({ base_name, sensors, type_name }, { base = "", senso
   return (!base || base_name === base) && (!sensor || (sensors ?? []).includes(sensor)) && (!type || type_name === type);
 }
 
-const END_WORDS = { hover: t("hovers at the end"), land: t("lands at the end"), return: t("returns to start") };
+const END_WORDS = { hover: t("hovers at the end"), land: t("lands at the end"), return: t("returns to start"), base: t("lands at the nearest base") };
 
 /** "range 80 km · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends. */
-export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, type_name, sensors = [] }, returnsToStart) {
-  const facts = [max_range_m ? t("range {length}", { length: lengthText(max_range_m) }) : t("range not stated")];
+export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, most_targets = null, type_name, sensors = [] }, returnsToStart) {
+  const most = most_targets === null ? [] : [tn(most_targets, "at most {count} target", "at most {count} targets")];
+  const facts = [...most, max_range_m ? t("range {length}", { length: lengthText(max_range_m) }) : t("range not stated")];
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
   const end = END_WORDS[returnsToStart ? "return" : end_action];
   return [...facts, end, sensors.join(", "), type_name].filter(Boolean).join(" · ");

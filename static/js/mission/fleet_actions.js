@@ -1,30 +1,37 @@
 /** UAVs of a mission: chosen from the fleet, added to it, moved, given other values for this mission. */
 
 import { post } from "../api.js";
-import { say } from "../page/toast.js";
+import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import * as picks from "./selection.js";
 
 /** context: see actions.js. */
 export function createFleetActions({ store, selection, change }) {
+  /** Takes UAVs along, in one step of the history; says where one has another name in this mission. Returns how many were added. */
+  function takeAlong(uavs) {
+    const before = selection().uavs.length;
+    change(uavs.reduce(picks.withUav, selection()));
+    const added = selection().uavs.slice(before);
+    const renamed = uavs.map(({ id, name }) => ({ name, other: added.find((uav) => uav.id === id)?.name ?? name })).find(({ name, other }) => other !== name);
+    if (renamed) toast(t("{name} is called {other} in this mission: another UAV has its name.", renamed));
+    return added.length;
+  }
+
   async function addUav(body) {
     const { data } = await post("/uavs", body);
     const uav = picks.uavOf(data);
     store.update({ fleet: [...store.state.fleet, uav] });
-    change(picks.withUav(selection(), uav));
+    takeAlong([uav]);
     say(t("{name} is added and chosen.", { name: uav.name }));
   }
 
   function addUavOfFleet(id) {
     const uav = store.state.fleet.find((known) => known.id === id);
-    if (uav) change(picks.withUav(selection(), uav));
+    if (uav) takeAlong([uav]);
   }
 
-  /** Several at once are one step of the history. */
   function addUavsOfFleet(ids) {
-    const before = selection().uavs.length;
-    change(ids.reduce((chosen, id) => picks.withUav(chosen, store.state.fleet.find((known) => known.id === id)), selection()));
-    const added = selection().uavs.length - before;
+    const added = takeAlong(ids.map((id) => store.state.fleet.find((known) => known.id === id)));
     say(tn(added, "{count} UAV is chosen.", "{count} UAVs are chosen."));
   }
 

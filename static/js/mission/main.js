@@ -9,6 +9,7 @@ import { t } from "../text.js";
 import { createActions } from "./actions.js";
 import { createDrafts } from "./draft.js";
 import { standingUavs } from "./fleet.js";
+import { lockOf } from "./locks.js";
 import { mountMap } from "./map_panel.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFoot } from "./panels/foot.js";
@@ -54,7 +55,7 @@ if (page.canPlan) mountOptions(store, actions, page.canPlan);
 else mountOptionsRead(store);
 mountFoot(store, actions);
 const grounds = createGrounds();
-mountRoutes(store, { grounds, showPoint: (position) => map.showPoint(position) });
+mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });
 mountProfile(store, { grounds });
 mountWhy(store, actions, { canPlan: page.canPlan });
 const finder = mountFinder({
@@ -95,6 +96,9 @@ function planningKeys() {
     { keys: ["mod+z"], words: t("Undo"), act: actions.undo },
     { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: actions.redo },
     { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
+    { keys: ["l"], words: t("Lock or unlock the chosen target"), act: lockChosen },
+    { keys: ["alt+arrowup"], words: t("The chosen target earlier"), act: () => shiftChosen(-1) },
+    { keys: ["alt+arrowdown"], words: t("The chosen target later"), act: () => shiftChosen(1) },
     { keys: ["v"], words: t("Pick points"), act: choose("point") },
     { keys: ["b"], words: t("Pick by box"), act: choose("box") },
     { keys: ["o"], words: t("Draw round what is picked"), act: choose("lasso") },
@@ -109,6 +113,18 @@ function removeChosen() {
   if (!chosenTargets.length) return false;
   actions.removeTargets(chosenTargets);
   return true;
+}
+
+function lockChosen() {
+  const { chosenTarget, selection } = store.state;
+  if (chosenTarget === null) return false;
+  if (lockOf(selection, chosenTarget)) return actions.unlockTarget(chosenTarget);
+  return actions.lockTarget(chosenTarget);
+}
+
+function shiftChosen(step) {
+  const { chosenTarget } = store.state;
+  return chosenTarget !== null && actions.shiftTarget(chosenTarget, step);
 }
 
 function escape() {
@@ -159,6 +175,7 @@ async function load() {
     if (page.mission) await actions.open(page.mission);
     else if (page.canPlan) actions.openDraft();
     isLoaded = true;
+    void actions.resume();
   } catch (error) {
     actions.failed(t("Not loaded."), error, [{ label: t("Load again"), act: () => location.reload() }]);
     if (!(error instanceof ApiError)) throw error;

@@ -15,7 +15,7 @@ import { goTo } from "../map/places_found.js";
 import { tipOf } from "../map/tips.js";
 import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";
-import { isPlanCurrent, placesOf, routesOf, unreachedOf } from "./plan_view.js";
+import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
 import { createMapPicking } from "./map_picking.js";
 import { isWhole, nameOf } from "./selection.js";
@@ -131,9 +131,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   }
 
   function drawTargets(state) {
-    const isCurrent = isPlanCurrent(state);
-    const missed = new Set(isCurrent ? unreachedOf(state.plan).map(({ target }) => target?.key) : []);
-    const places = isCurrent ? placesOf(state.plan) : new Map();
+    const { places, missed } = shownPlaces(state);
     const pills = state.selection.targets
       .map((target, index) => {
         const place = places.get(target.key);
@@ -141,6 +139,14 @@ export function mountMap(store, actions, page, { askForUav }) {
       })
       .filter((pill) => pill.position);
     targets.update(pills);
+  }
+
+  /** One route forward; all of them back while they are no plan of what is picked, or a better one is being searched for. */
+  function lookAt(state) {
+    const sequence = state.lookedAt ?? state.chosenRoute;
+    const isOutdated = (state.plan !== null && !isPlanCurrent(state)) || Boolean(state.planning?.best);
+    routesLayer.lookAt(map, view.palette(), isOutdated ? -1 : sequence);
+    targets.lookAt(isOutdated ? null : sequence);
   }
 
   function start() {
@@ -155,13 +161,18 @@ export function mountMap(store, actions, page, { askForUav }) {
       if (plan && !store.state.planIsStored) fit();
       else if (plan && !opensAtPlace && !wasFitted) fit({ animate: false });
     });
-    store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
-    store.listen(["lookedAt", "chosenRoute", "plan", "selection"], (state) => {
-      const sequence = state.lookedAt ?? state.chosenRoute;
-      const isOutdated = state.plan !== null && !isPlanCurrent(state);
-      routesLayer.lookAt(map, view.palette(), isOutdated ? -1 : sequence);
-      targets.lookAt(isOutdated ? null : sequence);
+    let soFar = null;
+    store.listen(["planning"], ({ planning }) => {
+      const best = planning?.best ?? null;
+      if (best === soFar) return;
+      const isFirst = soFar === null;
+      soFar = best;
+      routesLayer.showSoFar(map, best?.routes ?? null);
+      lookAt(store.state);
+      if (isFirst && best.routes.features.length) view.fit(boxAround(best.routes.features.flatMap(({ geometry }) => geometry.coordinates)));
     });
+    store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
+    store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
     store.listen(["ground"], ({ ground }) => {
@@ -180,9 +191,10 @@ export function mountMap(store, actions, page, { askForUav }) {
     banner.hidden = !words;
     banner.replaceChildren(words ?? "", h("button", { type: "button", class: "text-button", onclick: () => store.update({ tool: "point" }) }, isPlacing ? t("Cancel") : t("Done")));
   });
-  store.listen(["selection", "plan"], ({ selection, plan }) => {
-    const routes = plan ? plan.result.routes.filter((route) => route.geometry).length : 0;
-    map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes: tn(routes, "{count} route", "{count} routes") }));
+  store.listen(["selection", "plan", "planning"], ({ selection, plan, planning }) => {
+    const flown = planning?.best?.routes.features ?? (plan?.result.routes ?? []).filter((route) => route.geometry);
+    const routes = planning?.best ? tn(flown.length, "{count} route so far", "{count} routes so far") : tn(flown.length, "{count} route", "{count} routes");
+    map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes }));
   });
 
   /** Routes and targets; UAVs only as long as nothing says which of them fly. */

@@ -1,13 +1,17 @@
 /** Two people's changes of one mission put together, part by part. Values in, values out. */
 
 import { t, tn } from "../text.js";
+import { areContrary, settled } from "./locks.js";
+import { wishesOf } from "./selection.js";
 
 const SINGLE = ["objective", "return_to_start"];
 const keyOfTarget = ({ key }) => key;
 const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav.name}` : `id ${uav.id}`);
 /** Without a task a target has its kind's own, which the server writes down: that is the same. */
-const isSameTarget = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
-const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null }) => JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action]);
+const isSameTask = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
+const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
+const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null }) =>
+  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets]);
 const isSameUav = (a, b) => uavFacts(a) === uavFacts(b);
 
 /** Items of three lists by their keys: theirs, with what I added, changed and took away. */
@@ -37,6 +41,25 @@ function mergedList(base, mine, theirs, keyOf, isSame) {
   return { list, isClash };
 }
 
+const locksOf = ({ locks }) => locks ?? [];
+const keyOfLock = ({ uav, targets, at_start, at_end }) => JSON.stringify([uav, targets, Boolean(at_start), Boolean(at_end)]);
+const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).map(keyOfLock).join();
+
+/** Whether somebody else than `uav` alone may fly a target. */
+const isTiedElsewhere = (target, uav) => ![null, uav].includes(wishesOf(target).uav);
+
+/** Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of theirs and one of mine, mine stands. */
+function mergedLocks(base, mine, theirs, targets) {
+  const { list } = mergedList(locksOf(base), locksOf(mine), locksOf(theirs), keyOfLock, () => true);
+  const own = new Set(locksOf(mine).map(keyOfLock));
+  const held = list.filter((lock) => own.has(keyOfLock(lock)));
+  const uavs = new Map(held.flatMap((lock) => lock.targets.map((key) => [key, lock.uav])));
+  const free = targets.map((target) => (uavs.has(target.key) && isTiedElsewhere(target, uavs.get(target.key)) ? { ...target, uav: null } : target));
+  const isAgainstTie = (lock) => free.some((target) => lock.targets.includes(target.key) && isTiedElsewhere(target, lock.uav));
+  const locks = list.filter((lock) => held.includes(lock) || !(isAgainstTie(lock) || held.some((other) => areContrary(other, lock))));
+  return { locks, targets: free, isClash: locks.length < list.length || free.some((target, index) => target !== targets[index]) };
+}
+
 /** base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands. */
 export function merged(base, mine, theirs) {
   const clashes = [];
@@ -53,7 +76,9 @@ export function merged(base, mine, theirs) {
     if (isClash) clashes.push(part);
   }
   for (const part of SINGLE) selection[part] = single(part, base.selection[part], mine.selection[part], theirs.selection[part]);
-  return { name, selection, clashes };
+  const { isClash, ...agreed } = mergedLocks(base.selection, mine.selection, theirs.selection, selection.targets);
+  if (isClash) clashes.push("locks");
+  return { name, selection: settled({ ...selection, ...agreed }), clashes };
 }
 
 function differences(before, after, keyOf, isSame) {
@@ -70,7 +95,7 @@ export const uavDifferences = (before, after) => differences(before.uavs, after.
 
 /** Whether two ask for the same; what one of them leaves to the server counts as the same. */
 export function isAlike(a, b) {
-  if (a.name !== b.name || SINGLE.some((part) => a.selection[part] !== b.selection[part])) return false;
+  if (a.name !== b.name || SINGLE.some((part) => a.selection[part] !== b.selection[part]) || !areSameLocks(a.selection, b.selection)) return false;
   return [targetDifferences(a.selection, b.selection), uavDifferences(a.selection, b.selection)].every((found) => Object.values(found).every((list) => !list.length));
 }
 
@@ -81,11 +106,12 @@ export function wordsOfChange(before, after) {
   const targets = targetDifferences(before.selection, after.selection);
   if (targets.added.length) words.push(tn(targets.added.length, "{count} target added", "{count} targets added"));
   if (targets.removed.length) words.push(tn(targets.removed.length, "{count} target removed", "{count} targets removed"));
-  if (targets.changed.length) words.push(tn(targets.changed.length, "{count} task changed", "{count} tasks changed"));
+  if (targets.changed.length) words.push(tn(targets.changed.length, "{count} target changed", "{count} targets changed"));
   const uavs = uavDifferences(before.selection, after.selection);
   if (uavs.added.length) words.push(tn(uavs.added.length, "{count} UAV added", "{count} UAVs added"));
   if (uavs.removed.length) words.push(tn(uavs.removed.length, "{count} UAV removed", "{count} UAVs removed"));
   if (uavs.changed.length) words.push(tn(uavs.changed.length, "{count} UAV changed", "{count} UAVs changed"));
   if (SINGLE.some((part) => before.selection[part] !== after.selection[part])) words.push(t("options changed"));
+  if (!areSameLocks(before.selection, after.selection)) words.push(t("locks changed"));
   return words;
 }

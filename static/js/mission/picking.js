@@ -53,6 +53,15 @@ export function createPicking({ store, history, selection, change, problem, fail
     toast(tn(keys.length, "The task of {count} target is set.", "The task of {count} targets is set."), undoOf(1));
   }
 
+  /** wishes: { priority } or { sensor } */
+  function setWish(keys, wishes) {
+    if (!change(picks.withWishes(selection(), keys, wishes))) return;
+    const words = "priority" in wishes
+      ? tn(keys.length, "The priority of {count} target is set.", "The priority of {count} targets is set.")
+      : tn(keys.length, "The sensor of {count} target is set.", "The sensor of {count} targets is set.");
+    toast(words, undoOf(1));
+  }
+
   const rowsToTargets = (rows) => rows.map(picks.targetOfRow);
 
   /** What stands inside a ring of lon lat. */
@@ -118,7 +127,7 @@ export function createPicking({ store, history, selection, change, problem, fail
 
   return {
     tell: (title, text) => problem(title, text, [], { untilChanged: true }),
-    addTargets, addMany, replaceTargets, addArea, addBox, addSupports, addStretch, addTowersOf, addBridgesOf, stretchBetween, removeTargets, setTask, targetOfFeature,
+    addTargets, addMany, replaceTargets, addArea, addBox, addSupports, addStretch, addTowersOf, addBridgesOf, stretchBetween, removeTargets, setTask, setWish, targetOfFeature,
     undo: () => history.undo() && say(t("Undone.")),
     redo: () => history.redo() && say(t("Done again.")),
     setOption: (name, value) => change({ ...selection(), [name]: value }),

@@ -2,9 +2,10 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
-import { durationText, lengthText } from "../units.js";
+import { durationText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
-import { basisOf } from "./selection.js";
+import { ordersOf, wishedOrders } from "./locks.js";
+import { basisOf, withoutWishes } from "./selection.js";
 
 const REASONS = {
   no_path: t("No way along the network leads there."),
@@ -13,6 +14,8 @@ const REASONS = {
   too_far_from_network: t("It is too far from the network."),
   above_height_limit: t("It is higher than may be flown."),
   asset_gone: t("It is no longer in the data."),
+  not_allowed: t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
+  most_targets: t("Every UAV that could fly it has as many targets as it may."),
 };
 
 export const OBJECTIVES = [
@@ -28,14 +31,12 @@ export function routesOf(plan) {
   return plan.result.routes.map((route, sequence) => ({ ...route, sequence, letter: routeLetter(sequence), name: route.uav }));
 }
 
-/** Where each target stands in the plan: key → { sequence, letter, number }. */
-export function placesOf(plan) {
+/** Where each target stands in the plan, or would stand with what is locked: key → { sequence, letter, number }. */
+export function placesOf(plan, locks = []) {
   const places = new Map();
-  for (const route of routesOf(plan)) {
-    route.targets.forEach((target, index) => {
-      const key = plan.targets[target]?.key;
-      if (key) places.set(key, { sequence: route.sequence, letter: route.letter, number: index + 1 });
-    });
+  const wished = wishedOrders(ordersOf(plan), locks);
+  for (const { sequence, letter } of routesOf(plan)) {
+    wished[sequence].targets.forEach((key, index) => places.set(key, { sequence, letter, number: index + 1 }));
   }
   return places;
 }
@@ -83,9 +84,56 @@ export function sentenceOf(plan) {
   return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m)].join(" · ") };
 }
 
+const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
+const LEAST_SHARE = 0.0005; // less is not told from nothing
+
+/** How good a plan is: { isProven, words, detail }; null where that is not known, or nobody flies. */
+export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, wish, routes }) {
+  const isTotal = objective === "total";
+  const bound = isTotal ? lower_bound_m : lower_bound_s;
+  const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
+  if (!isKnown || !routes.some((route) => route.geometry)) return null;
+  const above = gap / (1 - gap); // `gap` is a share of this plan
+  if (is_proven) return { isProven: true, words: provenWords(isTotal, Boolean(wish)), detail: "" };
+  const figure = bound === null || bound === undefined ? "" : isTotal ? t("No plan can fly less than {length}.", { length: lengthText(bound) }) : t("No plan can be done in less than {time}.", { time: durationText(bound) });
+  const share = shareText(above);
+  const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
+  return { isProven: false, words, detail: figure };
+}
+
+function provenWords(isTotal, isLocked) {
+  if (isLocked) return isTotal ? t("Proven shortest with what is locked.") : t("Proven soonest with what is locked.");
+  return isTotal ? t("Proven shortest.") : t("Proven soonest.");
+}
+
+/** What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked. */
+export function wishWordsOf({ objective, wish }) {
+  if (!wish) return "";
+  const isTotal = objective === "total";
+  const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
+  const leftOut = wish.left_out > 0 ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.") : "";
+  if (cost === null || cost === undefined) return leftOut || t("What your wish costs is not known.");
+  const figure = (isTotal ? lengthText : durationText)(Math.abs(cost));
+  const share = free > 0 ? ` (${cost < 0 ? "−" : "+"}${shareText(Math.abs(cost) / free)})` : "";
+  const isNothing = Math.abs(cost) < (isTotal ? 1 : 0.5);
+  const words = isNothing ? t("Your wish costs nothing.") : cost > 0 ? t("Your wish costs {figure} more{share}.", { figure, share }) : t("Your wish saves {figure}{share}: the search had not found it.", { figure, share });
+  return [words, leftOut].filter(Boolean).join(" ");
+}
+
+/** The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)". */
+export function bestWordsOf(best) {
+  if (!best) return "";
+  const { unit, value, bound, left_out } = best;
+  const textOf = unit === "m" ? lengthText : durationText;
+  const figure = textOf(value);
+  const words = bound > 0 ? t("{figure} so far, at most {share} above what is possible ({least})", { figure, share: shareText(Math.max(0, value / bound - 1)), least: textOf(bound) }) : t("{figure} so far", { figure });
+  return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")].filter(Boolean).join(", ");
+}
+
 /** How a route's flight ends: "ends hovering at A2". */
 export function endingOf({ end_action, letter, targets }) {
   if (end_action === "return") return t("returns to start");
+  if (end_action === "base") return t("lands at the nearest base");
   const last = `${letter}${targets.length}`;
   return end_action === "land" ? t("lands at {target}", { target: last }) : t("ends hovering at {target}", { target: last });
 }
@@ -96,12 +144,14 @@ export function endingsOf({ return_to_start, uavs }) {
   const actions = new Set(uavs.map((uav) => uav.end_action));
   if (actions.size === 1 && actions.has("hover")) return t("Each UAV ends hovering at its last target");
   if (actions.size === 1 && actions.has("land")) return t("Each UAV lands at its last target");
+  if (actions.size === 1 && actions.has("base")) return t("Each UAV lands at the nearest base");
   if (actions.size === 1 && actions.has("return")) return t("Each UAV of this mission is set to fly back all the same");
   return actions.size ? t("Each UAV ends as set for it, see its row") : t("Each UAV ends at its last target");
 }
 
+/** targets: in the order flown: [{ label, isLocked? }]. */
 export function stripLabel(route, targets) {
-  const names = route.targets.map((target, index) => `${index + 1} ${targets[target]?.label ?? t("Target")}`).join(", ");
+  const names = targets.map(({ label, isLocked }, index) => `${index + 1} ${label ?? t("Target")}${isLocked ? ` ${t("(locked)")}` : ""}`).join(", ");
   const values = { name: route.name, length: lengthText(route.length_m), time: durationText(route.duration_s), ending: endingOf(route), targets: names || t("no targets") };
   return t("{name} flies {length} in {time} and {ending}: {targets}.", values);
 }
@@ -120,6 +170,18 @@ export function shownRoute({ plan, lookedAt, chosenRoute }) {
 /** Whether the plan on the page is the plan of what is picked. */
 export function isPlanCurrent(state) {
   return state.plan !== null && state.plan.basis === basisOf(state.selection);
+}
+
+/** Whether the plan on the page is that, but for locks and wishes of targets that are younger: they can be shown in it. */
+export function isPlanInSight(state) {
+  return isPlanCurrent(state) || (state.plan !== null && state.plan.freeBasis === basisOf(withoutWishes(state.selection)));
+}
+
+/** Places of what is picked, none where the plan is of something else; and the keys that no route visits. */
+export function shownPlaces(state) {
+  if (!isPlanInSight(state)) return { places: new Map(), missed: new Set() };
+  const places = placesOf(state.plan, state.selection.locks);
+  return { places, missed: new Set(unreachedOf(state.plan).map(({ target }) => target?.key).filter((key) => !places.has(key))) };
 }
 
 /** Whether leaving the page would lose something. */

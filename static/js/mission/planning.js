@@ -1,10 +1,11 @@
 /** Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and stopping it. */
 
-import { follow, post } from "../api.js";
+import { follow, get, post } from "../api.js";
+import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { isSamePlan, summaryOfPlan } from "./compare.js";
-import { otherObjective, sentenceOf, unreachedOf } from "./plan_view.js";
+import { otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -12,7 +13,8 @@ const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at
 
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
 export function planOf(result, selection) {
-  return { result, basis: picks.basisOf(selection), targets: selection.targets, uavs: selection.uavs };
+  const { targets, uavs } = selection;
+  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs };
 }
 
 /** Results by what they were made for; the oldest go. */
@@ -25,11 +27,11 @@ export function withResult(figures, basis, result) {
 const ofJob = (job) => job.result && { ...job.result, job: job.id };
 
 /** context: see actions.js. `running.stopping` is the AbortController of what is being waited for. */
-export function createPlanning({ store, selection, change, problem, failed, running, page }) {
+export function createPlanning({ store, selection, change, problem, failed, running, page, runningJob }) {
   async function waitForJob(jobId, what) {
-    const job = await follow(jobId, {
+    const job = await followLive(jobId, {
       signal: running.stopping?.signal,
-      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.progress, job: jobId } }),
+      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.progress, best: at.best ?? store.state.planning?.best ?? null, job: jobId } }),
     });
     if (job.state === "cancelled" && !job.result) throw new DOMException("stopped", "AbortError");
     return job;
@@ -41,35 +43,85 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     return null;
   }
 
+  let isWanted = false; // somebody asked while a save was under way
+  store.listen(["saving"], ({ saving }) => {
+    if (saving || !isWanted) return;
+    isWanted = false;
+    queueMicrotask(plan); // after whoever saved has settled
+  });
+
   async function plan() {
-    if (store.state.planning || store.state.saving) return;
+    if (store.state.planning) return;
+    if (store.state.saving) {
+      isWanted = true;
+      return;
+    }
     const lacking = missing();
     if (lacking) {
       problem(...lacking, [], { untilChanged: true });
       return;
     }
     const asked = selection();
+    await search(asked, async (signal) => {
+      const answer = await post("/plans", picks.requestOf(asked), { signal });
+      return answer.status === 202 ? { job: answer.data.job } : answer.data;
+    });
+  }
+
+  /** Shows the plan of what was asked once `begin(signal)` gives it, or the { job } that makes it. */
+  async function search(asked, begin) {
     const what = tn(asked.targets.length, "Planning {count} target", "Planning {count} targets");
+    const mission = store.state.mission?.id ?? null;
     aside.stop();
     running.stopping = new AbortController();
-    store.update({ planning: { what, share: null, job: null, isStopping: false }, problem: null });
+    store.update({ planning: { what, share: null, job: null, best: null, isStopping: false }, problem: null });
     try {
-      const answer = await post("/plans", picks.requestOf(asked), { signal: running.stopping.signal });
-      const result = answer.status === 202 ? { ...(await waitForJob(answer.data.job, what)).result, job: answer.data.job } : answer.data; // saved by the job's number
+      let result = await begin(running.stopping.signal);
+      if (!result.routes) {
+        const { job } = result;
+        store.update({ planning: { ...store.state.planning, job } });
+        runningJob.keep(mission, { job, selection: asked });
+        result = { ...(await waitForJob(job, what)).result, job }; // saved by the job's number
+      }
       const made = planOf(result, asked);
       if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
       store.update({ plan: made, figures: withResult(store.state.figures, made.basis, result), planIsStored: false, chosenRoute: null, why: null });
       const { sentence, facts } = sentenceOf(made);
       const unreached = unreachedOf(made).length;
-      say([`${sentence}. ${facts}.`, unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached.")].filter(Boolean).join(" "));
+      const quality = qualityOf(result);
+      say([`${sentence}. ${facts}.`, quality?.words, wishWordsOf(result), unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached.")].filter(Boolean).join(" "));
       aside.start(asked);
     } catch (error) {
       if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
       else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }]);
     } finally {
+      runningJob.drop(mission);
       running.stopping = null;
       store.update({ planning: null });
     }
+  }
+
+  /** A large plan that was being made when the page was left: its progress comes back, or its result. */
+  async function resume() {
+    const mission = store.state.mission?.id ?? null;
+    const kept = page.canPlan ? runningJob.read(mission) : null;
+    if (!kept || store.state.planning) return;
+    await search(kept.selection, async (signal) => {
+      try {
+        await get(`/jobs/${kept.job}`, { signal });
+      } catch (error) {
+        if (error.status === 404) throw new DOMException("gone", "AbortError"); // cleared away since
+        throw error;
+      }
+      return { job: kept.job };
+    });
+  }
+
+  /** Drops the search with what it has found. */
+  function cancel() {
+    const job = store.state.planning?.job;
+    if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+    running.stopping?.abort();
   }
 
   async function stop() {
@@ -121,7 +173,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     change({ ...selection(), targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])) });
   }
 
-  return { plan, stop, replaceByStretches, waitForJob };
+  return { plan, stop, cancel, resume, replaceByStretches, waitForJob };
 }
 
 /** The same by the other objective, planned behind the page: its figures stand in the choice, and one click shows it. */

@@ -13,14 +13,17 @@ import * as picks from "./selection.js";
 export const RETRY_S = 8;
 const REST_MS = 1500; // after the last change
 const AT_ONCE_MS = 200;
-const PARTS = ["uavs", "targets", "objective", "return_to_start"];
+const PARTS = ["uavs", "targets", "objective", "return_to_start", "locks"];
 
 const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 
 /** The parts of a selection that differ from what is stored, as the API takes them. */
 export function changedParts(selection, stored) {
-  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}];
-  return Object.fromEntries(PARTS.filter((part) => JSON.stringify(now[part]) !== JSON.stringify(before[part])).map((part) => [part, now[part]]));
+  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}].map((body) => ({ locks: [], ...body }));
+  const changed = PARTS.filter((part) => JSON.stringify(now[part]) !== JSON.stringify(before[part]));
+  const movesPlaces = changed.includes("targets") || changed.includes("uavs"); // locks name UAVs and places in the list of targets
+  if (movesPlaces && now.locks.length && !changed.includes("locks")) changed.push("locks");
+  return Object.fromEntries(changed.map((part) => [part, now[part]]));
 }
 
 /** context: see actions.js; waitForJob(job, words): of planning.js; conflicts: see conflicts.js. */

@@ -3,7 +3,8 @@
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
 
-export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true });
+/** Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js. */
+export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true, locks: [] });
 
 /** Two picks of the same place are one target: the asset whole, or one point of it. */
 export function keyOf({ asset, position, stretch }) {
@@ -87,6 +88,27 @@ export function withTask(selection, keys, { kind, hold_s = null }) {
   return { ...selection, targets: selection.targets.map((target) => (wanted.has(target.key) ? tasked(target) : target)) };
 }
 
+/** What a target without wishes of its own has. */
+const NO_WISH = { priority: "normal", uav: null, sensor: "" };
+
+/** How urgent a target is, which UAV alone may fly it and which sensor it needs: { priority, uav, sensor }. */
+export function wishesOf({ priority, uav, sensor }) {
+  return { priority: priority || NO_WISH.priority, uav: uav ?? NO_WISH.uav, sensor: sensor ?? NO_WISH.sensor };
+}
+
+/** The same targets with another priority, UAV or sensor at some of them. */
+export function withWishes(selection, keys, wishes) {
+  const wanted = new Set(keys);
+  return { ...selection, targets: selection.targets.map((target) => (wanted.has(target.key) ? { ...target, ...wishesOf({ ...target, ...wishes }) } : target)) };
+}
+
+/** Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case are one. */
+export function sensorsKnown(selection, fleet) {
+  const names = [...fleet, ...selection.uavs].flatMap(({ sensors }) => sensors ?? []).concat(selection.targets.map((target) => wishesOf(target).sensor));
+  const bySound = new Map(names.filter(Boolean).map((name) => [name.trim().toLowerCase(), name.trim()]));
+  return [...bySound.values()].sort((a, b) => a.localeCompare(b));
+}
+
 export function uavOf(feature) {
   const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent, heading_deg } = feature.properties;
   return {
@@ -95,8 +117,27 @@ export function uavOf(feature) {
   };
 }
 
+const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
+
+/** "Heron", or where one of the UAVs is called so "Heron 2": ties and locks name the one that they mean. */
+function freeName({ uavs }, name) {
+  const taken = new Set(uavs.map((uav) => uav.name));
+  let free = name;
+  for (let number = 2; taken.has(free); number += 1) free = `${name.slice(0, LONGEST_UAV_NAME - ` ${number}`.length)} ${number}`;
+  return free;
+}
+
+/** One more UAV of the fleet; in this mission it has another name where its own is taken. */
 export function withUav(selection, uav) {
-  return selection.uavs.some((chosen) => chosen.id === uav.id) ? selection : { ...selection, uavs: [...selection.uavs, uav] };
+  if (selection.uavs.some((chosen) => chosen.id === uav.id)) return selection;
+  return { ...selection, uavs: [...selection.uavs, { ...uav, name: freeName(selection, uav.name) }] };
+}
+
+/** UAVs are told apart by name where a target is tied or locked to one: not where two have the same. */
+export function uavsByName({ uavs }) {
+  const count = new Map();
+  for (const { name } of uavs) count.set(name, (count.get(name) ?? 0) + 1);
+  return uavs.map((uav, sequence) => ({ ...uav, sequence })).filter(({ name }) => count.get(name) === 1);
 }
 
 export function withoutUavAt(selection, sequence) {
@@ -112,6 +153,21 @@ export function withUavAs(selection, sequence, values) {
   return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, ...values } : uav)) };
 }
 
+/** Locks with indices into the targets, as the API takes them; nothing where none is locked. */
+function locksAsked({ targets, locks }) {
+  if (!locks?.length) return {};
+  const index = new Map(targets.map((target, at) => [target.key, at]));
+  return { locks: locks.map((lock) => ({ ...lock, targets: lock.targets.map((key) => index.get(key)) })) };
+}
+
+/** The same with nothing locked. */
+export const withoutLocks = (selection) => ({ ...selection, locks: [] });
+
+/** The same without what is locked and what targets wish: what leaves a plan's targets and UAVs as they are. */
+export function withoutWishes(selection) {
+  return { ...withoutLocks(selection), targets: selection.targets.map((target) => ({ ...target, ...NO_WISH })) };
+}
+
 /** The body of /plans and of a mission. */
 export function requestOf(selection) {
   return {
@@ -119,7 +175,8 @@ export function requestOf(selection) {
       const body = { name: uav.name, position: uav.position };
       if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
       if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
-      for (const name of ["max_range_m", "cruise_speed_mps", "end_action"]) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
+      for (const name of ["max_range_m", "cruise_speed_mps", "end_action", "most_targets"]) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
+      if (body.id === undefined && uav.sensors?.length) body.sensors = uav.sensors; // one of the fleet brings its own
       return body;
     }),
     targets: selection.targets.map((target) => {
@@ -128,10 +185,15 @@ export function requestOf(selection) {
       if (target.position) body.position = target.position;
       if (target.stretch) body.stretch = target.stretch;
       if (!isUsualTask(target)) body.task = taskOf(target);
+      const { priority, uav, sensor } = wishesOf(target);
+      if (priority !== NO_WISH.priority) body.priority = priority;
+      if (uav !== null) body.uav = uav;
+      if (sensor) body.sensor = sensor;
       return body;
     }),
     objective: selection.objective,
     return_to_start: selection.return_to_start,
+    ...locksAsked(selection),
   };
 }
 
@@ -146,15 +208,27 @@ export function storedTarget(target) {
   const stretch = target.stretch ?? null;
   const detail = detailOf(target.kind, stretch ? { ...target, length_m: null } : target, position, stretch);
   const made = { asset: target.asset, kind: target.kind ?? "place", label: target.label, detail, position, stretch, centre: target.position, task: target.task ?? null };
-  return { key: keyOf(made), ...made };
+  return { key: keyOf(made), ...made, ...wishesOf(target) };
+}
+
+/** The same targets, each with a key of its own: a program may ask for one place several times. */
+function toldApart(targets) {
+  const count = new Map();
+  return targets.map((target) => {
+    const number = (count.get(target.key) ?? 0) + 1;
+    count.set(target.key, number);
+    return number === 1 ? target : { ...target, key: `${target.key} (${number})` };
+  });
 }
 
 /** The selection of a stored mission. */
 export function selectionOf(mission, fleet = []) {
+  const targets = toldApart(mission.targets.map(storedTarget));
   return {
-    targets: mission.targets.map(storedTarget),
+    targets,
     uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),
     objective: mission.objective,
     return_to_start: mission.return_to_start,
+    locks: (mission.locks ?? []).map(({ uav, targets: places, at_start, at_end }) => ({ uav, targets: places.map((place) => targets[place].key), at_start: Boolean(at_start), at_end: Boolean(at_end) })),
   };
 }

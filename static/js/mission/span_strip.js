@@ -1,6 +1,7 @@
 /** The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets, pills several of them. */
 
 import { h, svg } from "../dom.js";
+import { staticAddress } from "../static_address.js";
 import { t } from "../text.js";
 import { lengthText, LONG_UNIT, numberText } from "../units.js";
 
@@ -59,7 +60,7 @@ export function layOut(profile, longest_m, width_px) {
     if (!ticks.length || x(distance) - ticks.at(-1) >= TICK_SPACING_PX) ticks.push(x(distance));
   }
   const [start, end] = [x(0), x(profile.places.at(-1) ?? 0)];
-  const pills = placePills(profile.targets.map(({ target, at }) => ({ target, x: x(at) })), start, end, width_px);
+  const pills = placePills(profile.targets.map(({ at, ...stop }) => ({ ...stop, x: x(at) })), start, end, width_px);
   return { ticks, pills, legs: profile.legs.map((leg) => ({ ...leg, x1: x(leg.from), x2: x(leg.to) })), start, end };
 }
 
@@ -67,7 +68,7 @@ const widthOf = (label) => Math.max(TARGET_SPACING_PX - 1, label.length * LETTER
 
 /** Pills of neighbouring targets, "3" or "3–9", that stay on the strip: [{ first, last, targets, label, x, width }], in order. */
 export function placePills(targets, start_px, end_px, width_px) {
-  let pills = targets.map(({ target, x }, index) => pillOf([{ target, x, number: index + 1 }]));
+  let pills = targets.map((stop, index) => pillOf([{ ...stop, number: index + 1 }]));
   for (;;) {
     keepApart(pills, start_px, end_px, width_px);
     if (pills.length < 2 || pills.every((pill) => Math.abs(pill.x - pill.true_x) <= MOST_PUSHED_PX && isOnStrip(pill, start_px, end_px))) return pills;
@@ -123,14 +124,19 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
 
 /** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name }].
  *
- * Returns { element, point(metres or null), light(target or null) }; positionAt gives the place on the map.
+ * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event, targets, label): a pill is
+ * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or null, without) };
+ * positionAt gives the place on the map.
  */
-export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], onAlong, onTarget }) {
-  const profile = profileOf(waypoints, length_m);
-  const { element, plan, x } = drawing({ profile, longest_m, width_px, label, zones, onTarget });
+export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], stopsOf = (targets) => targets, onAlong, onTarget, grab }) {
+  const flown = profileOf(waypoints, length_m);
+  const profile = { ...flown, targets: stopsOf(flown.targets) };
+  const { element, plan, x, pills } = drawing({ profile, longest_m, width_px, label, zones, onTarget, grab });
   const { distanceAt } = scaleOf(longest_m, width_px);
   const cursor = svg("line", { y1: 0, y2: HEIGHT_PX, class: "strip-cursor", visibility: "hidden" });
-  element.append(cursor);
+  const gap = svg("line", { y1: 3, y2: HEIGHT_PX - 3, class: "strip-gap", visibility: "hidden" });
+  element.append(cursor, gap);
+  const others = (without) => plan.pills.flatMap((pill) => pill.members.filter(({ target }) => !without.includes(target)).map(() => pill.x));
   element.addEventListener("pointermove", (event) => {
     const at = Math.min(plan.end, Math.max(plan.start, event.clientX - element.getBoundingClientRect().left));
     onAlong?.(Math.min(length_m, Math.max(0, distanceAt(at))));
@@ -145,7 +151,21 @@ export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zon
       cursor.setAttribute("x2", x(at_m));
     },
     light(target) {
-      for (const pill of element.querySelectorAll(".strip-target")) pill.classList.toggle("lit", target !== null && pill.dataset.targets.split(" ").includes(`${target}`));
+      for (const { element: pill, targets } of pills) pill.classList.toggle("lit", target !== null && targets.includes(target));
+    },
+    /** Before which of the other targets somebody points. */
+    indexAt(clientX, without) {
+      const at = clientX - element.getBoundingClientRect().left;
+      return others(without).filter((place) => place < at).length;
+    },
+    showGap(index, without) {
+      gap.setAttribute("visibility", index === null ? "hidden" : "visible");
+      if (index === null) return;
+      const places = others(without);
+      const [before, after] = [places[index - 1] ?? plan.start, places[index] ?? plan.end];
+      const at = `${places.length && index === places.length ? Math.min(before + TARGET_SPACING_PX, width_px - 2) : (before + after) / 2}`;
+      gap.setAttribute("x1", at);
+      gap.setAttribute("x2", at);
     },
     positionAt: (at_m) => positionAt(waypoints, profile.places, at_m),
   };
@@ -158,9 +178,35 @@ export function paleStrip({ profile, longest_m, width_px, label }) {
   return element;
 }
 
-function drawing({ profile, longest_m, width_px, label, zones, onTarget }) {
+const LOCK_PX = 11;
+
+/** One pill: a number, or several; with a lock on its shoulder. */
+function drawPill({ x: at, width, label, targets, members }, { onTarget, grab }) {
+  const isLocked = members.some((member) => member.isLocked);
+  const shoulder = at + width / 2 - 1;
+  const element = svg(
+    "g",
+    { class: `strip-target${members.some(({ isMoved }) => isMoved) ? " moved" : ""}${grab ? " movable" : ""}` },
+    svg("rect", { x: at - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }),
+    svg("text", { x: at, y: MIDDLE_PX + 4 }, label),
+    isLocked && svg("circle", { class: "strip-lock-ground", cx: shoulder, cy: 8, r: 7 }),
+    isLocked && svg("use", { class: "strip-lock", href: `${staticAddress("lib/icons.svg")}#lock`, x: shoulder - LOCK_PX / 2, y: 8 - LOCK_PX / 2, width: LOCK_PX, height: LOCK_PX }),
+  );
+  if (onTarget) {
+    element.addEventListener("pointerenter", () => onTarget(targets[0]));
+    element.addEventListener("pointerleave", () => onTarget(null));
+  }
+  if (grab) {
+    element.addEventListener("pointerdown", (event) => grab(event, targets, label));
+    element.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false }); // the finger moves the pill, not the page
+  }
+  return { element, targets };
+}
+
+function drawing({ profile, longest_m, width_px, label, zones, onTarget, grab }) {
   const plan = layOut(profile, longest_m, width_px);
   const { x } = scaleOf(longest_m, width_px);
+  const pills = plan.pills.map((pill) => drawPill(pill, { onTarget, grab }));
   const mark = (at) => svg("rect", { x: at - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
   const element = svg(
     "svg",
@@ -170,17 +216,9 @@ function drawing({ profile, longest_m, width_px, label, zones, onTarget }) {
     plan.legs.map((leg) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: leg.offNetwork ? "strip-leg off" : "strip-leg" })),
     mark(plan.start),
     mark(plan.end),
-    plan.pills.map(({ x: at, width, label: numbers, targets }) => {
-      const pill = svg("g", { class: "strip-target" }, svg("rect", { x: at - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x: at, y: MIDDLE_PX + 4 }, numbers));
-      pill.dataset.targets = targets.join(" ");
-      if (onTarget) {
-        pill.addEventListener("pointerenter", () => onTarget(targets[0]));
-        pill.addEventListener("pointerleave", () => onTarget(null));
-      }
-      return pill;
-    }),
+    pills.map((pill) => pill.element),
   );
-  return { element, plan, x };
+  return { element, plan, x, pills };
 }
 
 /** The axis under a list of strips. */

@@ -1,10 +1,11 @@
-/** What is done at targets: words, and the menu that sets it for one, several or all. */
+/** What is done at targets, how urgent they are, and who flies them: words, and the menu that sets it for one, several or all. */
 
 import { h, icon } from "../dom.js";
 import { closeMenu } from "../page/chrome.js";
 import { t, tn } from "../text.js";
 import { durationText } from "../units.js";
-import { LONGEST_HOLD_S, taskOf } from "./selection.js";
+import { lockOf, wishedPlace } from "./locks.js";
+import { LONGEST_HOLD_S, sensorsKnown, taskOf, uavsByName, wishesOf } from "./selection.js";
 
 export const TASKS = [
   { kind: "look", icon: "eye", words: () => t("Look in passing") },
@@ -24,8 +25,66 @@ export function taskText(task) {
 
 const secondsText = (seconds) => (seconds >= 600 ? durationText(seconds) : `${seconds}\u00a0s`);
 
-/** The menu for these targets; `more` are acts besides: [{ icon, words, act }]. */
-export function targetMenu(targets, actions, more = []) {
+export const PRIORITIES = [
+  { value: "low", words: t("Low"), mark: "chevrons-down", said: t("Low priority") },
+  { value: "normal", words: t("Normal"), mark: null, said: "" },
+  { value: "high", words: t("High"), mark: "chevrons-up", said: t("High priority") },
+];
+
+export const priorityOf = (target) => PRIORITIES.find(({ value }) => value === wishesOf(target).priority) ?? PRIORITIES[1];
+
+/** "only Heron · needs LiDAR": who may fly a target. */
+export function whoMayFly(target) {
+  const { uav, sensor } = wishesOf(target);
+  return [uav !== null && t("only {uav}", { uav }), sensor && t("needs {sensor}", { sensor })].filter(Boolean).join(" · ");
+}
+
+const MIXED = "\u0000"; // the choice of several targets that differ
+
+/** A list to choose from; `values` are what the targets have now. */
+function choiceOf(label, values, choices, set) {
+  const isMixed = new Set(values).size > 1;
+  const list = h(
+    "select",
+    { class: "input", "aria-label": label },
+    isMixed && h("option", { value: MIXED, selected: true, disabled: true }, t("different")),
+    choices.map(([value, words]) => h("option", { value, selected: !isMixed && values[0] === value }, words)),
+  );
+  list.addEventListener("change", () => (closeMenu(), set(list.value)));
+  return h("label", { class: "target-choice" }, h("span", {}, label), list);
+}
+
+/** How urgent, by whom, with what. */
+function wishChoices(targets, actions, { selection, fleet }) {
+  const keys = targets.map(({ key }) => key);
+  const wishes = targets.map(wishesOf);
+  const sensors = sensorsKnown(selection, fleet);
+  const uavs = uavsByName(selection);
+  return [
+    choiceOf(t("Priority"), wishes.map(({ priority }) => priority), PRIORITIES.map(({ value, words }) => [value, words]), (priority) => actions.setWish(keys, { priority })),
+    uavs.length > 0 && choiceOf(t("Only UAV"), wishes.map(({ uav }) => uav ?? ""), [["", t("any")], ...uavs.map(({ name }) => [name, name])], (name) => actions.tieTargets(keys, name || null)),
+    sensors.length > 0 &&
+      choiceOf(t("Needs sensor"), wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""), [["", t("none|sensor")], ...sensors.map((name) => [name, name])], (sensor) => actions.setWish(keys, { sensor })),
+  ];
+}
+
+/** Who flies a target, and when in its order: what dragging its pill does. `orders` are the plan's: see locks.js. */
+function lockChoices({ key }, actions, { selection, orders }) {
+  const lock = lockOf(selection, key);
+  const place = wishedPlace(orders, selection, key);
+  const uavs = uavsByName(selection);
+  const act = (image, words, run) => h("button", { type: "button", onclick: () => (closeMenu(), run(key)) }, icon(image), words);
+  return [
+    uavs.length > 0 && choiceOf(t("Fly with UAV"), [lock?.uav ?? ""], [...(lock ? [] : [["", t("as planned")]]), ...uavs.map(({ name }) => [name, name])], (name) => actions.giveTarget(key, name)),
+    place?.index > 0 && act("chevron-up", t("Earlier"), () => actions.shiftTarget(key, -1)),
+    place && place.index < place.last && act("chevron-down", t("Later"), () => actions.shiftTarget(key, 1)),
+    place && act("lock", t("Lock here"), actions.lockTarget),
+    lock && act("lock-open", t("Unlock"), actions.unlockTarget),
+  ].filter(Boolean);
+}
+
+/** The menu for these targets; `known` is { selection, fleet, orders }, `more` are acts besides: [{ icon, words, act }]. */
+export function targetMenu(targets, actions, known, more = []) {
   const keys = targets.map((target) => target.key);
   const tasks = targets.map(taskOf);
   const kinds = new Set(tasks.map((task) => task.kind));
@@ -43,10 +102,11 @@ export function targetMenu(targets, actions, more = []) {
     event.preventDefault();
     set({ kind: only ?? "hold", hold_s: Math.round(seconds.valueAsNumber) });
   };
+  const locking = targets.length === 1 ? lockChoices(targets[0], actions, known) : [];
   const title = targets.length === 1 ? targets[0].label : tn(targets.length, "{count} target", "{count} targets");
   return h(
     "div",
-    { class: "menu float target-menu", role: "group", "aria-label": t("Task: {name}", { name: title }) },
+    { class: "menu float target-menu", role: "group", "aria-label": t("Task and wishes: {name}", { name: title }) },
     h("p", { class: "caption" }, title),
     TASKS.map(({ kind, icon: sign, words }) =>
       h("button", { type: "button", "aria-pressed": String(only === kind), onclick: () => set({ kind }) }, icon(sign), words(), only === kind && h("span", { class: "end" }, icon("check", "small"))),
@@ -58,6 +118,10 @@ export function targetMenu(targets, actions, more = []) {
       h("div", { class: "with-unit" }, seconds, h("span", { class: "unit" }, "s")),
       h("button", { class: "button" }, t("Set")),
     ),
+    h("hr", {}),
+    wishChoices(targets, actions, known),
+    locking.length > 0 && h("hr", {}),
+    locking,
     more.length > 0 && h("hr", {}),
     more.map((item) => h("button", { type: "button", onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.words)),
   );

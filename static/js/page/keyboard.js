@@ -3,7 +3,7 @@
 import { h } from "../dom.js";
 import { t } from "../text.js";
 
-const NAMES = { mod: "Ctrl", shift: t("Shift"), delete: t("Del"), escape: t("Esc") };
+const NAMES = { mod: "Ctrl", shift: t("Shift"), delete: t("Del"), escape: t("Esc"), alt: "Alt", arrowup: "↑", arrowdown: "↓" };
 
 export function isTyping(target) {
   return target instanceof HTMLElement && (target.isContentEditable || target.matches("input:not([type=checkbox], [type=radio], [type=range]), textarea, select"));

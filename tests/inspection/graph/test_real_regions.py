@@ -16,7 +16,7 @@ from inspection.graph.ground_data import GroundData, Zones
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.nearness import pairs_within
 from inspection.graph.rules import LinkingRules
-from inspection.graph.shortest_paths import travel_between
+from inspection.graph.ways import travel_between
 from inspection.graph.zone_index import zones_of_graph
 from inspection.selectors.ground_data import ground_data
 from tests.exact_geometry import segment_meets_polygon

@@ -1,15 +1,17 @@
 """From ways and targets to the list of points."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
+from itertools import pairwise
 
 import numpy as np
 
 from inspection.geodesy import LonLat, distance_m
-from missions.flight_plan.route_points import PassedNode, TargetPoints, line_of, route_points, with_short_legs
-from missions.flight_plan.waypoints import RoutePoint, WaypointKind
+from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
 from missions.routing.problem import Task, TaskKind
 
 TRANSIT_M = 60.0
+Way = list[tuple[float, float]]  # east and height of each node
 PHOTO = Task(TaskKind.PHOTO, 10.0)
 
 
@@ -18,15 +20,21 @@ def at(east: float) -> LonLat:
     return LonLat(east / 1_000, 0.0)
 
 
-def node(east: float, agl_m: float = TRANSIT_M) -> PassedNode:
-    return PassedNode(at(east), agl_m, asset=int(east))
+def node(east: float, agl_m: float = TRANSIT_M) -> tuple[float, float]:
+    return east, agl_m
+
+
+def passed(nodes: Way) -> PassedNodes:
+    position = [list(at(east)) for east, _ in nodes]
+    has_repeats = any(left[0] == right[0] for left, right in pairwise(nodes))
+    return PassedNodes(position, [agl_m for _, agl_m in nodes], [int(east) for east, _ in nodes], has_repeats)
 
 
 def target(index: int, *easts: float, agl_m: float = TRANSIT_M) -> TargetPoints:
     return TargetPoints(index, tuple(at(east) for east in easts), agl_m, PHOTO, asset=100 + index)
 
 
-def draw(points: Sequence[RoutePoint]) -> list[str]:
+def draw(points: Iterable[RoutePoint]) -> list[str]:
     """Kind, place and height of each point, and the index of the target it belongs to: "pass 3 @60", "target 4 @30 #0"."""
     return [
         f"{point.kind} {point.position.lon * 1_000:.0f} @{point.agl_m:.0f}" + (f" #{point.target}" if point.target is not None else "")
@@ -34,8 +42,13 @@ def draw(points: Sequence[RoutePoint]) -> list[str]:
     ]
 
 
-def route(targets: list[TargetPoints], ways: list[list[PassedNode]], way_home: list[PassedNode] | None = None) -> list[str]:
-    return draw(route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=targets, ways=ways, way_home=way_home))
+def points_of(targets: list[TargetPoints], ways: list[Way], way_home: Way | None) -> RoutePoints:
+    home = None if way_home is None else passed(way_home)
+    return route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=targets, ways=[passed(way) for way in ways], way_home=home)
+
+
+def route(targets: list[TargetPoints], ways: list[Way], way_home: Way | None = None) -> list[str]:
+    return draw(points_of(targets, ways, way_home))
 
 
 def test_an_open_route_ends_hovering_at_its_last_target() -> None:
@@ -122,7 +135,7 @@ def test_a_low_stretch_is_flown_low_from_end_to_end() -> None:
 
 
 def test_a_target_where_the_uav_stands_is_still_a_route() -> None:
-    points = route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=[target(0, 0)], ways=[[]], way_home=None)
+    points = points_of([target(0, 0)], [[]], None)
     assert draw(points) == ["start 0 @60", "target 0 @60 #0", "end 0 @60"]
     assert line_of(points).tolist() == [[0.0, 0.0], [0.0, 0.0]]
 
@@ -132,26 +145,24 @@ def test_two_targets_at_one_place_are_two_points() -> None:
 
 
 def test_the_line_on_the_map_has_each_place_once() -> None:
-    points = route_points(
-        start=at(0), transit_agl_m=TRANSIT_M, targets=[target(0, 2, agl_m=25)], ways=[[node(1), node(2)]], way_home=[node(1)]
-    )
+    points = points_of([target(0, 2, agl_m=25)], [[node(1), node(2)]], [node(1)])
     assert np.array_equal(line_of(points)[:, 0] * 1_000, [0, 1, 2, 1, 0])
 
 
 def test_long_legs_are_divided_evenly_on_the_drawn_line() -> None:
     """0 --- 20, some 2.2 km: three legs of 742 m, heights in between."""
     points = [RoutePoint(at(0), WaypointKind.START, 60.0), RoutePoint(at(20), WaypointKind.TARGET, 90.0, target=0)]
-    assert draw(with_short_legs(points, 900.0)) == ["start 0 @60", "pass 7 @70", "pass 13 @80", "target 20 @90 #0"]
+    assert draw(with_short_legs(RoutePoints(points), 900.0)[0]) == ["start 0 @60", "pass 7 @70", "pass 13 @80", "target 20 @90 #0"]
 
 
 def test_points_put_into_a_stretch_belong_to_its_target() -> None:
     points = [RoutePoint(at(0), WaypointKind.TARGET, 60.0, target=3), RoutePoint(at(10), WaypointKind.PASS, 60.0, target=3)]
-    assert draw(with_short_legs(points, 900.0))[1] == "pass 5 @60 #3"
+    assert draw(with_short_legs(RoutePoints(points), 900.0)[0])[1] == "pass 5 @60 #3"
 
 
 def test_no_leg_is_longer_than_the_longest_at_any_latitude() -> None:
     points = [RoutePoint(LonLat(24.0, 70.0), WaypointKind.START, 60.0), RoutePoint(LonLat(24.2, 70.05), WaypointKind.END, 60.0)]
-    position = np.array([point.position for point in with_short_legs(points, 900.0)])
+    position = np.array([point.position for point in with_short_legs(RoutePoints(points), 900.0)[0]])
     assert len(position) == 12
     assert distance_m(position[:-1], position[1:]).max() <= 900.0
 
@@ -162,4 +173,4 @@ def test_points_that_are_near_enough_stay_as_they_are() -> None:
         RoutePoint(at(0), WaypointKind.PASS, 30.0),
         RoutePoint(at(5), WaypointKind.END, 60.0),
     ]
-    assert with_short_legs(points, 900.0) == points
+    assert list(with_short_legs(RoutePoints(points), 900.0)[0]) == points

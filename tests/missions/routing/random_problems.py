@@ -1,11 +1,12 @@
 """Small random problems, and their optimum by trying everything."""
 
-import math
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import permutations, product
 
 import numpy as np
 
-from missions.routing.problem import Objective, Problem, UavStart, Visit, merit
+from missions.routing.problem import End, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
 
 
 def random_problem(
@@ -49,7 +50,7 @@ def random_problem(
         return np.where(joined, straight * draw.uniform(1.0, 1.4, straight.shape), np.inf)
 
     return Problem(
-        uavs=tuple(UavStart(range_m, returns) for _ in range(uavs)),
+        uavs=tuple(UavStart(range_m, End.RETURN if returns else End.OPEN) for _ in range(uavs)),
         visits=tuple(visits),
         target_count=targets,
         from_start_m=ways(list(starts), entries, start_networks, visit_networks),
@@ -63,16 +64,76 @@ def _some_networks(draw: np.random.Generator, networks: int) -> set[int]:
     return {int(number) for number in draw.integers(0, networks, 2)}
 
 
+def mixed_problem(seed: int, *, uavs: int = 2, targets: int = 4, locks: int = 0) -> Problem:
+    """A random problem with a bit of everything: ends, speeds, ranges, services, priorities, who may fly what, stretches, networks."""
+    draw = np.random.default_rng(seed)
+    objective = Objective.MAKESPAN if seed % 2 else Objective.TOTAL
+    stretches = int(draw.integers(0, 3))
+    plain = random_problem(seed, uavs=uavs, targets=targets, stretches=stretches, objective=objective, networks=int(draw.integers(1, 4)))
+    service_s = draw.uniform(0, 400, targets) * draw.integers(0, 2)
+    several = bool(draw.integers(0, 2))
+    starts = tuple(
+        UavStart(
+            max_range_m=float(draw.uniform(20_000, 120_000)) if draw.integers(0, 2) else None,
+            end=list(End)[draw.integers(0, 3)],
+            speed_mps=float(draw.uniform(8, 20)) if several else 12.0,
+            most_targets=int(draw.integers(1, targets + 1)) if draw.integers(0, 4) == 0 else None,
+        )
+        for _ in range(uavs)
+    )
+    allowed = draw.random((uavs, len(plain.visits))) < 0.8 if draw.integers(0, 3) == 0 else None
+    return replace(
+        plain,
+        uavs=starts,
+        visits=tuple(replace(visit, service_s=float(service_s[visit.target])) for visit in plain.visits),
+        to_base_m=plain.to_start_m * draw.uniform(0.2, 1.0, plain.to_start_m.shape),
+        allowed=allowed,
+        priorities=tuple(Priority(int(level)) for level in draw.integers(0, 3, targets)) if draw.integers(0, 2) else (),
+        locks=_some_locks(draw, uavs, targets, locks),
+    )
+
+
+def _some_locks(draw: np.random.Generator, uavs: int, targets: int, locks: int) -> tuple[Lock, ...]:
+    order = draw.permutation(targets).tolist()
+    chosen: list[Lock] = []
+    for _ in range(locks):
+        run = tuple(order.pop() for _ in range(min(len(order), int(draw.integers(1, 4)))))
+        uav = int(draw.integers(0, uavs))
+        at_start = bool(draw.integers(0, 2)) and not any(lock.uav == uav and lock.at_start for lock in chosen)
+        at_end = bool(draw.integers(0, 2)) and not any(lock.uav == uav and lock.at_end for lock in chosen)
+        if run:
+            chosen.append(Lock(uav, run, at_start, at_end))
+    return tuple(chosen)
+
+
+def honours(problem: Problem, routes: Routes, lock: Lock) -> bool:
+    """Whether the routes fly the locked run as it is wished."""
+    order = [problem.visits[visit].target for visit in routes[lock.uav]]
+    places = [order.index(target) for target in lock.targets if target in order]
+    return (
+        len(places) == len(lock.targets)
+        and places == list(range(places[0], places[0] + len(places)))
+        and (not lock.at_start or places[0] == 0)
+        and (not lock.at_end or places[-1] == len(order) - 1)
+    )
+
+
+def every_plan(problem: Problem) -> Iterator[Routes]:
+    """All plans that keep every UAV's limits. For up to five targets."""
+    choices: list[list[tuple[int, int] | None]] = [
+        [None, *((uav, visit) for uav in range(len(problem.uavs)) for visit in visits)] for visits in problem.visits_of_target()
+    ]
+    orders: dict[tuple[int, tuple[int, ...]], list[tuple[int, ...]]] = {}
+    for choice in product(*choices):
+        flown: list[list[tuple[int, ...]]] = []
+        for uav in range(len(problem.uavs)):
+            own = tuple(item[1] for item in choice if item is not None and item[0] == uav)
+            if (uav, own) not in orders:
+                orders[uav, own] = [order for order in permutations(own) if problem.keeps_limits(uav, order)]
+            flown.append(orders[uav, own])
+        yield from product(*flown)
+
+
 def best_merit(problem: Problem) -> tuple[float, float, float]:
-    """The merit of the best plan there is: every choice of targets, directions, UAVs and orders. For up to five targets and two UAVs."""
-    best = (math.inf, math.inf, math.inf)
-    alternatives = [[None, *visits] for visits in problem.visits_of_target()]
-    for choice in product(*alternatives):
-        chosen = [visit for visit in choice if visit is not None]
-        for order in permutations(chosen):
-            for cut in range(len(order) + 1) if len(problem.uavs) == 2 else (len(order),):
-                routes = (order[:cut], order[cut:])[: len(problem.uavs)]
-                lengths_m = [problem.route_length_m(uav, route) for uav, route in enumerate(routes)]
-                if all(length_m <= uav.limit_m and math.isfinite(length_m) for length_m, uav in zip(lengths_m, problem.uavs, strict=True)):
-                    best = min(best, merit(problem, routes))
-    return best
+    """The merit of the best plan there is, by trying them all; locks are not looked at. For up to five targets."""
+    return min(merit(problem, routes) for routes in every_plan(problem))

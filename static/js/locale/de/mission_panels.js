@@ -137,7 +137,6 @@ export default {
   "Several meanings": "Mehrdeutig",
   "Show": "Zeigen",
   "Show {count} more": ["{count} weiteres zeigen", "{count} weitere zeigen"],
-  "Start, range, speed, end": "Start, Reichweite, Geschwindigkeit, Ende",
   "Stop, keep the best": "Anhalten, Bestes behalten",
   "Straight from target to target": "Gerade von Ziel zu Ziel",
   "Take the list from a file": "Liste aus einer Datei nehmen",

@@ -19,6 +19,14 @@ export function update(map, routes) {
   });
 }
 
+/** The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan. */
+export function showSoFar(map, lines) {
+  map.getSource("routes-so-far").setData({
+    type: "FeatureCollection",
+    features: (lines?.features ?? []).map(({ geometry, properties }) => ({ type: "Feature", properties: { route: routeNumber(properties.uav) }, geometry })),
+  });
+}
+
 /** Brings one route forward; null gives all of them back. */
 export function lookAt(map, palette, sequence) {
   const opacity = routeOpacity(palette, sequence);

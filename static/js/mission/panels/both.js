@@ -31,6 +31,12 @@ const UAVS = { count: (count) => tn(count, "{count} UAV", "{count} UAVs"), nameO
 const objectiveWords = (value) => OBJECTIVES.find((objective) => objective.value === value)?.words ?? value;
 const returnWords = (returns) => (returns ? t("yes") : t("no"));
 
+/** "Kite: Tower 4, Tower 2", a line for each lock. */
+function lockWords({ targets, locks = [] }) {
+  const labels = new Map(targets.map(({ key, label }) => [key, label]));
+  return locks.length ? locks.map(({ uav, targets: keys }) => `${uav}: ${listed(keys, (key) => labels.get(key) ?? t("Target"))}`) : [t("nothing")];
+}
+
 /** conflict: see conflicts.js; ways: { takeTheirs, putMineOnTop, mergeBoth?, keepMineAsCopy }. */
 export function showBoth(conflict, mine, ways) {
   const before = conflict.before?.selection ?? null;
@@ -40,6 +46,7 @@ export function showBoth(conflict, mine, ways) {
     [t("UAVs"), ({ selection }) => listWords(selection, before, "uavs", UAVS)],
     [t("Best at"), ({ selection }) => [objectiveWords(selection.objective)]],
     [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
+    [t("Locked"), ({ selection }) => lockWords(selection)],
   ];
   const act = (label, does, kind = "") => h("button", { type: "button", class: `button ${kind}`, onclick: () => (dialog.close(), void does()) }, label);
   const dialog = h(

@@ -12,7 +12,7 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
     return store.state.selection.targets.filter((target) => keys.has(target.key));
   };
   const count = h("span", { class: "chosen-count", role: "status" });
-  const task = h("button", { type: "button", class: "button", "aria-haspopup": "true", "aria-expanded": "false", onclick: () => toggleMenu(task, () => targetMenu(chosen(), actions)) }, icon("list-checks", "small"), t("Task"));
+  const task = h("button", { type: "button", class: "button", "aria-haspopup": "true", "aria-expanded": "false", onclick: () => toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })) }, icon("list-checks", "small"), t("Task"));
   const between = h("button", { type: "button", class: "button", onclick: addBetween }, icon("waypoints", "small"), t("Between them"));
   const drop = h("button", { type: "button", class: "button", onclick: () => actions.removeTargets(store.state.chosenTargets) }, icon("trash-2", "small"), t("Remove"));
   bar.append(

@@ -3,13 +3,14 @@
 import { byId } from "../../dom.js";
 import { t } from "../../text.js";
 import { percentText } from "../../units.js";
-import { isUnsaved } from "../plan_view.js";
+import { bestWordsOf, isUnsaved } from "../plan_view.js";
 
 export function mountFoot(store, actions) {
-  const [plan, stop, save] = ["plan", "stop", "save"].map((id) => document.getElementById(id));
+  const [plan, stop, save, cancel] = ["plan", "stop", "save", "cancel-planning"].map((id) => document.getElementById(id));
   if (!plan) return;
   plan.addEventListener("click", actions.plan);
   stop.addEventListener("click", actions.stop);
+  cancel.addEventListener("click", actions.cancel);
   save.addEventListener("click", () => actions.save());
 
   store.listen(["planning", "saving", "plan", "selection", "name", "mission", "planIsStored", "savedBasis"], (state) => {
@@ -20,6 +21,7 @@ export function mountFoot(store, actions) {
     stop.textContent = state.planning?.isStopping ? t("Stopping") : state.planning?.job ? t("Stop, keep the best") : t("Stop");
     stop.setAttribute("aria-busy", String(Boolean(state.planning?.isStopping)));
     stop.disabled = Boolean(state.planning?.isStopping);
+    cancel.hidden = !state.planning?.job || state.planning.isStopping || state.saving;
     save.hidden = isBusy;
     save.textContent = state.saving ? t("Saving") : t("Save");
     save.setAttribute("aria-busy", String(state.saving));
@@ -33,7 +35,8 @@ export function mountFoot(store, actions) {
     if (!planning) return;
     const known = planning.share !== null && planning.share !== undefined;
     byId("job-what").textContent = planning.what;
-    byId("job-how-far").textContent = [planning.job && planning.found !== planning.what ? planning.found : "", known ? percentText(planning.share * 100) : ""].filter(Boolean).join(" · ");
+    const found = bestWordsOf(planning.best) || (planning.job && planning.found !== planning.what ? planning.found : "");
+    byId("job-how-far").textContent = [found, known ? percentText(planning.share * 100) : ""].filter(Boolean).join(" · ");
     const bar = byId("job-progress");
     if (known) bar.setAttribute("aria-valuenow", String(Math.round(planning.share * 100)));
     else bar.removeAttribute("aria-valuenow");

@@ -1,12 +1,15 @@
 /** The dock: the sentence, then a strip for each UAV, all on one axis; on request the strip of the plan before under each. */
 
-import { byId, h } from "../../dom.js";
+import { byId, h, icon } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { t, tn } from "../../text.js";
 import { durationText, lengthText } from "../../units.js";
 import { counterpart, profileOfSummary } from "../compare.js";
-import { endingOf, isPlanCurrent, lastPlanOf, routesOf, sentenceOf, stripLabel } from "../plan_view.js";
+import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
+import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
 import { GROUNDING } from "../plan_words.js";
+import { createPillDrag } from "../strip_drag.js";
+import { uavsByName } from "../selection.js";
 import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
@@ -27,13 +30,20 @@ export function stripRoom(dock) {
   return Math.max(160, matchMedia("(max-width: 720px)").matches ? room - 32 : room - BESIDE_PX);
 }
 
-export function mountRoutes(store, { grounds, showPoint }) {
+export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   const dock = byId("dock");
   const list = byId("route-list");
   const strips = new Map(); // sequence → what spanStrip gives
   const zonesOf = new WeakMap(); // waypoints of a route → stretches beside zones
   let width_px = 0;
   let isPointed = false; // a place of a strip is shown on the map
+  let wishes = []; // the order of each route as it would be with what is locked
+  const grab = createPillDrag(list, { strips, drop });
+
+  function drop(keys, { sequence, index }) {
+    store.update({ litTarget: null }); // a finger does not leave
+    actions.placeTargets(keys, { uav: store.state.plan.result.routes[sequence].uav, index });
+  }
 
   function row(route, state, before) {
     const isUsed = Boolean(route.geometry);
@@ -51,7 +61,7 @@ export function mountRoutes(store, { grounds, showPoint }) {
         h("span", { class: "letter" }, route.letter),
         h("span", {}, h("strong", {}, route.name), h("small", {}, second)),
       ),
-      h("div", { class: "strip-place" }, isUsed && strip(route, state, longest(state, before)), old?.length_m > 0 && oldStrip(old, longest(state, before))),
+      h("div", { class: "strip-place" }, (isUsed || wishes[route.sequence].length > 0) && strip(route, state, longest(state, before)), old?.length_m > 0 && oldStrip(old, longest(state, before))),
       h("span", { class: "figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
       h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText))),
       isUsed &&
@@ -63,7 +73,19 @@ export function mountRoutes(store, { grounds, showPoint }) {
     return Math.max(plan.result.longest_route_m, ...(before?.routes ?? []).map((route) => route.length_m));
   }
 
-  function strip(route, { plan }, longest_m) {
+  /** What keys mean on this page: targets of the plan, and those picked since. */
+  const targetOf = ({ plan, selection }, key) => plan.targets.find((target) => target.key === key) ?? selection.targets.find((target) => target.key === key);
+
+  /** The pills of a route: as planned, and once a wish is not planned yet, where it would be. */
+  function stopsOf(route, { plan, selection }, planned) {
+    const stops = planned.map(({ target, at }) => ({ target: plan.targets[target]?.key ?? `${target}`, at }));
+    const isAsPlanned = wishes[route.sequence].join() === ordersOf(plan)[route.sequence].targets.join();
+    const shown = isAsPlanned ? stops : stopsWished(stops, wishes[route.sequence], route.length_m || plan.result.longest_route_m);
+    return shown.map((stop) => ({ ...stop, isLocked: lockOf(selection, stop.target) !== null }));
+  }
+
+  function strip(route, state, longest_m) {
+    const { plan } = state;
     const { targets } = plan;
     const { waypoints, length_m } = route;
     const drawn = spanStrip({
@@ -71,10 +93,12 @@ export function mountRoutes(store, { grounds, showPoint }) {
       length_m,
       longest_m,
       width_px,
-      label: stripLabel(route, targets),
+      label: stripLabel(route, wishes[route.sequence].map((key) => ({ ...targetOf(state, key), isLocked: lockOf(state.selection, key) !== null }))),
+      stopsOf: (planned) => stopsOf(route, state, planned),
       zones: zonesOf.get(waypoints) ?? [],
       onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
-      onTarget: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
+      onTarget: (key) => store.update({ litTarget: key }),
+      grab: canPlan && uavsByName(state.selection).some(({ name }) => name === route.name) ? grab : undefined,
     });
     strips.set(route.sequence, drawn);
     return [drawn.element, h("div", {}, stripTable({ waypoints, length_m, targets, name: route.name }))];
@@ -90,7 +114,7 @@ export function mountRoutes(store, { grounds, showPoint }) {
     if (!state.plan) return;
     const { sentence, facts } = sentenceOf(state.plan);
     byId("plan-sentence").textContent = `${sentence}.`;
-    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${t("for the selection before")}`;
+    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${isPlanInSight(state) ? t("before your last change") : t("for the selection before")}`;
     width_px = stripRoom(dock);
     const last = lastPlanOf(state);
     const before = state.why?.compare ? last : null;
@@ -99,12 +123,41 @@ export function mountRoutes(store, { grounds, showPoint }) {
     compare.hidden = !last;
     compare.setAttribute("aria-pressed", String(Boolean(before)));
     strips.clear();
+    wishes = wishesOf(state);
+    drawQuality(state);
     const buttons = () => [...list.querySelectorAll("button")];
     const focused = buttons().indexOf(document.activeElement);
     list.replaceChildren(...routesOf(state.plan).map((route) => row(route, state, before)));
     if (focused >= 0) buttons()[focused]?.focus({ preventScroll: true });
     byId("route-axis").replaceChildren(h("div", {}, stripAxis(longest(state, before) || 1, width_px)));
     mark(state);
+  }
+
+  /** Orders by the place of each route; what is locked to a UAV without a route is not drawn. */
+  function wishesOf({ plan, selection }) {
+    const known = new Set(selection.targets.map(({ key }) => key));
+    const wished = wishedOrders(ordersOf(plan), selection.locks ?? []);
+    return plan.result.routes.map((_, sequence) => wished[sequence].targets.filter((key) => known.has(key) || plan.targets.some((target) => target.key === key)));
+  }
+
+  /** How good the plan is, what locking costs, and the way back. */
+  function drawQuality(state) {
+    const quality = qualityOf(state.plan.result);
+    const locked = state.selection.locks?.length ?? 0;
+    const isCurrent = isPlanCurrent(state);
+    const wish = isCurrent ? wishWordsOf(state.plan.result) : locked ? t("Your wish is not planned yet.") : "";
+    const acts = canPlan && locked > 0 && [
+      !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
+      h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
+    ];
+    const place = byId("plan-quality");
+    place.hidden = !quality && !locked;
+    place.replaceChildren(
+      ...[
+        quality && h("span", { class: "plan-bound" }, icon(quality.isProven ? "circle-check" : "info", "small"), h("span", {}, h("strong", {}, quality.words), " ", quality.detail)),
+        locked > 0 && h("span", { class: "plan-wish" }, icon("lock", "small"), h("span", {}, wish), acts),
+      ].filter(Boolean),
+    );
   }
 
   function mark(state) {
@@ -114,8 +167,7 @@ export function mountRoutes(store, { grounds, showPoint }) {
       element.classList.toggle("chosen", state.chosenRoute === sequence);
       element.querySelector(".who").setAttribute("aria-pressed", String(state.chosenRoute === sequence));
     }
-    const target = state.plan && state.litTarget ? state.plan.targets.findIndex(({ key }) => key === state.litTarget) : -1;
-    for (const drawn of strips.values()) drawn.light(target < 0 ? null : target);
+    for (const drawn of strips.values()) drawn.light(state.plan ? state.litTarget : null);
   }
 
   function follow({ along }) {

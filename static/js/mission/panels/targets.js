@@ -4,9 +4,10 @@ import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { toggleMenu } from "../../page/chrome.js";
 import { t, tn } from "../../text.js";
-import { inPlanOrder, isPlanCurrent, placesOf, unreachedOf } from "../plan_view.js";
+import { lockOf, ordersOf } from "../locks.js";
+import { inPlanOrder, shownPlaces } from "../plan_view.js";
 import { isUsualTask, isWhole, nameOf, taskOf } from "../selection.js";
-import { targetMenu, taskIcon, taskText } from "../target_menu.js";
+import { priorityOf, targetMenu, taskIcon, taskText, whoMayFly } from "../target_menu.js";
 import { mountChosenBar } from "./chosen_bar.js";
 
 const SHOWN_FIRST = 40;
@@ -61,7 +62,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
 
   function openTask(opener, key) {
     const target = store.state.selection.targets.find((candidate) => candidate.key === key);
-    toggleMenu(opener, () => targetMenu([target], actions, more(target)));
+    toggleMenu(opener, () => targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target)));
   }
 
   function make(target) {
@@ -79,6 +80,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       h("span", { class: "pill" }),
       icon(ICONS[target.kind] ?? "map-pin"),
       h("button", { type: "button", class: "what", onclick: (event) => press(event, target) }, h("span", {}, target.label), h("small", {})),
+      h("span", { class: "target-marks" }),
       canPlan && h("button", { type: "button", class: "icon-button tight task", "aria-haspopup": "true", "aria-expanded": "false", onclick: (event) => openTask(event.currentTarget, target.key) }),
       canPlan &&
         h(
@@ -107,6 +109,11 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       return;
     }
     const isArrow = event.key === "ArrowDown" || event.key === "ArrowUp";
+    if (isArrow && event.altKey && canPlan && event.target.closest(".what")) {
+      event.preventDefault();
+      actions.shiftTarget(target.key, event.key === "ArrowDown" ? 1 : -1);
+      return;
+    }
     const part = [".what", ".check"].find((name) => event.target.matches(name));
     if (!isArrow || event.altKey || !part) return;
     const next = event.key === "ArrowDown" ? row.nextElementSibling : row.previousElementSibling;
@@ -128,12 +135,25 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : isMissed ? "missed" : "waiting"}`;
     pill.textContent = place ? `${place.letter}${place.number}` : isMissed ? "×" : `${index + 1}`;
     pill.setAttribute("aria-label", place ? t("Target {number} of UAV {letter}", { number: place.number, letter: place.letter }) : isMissed ? t("Not reached") : t("Not planned yet"));
-    row.querySelector("small").textContent = target.detail;
-    row.querySelector(".what").title = nameOf(target);
+    const second = [whoMayFly(target), target.detail].filter(Boolean).join(" · ");
+    row.querySelector("small").textContent = second;
+    row.querySelector(".what").title = nameOf({ ...target, detail: second });
+    refreshMarks(row.querySelector(".target-marks"), target);
     row.classList.toggle("chosen", isChosen(target));
     if (!canPlan) return;
     row.querySelector(".check").checked = isChosen(target);
     refreshTask(row.querySelector(".task"), target);
+  }
+
+  /** What is not as usual, without a word where everything is. */
+  function refreshMarks(place, target) {
+    const { mark, said } = priorityOf(target);
+    const lock = lockOf(store.state.selection, target.key);
+    const marks = [mark && [mark, said], lock && ["lock", t("Locked to {uav}", { uav: lock.uav })]].filter(Boolean);
+    const key = marks.join("|");
+    if (place.dataset.key === key) return;
+    place.dataset.key = key;
+    place.replaceChildren(...marks.map(([image, words]) => h("span", { role: "img", "aria-label": words, title: words }, icon(image, "small"))));
   }
 
   function refreshTask(button, target) {
@@ -150,10 +170,9 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
 
   function refresh(state) {
     const { targets } = state.selection;
-    const isCurrent = isPlanCurrent(state);
-    const places = isCurrent ? placesOf(state.plan) : new Map();
+    const { places, missed } = shownPlaces(state);
     const all = inPlanOrder(targets, places);
-    shown = { places, missed: new Set(isCurrent ? unreachedOf(state.plan).map(({ target }) => target.key) : []), order: all.map((target) => target.key) };
+    shown = { places, missed, order: all.map((target) => target.key) };
     isChoosing &&= targets.length > 1;
     list.classList.toggle("choosing", isChoosing);
     const visible = showAll ? all : all.slice(0, SHOWN_FIRST);

@@ -5,6 +5,7 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { LONG_UNIT, SPEED_UNIT } from "../../units.js";
+import { MOST_TARGETS } from "../picking.js";
 
 let fields = 0; // each has an id of its own
 
@@ -22,6 +23,7 @@ const END_CHOICES = [
   ["hover", t("Hover over its last target")],
   ["return", t("Return to start")],
   ["land", t("Land at its last target")],
+  ["base", t("Land at the nearest base")],
 ];
 
 const inUnits = (value, unit) => Number((value / unit).toPrecision(6));
@@ -42,6 +44,7 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   const range = number(uav.max_range_m === null ? "" : inUnits(uav.max_range_m, LONG_UNIT.metres), 0.1, 1000, false);
   const speed = number(uav.cruise_speed_mps === null || uav.cruise_speed_mps === undefined ? "" : inUnits(uav.cruise_speed_mps, SPEED_UNIT.mps), 0.5, 300, false);
   const end = h("select", { class: "input" }, END_CHOICES.map(([value, words]) => h("option", { value, selected: value === uav.end_action }, words)));
+  const most = h("input", { class: "input", type: "number", min: 1, max: MOST_TARGETS, step: 1, placeholder: t("as many as fit"), value: uav.most_targets ?? "" });
   const unlimited = h("p", { class: "caption", role: "status" });
   const wrong = h("p", { class: "field-error", role: "alert" });
   const sayWhatIsMissing = () => (unlimited.textContent = range.value ? "" : t("Range not stated: it is planned as unlimited."));
@@ -55,6 +58,7 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
     isNew && h("div", { class: "pair" }, field(t("Name"), name), field(t("Base"), base)),
     h("div", {}, h("div", { class: "pair" }, field(t("Range"), range, LONG_UNIT.unit), field(t("Speed"), speed, SPEED_UNIT.unit)), unlimited),
     field(t("End, where “Return to start” is off"), end),
+    !isNew && h("div", {}, field(t("At most this many targets"), most), h("p", { class: "caption" }, uav.sensors?.length ? t("Sensors: {names}", { names: uav.sensors.join(", ") }) : t("No sensor is stated for it."))),
     h("div", { class: "pair" }, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")),
     wrong,
     h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, act)),
@@ -69,6 +73,7 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
         max_range_m: kept(range, uav.max_range_m, LONG_UNIT.metres),
         cruise_speed_mps: kept(speed, uav.cruise_speed_mps, SPEED_UNIT.mps),
         end_action: end.value,
+        ...(isNew ? {} : { most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null }),
       });
       dialog.close();
     } catch (error) {

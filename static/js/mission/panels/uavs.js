@@ -4,7 +4,7 @@ import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { t, tn } from "../../text.js";
 import { percentText } from "../../units.js";
-import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor } from "../fleet.js";
+import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor, standingUavs } from "../fleet.js";
 import { isPlanCurrent } from "../plan_view.js";
 import { GROUNDING, inWords } from "../plan_words.js";
 import { uavDialog } from "./uav_dialog.js";
@@ -36,7 +36,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
           h("span", { class: "name" }, h("span", { class: "called" }), h("small", {}), h("span", { class: "facts" })),
         ),
         h("span", { class: "battery" }),
-        canPlan && h("button", { type: "button", class: "icon-button tight", title: t("Start, range, speed, end"), onclick: () => changeUav(sequenceOf(uav)) }, icon("pencil", "small")),
+        canPlan && h("button", { type: "button", class: "icon-button tight", title: t("Start, range, speed, end, targets"), onclick: () => changeUav(sequenceOf(uav)) }, icon("pencil", "small")),
       );
     },
     (row, uav) => {
@@ -75,14 +75,14 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   }
 
   function changeUav(sequence) {
-    const uav = store.state.selection.uavs[sequence];
+    const uav = standingUavs(store.state)[sequence]; // with the sensors that the fleet knows
     uavDialog({
       title: uav.name,
       note: t("In this mission only; the fleet stays as it is. Its start can be dragged on the map as well."),
       uav,
       act: t("Change"),
-      submit: ({ position, max_range_m, cruise_speed_mps, end_action }) =>
-        actions.changeUav(sequence, { position, max_range_m, end_action, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }),
+      submit: ({ position, max_range_m, cruise_speed_mps, end_action, most_targets }) =>
+        actions.changeUav(sequence, { position, max_range_m, end_action, most_targets, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }),
     });
   }
 

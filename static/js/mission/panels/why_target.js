@@ -21,6 +21,8 @@ export function reasonWords(said) {
     too_far_from_network: () => t("The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.", lengths),
     no_path: () => (zones ? t("Every way to it leads through {zones}.", { zones }) : t("No way leads there that keeps clear of every zone.")),
     beyond_range: () => t("It is out of range of every UAV of this mission."),
+    not_allowed: () => t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
+    most_targets: () => t("Every UAV that could fly it has as many targets as it may."),
     not_with_the_others: () => t("One UAV alone could fly there, but none has the range left after its other targets."),
   };
   return words[said.reason]?.() ?? "";

@@ -1,4 +1,7 @@
-"""Shortest paths between attached places, by hand and against networkx."""
+"""Ways between attached places: by hand, against networkx, and against a search over the whole graph."""
+
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 
 import networkx as nx
 import numpy as np
@@ -6,8 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.graph import shortest_paths
-from inspection.graph.shortest_paths import Attachment, DirectLeg, NoWay, travel_between
+from inspection.graph.condensed import CORE, condense
+from inspection.graph.legs import Attachment, DirectLeg, NoWay
+from inspection.graph.route_index import route_index
+from inspection.graph.ways import travel_between
+from tests.inspection.graph import search_oracle
 from tests.inspection.graph.drawn_graphs import drawn_graph
 
 
@@ -85,16 +91,31 @@ def attachments(nodes: int) -> st.SearchStrategy[list[Attachment]]:
 
 @st.composite
 def plannings(draw: st.DrawFn):
-    """Random graphs rich in long chains, cycles and loose ends, with places attached to them."""
-    nodes = draw(st.integers(2, 40))
-    chain = [(a, a + 1) for a in range(nodes - 1) if draw(st.integers(0, 9))]
-    extra = draw(st.lists(st.tuples(st.integers(0, nodes - 1), st.integers(0, nodes - 1)), max_size=nodes // 2))
+    """Random graphs of chains between junctions, rings, islands and lone nodes, with places attached to them.
+
+    Chains may run side by side between two junctions or come back to the one that they left; edges may be 0 m long.
+    """
+    junctions = draw(st.integers(1, 6))
+    nodes, pairs = junctions, []
+    for _ in range(draw(st.integers(0, 10))):
+        tail, head = draw(st.integers(0, junctions - 1)), draw(st.integers(0, junctions - 1))
+        inner = draw(st.integers(2 if tail == head else 0, 6))
+        chain = [tail, *range(nodes, nodes + inner), head]
+        pairs += list(pairwise(chain))
+        nodes += inner
+    for _ in range(draw(st.integers(0, 2))):  # rings that meet nothing
+        around = draw(st.integers(3, 6))
+        pairs += [(nodes + number, nodes + (number + 1) % around) for number in range(around)]
+        nodes += around
+    nodes += draw(st.integers(0, 2))
     renamed = draw(st.permutations(range(nodes)))
-    pairs = sorted({(min(renamed[a], renamed[b]), max(renamed[a], renamed[b])) for a, b in chain + extra if a != b})
-    edges = [(a, b, draw(st.integers(1, 1000)) / 7) for a, b in pairs]
+    pairs = sorted({(min(renamed[a], renamed[b]), max(renamed[a], renamed[b])) for a, b in pairs})
+    edges = [(a, b, draw(st.integers(0, 1000)) / 7) for a, b in pairs]
     factor = [draw(st.sampled_from([1.0, 2.0])) for _ in edges]
     graph = drawn_graph([(float(a), 0.0) for a in range(nodes)], edges, factor=factor)
-    return graph, draw(st.lists(attachments(nodes), min_size=1, max_size=4)), draw(st.lists(attachments(nodes), min_size=1, max_size=4))
+    both = draw(st.lists(attachments(nodes), max_size=2))  # places that are source and sink, as the targets of a mission are
+    outward = both + draw(st.lists(attachments(nodes), min_size=1, max_size=4))
+    return graph, outward, both + draw(st.lists(attachments(nodes), min_size=1, max_size=4))
 
 
 def networkx_copy(graph, outward, inward) -> nx.DiGraph:
@@ -141,13 +162,69 @@ def test_costs_are_symmetric_and_obey_the_triangle_inequality(planning):
     assert (reachable <= detour + 1e-6).all()
 
 
-def test_a_search_in_blocks_of_sources_finds_the_same(monkeypatch):
-    """A --100-- B --80-- C, five sources, two at a time"""
+@given(plannings())
+def test_ways_equal_those_of_a_search_over_the_whole_graph(planning):
+    graph, outward, inward = planning
+    direct = [DirectLeg(0, 0, 60.0, 120.0)]
+    travel, searched = travel_between(graph, outward, inward, direct), search_oracle.travel_between(graph, outward, inward, direct)
+    assert travel.cost == pytest.approx(searched.cost, abs=1e-6)
+    assert (np.isinf(travel.length_m) == np.isinf(searched.length_m)).all()
+
+
+@given(plannings())
+def test_condensing_keeps_every_edge_and_node_once(planning):
+    graph, _, _ = planning
+    condensed = condense(graph.node_count, graph.edge, graph.cost, graph.length_m)
+    degree = np.bincount(graph.edge.ravel(), minlength=graph.node_count)
+    within = condensed.node_chain != CORE
+    assert (degree[within] == 2).all()
+    assert sorted(condensed.core_node.tolist()) == np.flatnonzero(~within).tolist()
+    first = condensed.chain_first.tolist()
+    walked = []
+    for chain, (begin, end) in enumerate(pairwise(first)):
+        nodes = condensed.place_node[begin:end].tolist()
+        assert (condensed.core_node[[condensed.chain_tail[chain], condensed.chain_head[chain]]] == [nodes[0], nodes[-1]]).all()
+        assert (condensed.node_chain[nodes[1:-1]] == chain).all()
+        assert (condensed.place_node[condensed.node_place[nodes[1:-1]]] == nodes[1:-1]).all()
+        walked += [tuple(sorted(pair)) for pair in pairwise(nodes)]
+    assert sorted(walked) == sorted(map(tuple, graph.edge.tolist()))
+    assert condensed.chain_m.sum() == pytest.approx(graph.length_m.sum())
+    assert condensed.chain_cost.sum() == pytest.approx(graph.cost.sum())
+
+
+def test_two_places_on_one_ring_are_joined_the_short_way_round():
+    """A ring of five that meets nothing, 100 m from node to node."""
+    graph = drawn_graph([(float(number), 0.0) for number in range(5)], [(a, (a + 1) % 5, 100.0) for a in range(5)])
+    travel = travel_between(graph, [[leg(1, 0)]], [[leg(number, 0)] for number in range(5)])
+    assert travel.length_m.tolist() == [[100.0, 0.0, 100.0, 200.0, 200.0]]
+    assert travel.path(0, 4).tolist() == [1, 0, 4]
+    assert travel.path(0, 3).tolist() == [1, 2, 3]
+
+
+def test_two_edges_between_two_nodes_count_as_the_cheaper():
+    condensed = condense(2, np.array([[0, 1], [0, 1], [1, 1]]), np.array([5.0, 3.0, 1.0]), np.array([5.0, 3.0, 1.0]))
+    assert condensed.core_count == 1
+    assert condensed.chain_m.tolist() == [8.0]
+
+
+def test_the_index_is_made_once_even_when_threads_ask_at_the_same_time():
     graph = drawn_graph([(0, 0), (1, 0), (2, 0)], [(0, 1, 100.0), (1, 2, 80.0)])
-    outward = [[leg(number % 3, number)] for number in range(5)]
-    whole = travel_between(graph, outward, [[leg(2, 0)]])
-    monkeypatch.setattr(shortest_paths, "ENTRIES_PER_BLOCK", 6)
-    in_blocks = travel_between(graph, outward, [[leg(2, 0)]])
-    assert in_blocks.cost.tolist() == whole.cost.tolist()
-    assert in_blocks.length_m.tolist() == whole.length_m.tolist() == [[180.0], [81.0], [2.0], [183.0], [84.0]]
-    assert [in_blocks.path(source, 0).tolist() for source in range(5)] == [[0, 1, 2], [1, 2], [2], [0, 1, 2], [1, 2]]
+    with ThreadPoolExecutor(8) as threads:
+        made = list(threads.map(lambda _: route_index(graph), range(32)))
+    assert all(index is made[0] for index in made)
+
+
+def test_threads_that_share_an_index_get_their_own_answers():
+    random = np.random.default_rng(5)
+    count = 400
+    edges = {(min(a, b), max(a, b)) for a, b in random.integers(0, count, (600, 2)).tolist() if a != b}
+    graph = drawn_graph([(0.0, 0.0)] * count, [(a, b, float(random.integers(1, 900))) for a, b in sorted(edges)])
+    asked = [[[leg(int(node), 1.0)] for node in nodes] for nodes in random.integers(0, count, (40, 6))]
+    alone = [travel_between(graph, places, places) for places in asked]
+    with ThreadPoolExecutor(8) as threads:
+        together = list(threads.map(lambda places: travel_between(graph, places, places), asked * 5))
+    for number, travel in enumerate(together):
+        expected = alone[number % len(asked)]
+        assert (travel.cost == expected.cost).all()
+        if np.isfinite(travel.cost[0, 1]):
+            assert travel.path(0, 1).tolist() == expected.path(0, 1).tolist()

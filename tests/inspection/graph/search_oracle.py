@@ -1,4 +1,4 @@
-"""Shortest paths between places that are attached to the graph for one planning."""
+"""Ways between attached places by scipy's Dijkstra, one search over the whole graph for each source: what the index is checked against."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.legs import Attachment, DirectLeg, NoWay
 
 ENTRIES_PER_BLOCK = 8_000_000  # sources x nodes searched at once: 100 MB
 KEPT_SEARCHES = 16  # of sources whose paths are asked for, when not all are kept
@@ -21,29 +22,6 @@ FloatArray = NDArray[np.float64]
 
 NO_WAY = -1
 DIRECT = -2
-
-
-class NoWay(LookupError):
-    """No way leads from the source to the sink."""
-
-
-@dataclass(frozen=True)
-class Attachment:
-    """A leg between a place and a node of the graph."""
-
-    node: int
-    length_m: float
-    cost: float
-
-
-@dataclass(frozen=True)
-class DirectLeg:
-    """A leg from a source straight to a sink, without the graph."""
-
-    source: int
-    sink: int
-    length_m: float
-    cost: float
 
 
 @dataclass(frozen=True)

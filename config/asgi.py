@@ -1,0 +1,21 @@
+"""The websocket application (ASGI), program `live`. HTTP is config/wsgi.py's: Django under ASGI costs many times the processor time."""
+
+import os
+
+from django.core.asgi import get_asgi_application
+
+os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
+get_asgi_application()  # loads the apps, before anything below asks for models
+
+from channels.routing import ProtocolTypeRouter, URLRouter  # noqa: E402
+from channels.sessions import SessionMiddlewareStack  # noqa: E402
+
+from config.live import OriginCheck, upgrade_required  # noqa: E402
+from workspace.websocket_urls import websocket_urlpatterns  # noqa: E402
+
+application = ProtocolTypeRouter(
+    {
+        "http": upgrade_required,
+        "websocket": OriginCheck(SessionMiddlewareStack(URLRouter(websocket_urlpatterns))),
+    }
+)

@@ -1,0 +1,131 @@
+"""Locked parts of routes: each run becomes one visit, so that every solver sees an ordinary problem."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from missions.routing.problem import FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
+
+
+@dataclass(frozen=True)
+class _Run:
+    """One way of flying a locked run: its visits in order, and the metres from the first one's begin to the last one's end."""
+
+    visits: tuple[int, ...]
+    length_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """A problem in which every lock is one target; `visits_of` and `targets_of` lead back to the visits and targets of the whole one."""
+
+    problem: Problem
+    visits_of: tuple[tuple[int, ...], ...]
+    targets_of: tuple[tuple[int, ...], ...]
+
+    def expanded(self, routes: Routes) -> Routes:
+        return tuple(tuple(visit for reduced in route for visit in self.visits_of[reduced]) for route in routes)
+
+    def expanded_reasons(self, unassigned: Sequence[Unassigned]) -> tuple[Unassigned, ...]:
+        spread = [replace(item, target=target) for item in unassigned for target in self.targets_of[item.target]]
+        return tuple(sorted(spread, key=lambda item: item.target))
+
+
+def reduced(problem: Problem) -> Reduced:
+    """The problem without its locks: a run is a target of one visit for each pair of its first and its last visit.
+
+    Inside, stretches are flown in the directions that are shortest together. Leaving out what is locked weighs more than leaving out
+    everything free of its priority, and less than anything of a higher one. Raises InvalidProblem if the locks contradict each other.
+    """
+    _refuse_contradictions(problem)
+    visits_of_target = problem.visits_of_target()
+    locked = {target for lock in problem.locks for target in lock.targets}
+    free = [target for target in range(problem.target_count) if target not in locked]
+    ways: list[_Run] = []
+    visits: list[Visit] = []
+    owner: list[Lock | None] = []
+    for number, target in enumerate(free):
+        for visit in visits_of_target[target]:
+            ways.append(_Run((visit,), problem.visits[visit].length_m))
+            visits.append(replace(problem.visits[visit], target=number))
+            owner.append(None)
+    for number, lock in enumerate(problem.locks, start=len(free)):
+        for run in _runs(problem, [visits_of_target[target] for target in lock.targets]):
+            ways.append(run)
+            service_s = sum(problem.visits[visit].service_s for visit in run.visits)
+            done = sum(problem.visits[visit].done for visit in run.visits)
+            visits.append(Visit(number, False, run.length_m, service_s, done))
+            owner.append(lock)
+
+    first = np.array([run.visits[0] for run in ways], dtype=np.int64)
+    last = np.array([run.visits[-1] for run in ways], dtype=np.int64)
+    between_m = problem.between_m[np.ix_(last, first)]
+    allowed = np.ones((len(problem.uavs), len(problem.visits)), dtype=bool) if problem.allowed is None else problem.allowed
+    allowed = np.array([allowed[:, list(run.visits)].all(axis=1) for run in ways], dtype=bool).reshape(len(ways), len(problem.uavs)).T
+    for index, wish in enumerate(owner):
+        if wish is not None:
+            allowed[:, index] &= np.arange(len(problem.uavs)) == wish.uav
+            if wish.at_start:
+                between_m[:, index] = np.inf
+            if wish.at_end:
+                between_m[index, :] = np.inf
+    targets_of = (*((target,) for target in free), *(lock.targets for lock in problem.locks))
+    return Reduced(
+        replace(
+            problem,
+            visits=tuple(visits),
+            target_count=len(targets_of),
+            from_start_m=problem.from_start_m[:, first],
+            between_m=between_m,
+            to_start_m=problem.to_start_m[last],
+            to_base_m=None if problem.to_base_m is None else problem.to_base_m[last],
+            allowed=allowed,
+            priorities=(),
+            locks=(),
+            weights=_weights(problem, targets_of, len(free)),
+        ),
+        tuple(run.visits for run in ways),
+        targets_of,
+    )
+
+
+def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int) -> FloatArray:
+    """(reduced targets,): whole numbers, for some hundred targets below 2^53: sums are exact. A run weighs what its parts do."""
+    is_locked = np.zeros(problem.target_count, dtype=bool)
+    is_locked[[target for targets in targets_of[free:] for target in targets]] = True
+    weights, heavier = np.zeros(problem.target_count), 1.0
+    for level in np.unique(problem.left_out_weights):
+        of_level = problem.left_out_weights == level
+        weights[of_level] = np.where(is_locked[of_level], heavier * (1.0 + float((of_level & ~is_locked).sum())), heavier)
+        heavier += float(weights[of_level].sum())
+    return np.array([weights[list(targets)].sum() for targets in targets_of])
+
+
+def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> list[_Run]:
+    """The shortest way through one visit of each target, for each first and each last visit that has one."""
+    runs = []
+    for first in alternatives[0]:
+        ways = {first: _Run((first,), problem.visits[first].length_m)}
+        for visits in alternatives[1:]:
+            ways = {visit: min((_onward(problem, run, visit) for run in ways.values()), key=lambda run: run.length_m) for visit in visits}
+        runs += [run for run in ways.values() if np.isfinite(run.length_m)]
+    return runs
+
+
+def _onward(problem: Problem, run: _Run, visit: int) -> _Run:
+    length_m = run.length_m + float(problem.between_m[run.visits[-1], visit]) + problem.visits[visit].length_m
+    return _Run((*run.visits, visit), length_m)
+
+
+def _refuse_contradictions(problem: Problem) -> None:
+    targets = [target for lock in problem.locks for target in lock.targets]
+    if len(targets) != len(set(targets)):
+        raise InvalidProblem("a target is locked twice")
+    if not all(lock.targets and 0 <= lock.uav < len(problem.uavs) for lock in problem.locks):
+        raise InvalidProblem("a lock names no target, or a UAV that is not there")
+    if not all(0 <= target < problem.target_count for target in targets):
+        raise InvalidProblem("a lock names a target that is not there")
+    for ends in ([lock.uav for lock in problem.locks if lock.at_start], [lock.uav for lock in problem.locks if lock.at_end]):
+        if len(ends) != len(set(ends)):
+            raise InvalidProblem("two locks want the same end of a route")

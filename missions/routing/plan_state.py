@@ -1,0 +1,195 @@
+"""A plan under change, as arrays: what the compiled searches read and write."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
+from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
+
+RandomState = NDArray[np.uint64]  # one number
+
+MOST_NEIGHBOURS = 60
+NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
+
+
+class Ground(NamedTuple):
+    """What does not change. The first arrays are those of Arcs.
+
+    back_m   (v, v) the arcs that lead to a visit in one row
+    twin     (v,) the same target the other way round; a visit that has none is its own
+    option   (v,) the visits of each target one after another, option_from (t + 1,) where each target's begin
+    usable   (u, v) whether the UAV can and may fly the visit at all
+    near     (t, k) the nearest targets of each, itself first
+    far_m    (t,) from the nearest start
+    """
+
+    first_m: FloatArray
+    onward_m: FloatArray
+    end_m: FloatArray
+    target: IntArray
+    service_s: FloatArray
+    done: IntArray
+    limit_m: FloatArray
+    speed_mps: FloatArray
+    most: IntArray
+    weight: FloatArray
+    is_makespan: bool
+    back_m: FloatArray
+    twin: IntArray
+    option: IntArray
+    option_from: IntArray
+    usable: BoolArray
+    near: IntArray
+    far_m: FloatArray
+
+
+class Plan(NamedTuple):
+    """Routes and what follows from them; `size` (u,) is how many visits each has, `uav_of` (t,) is -1 for a target that is left out.
+
+    gap_m (u, t + 1) holds the arc that leads to each place of a route, and at last on to its end. With no visit all is 0.
+    """
+
+    visit: IntArray
+    size: IntArray
+    gap_m: FloatArray
+    length_m: FloatArray
+    service_s: FloatArray
+    done: IntArray
+    uav_of: IntArray
+    place: IntArray
+
+
+def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
+    option, option_from = arcs.visits_of_target
+    apart_m = _apart_m(arcs)
+    near = np.argsort(apart_m, axis=1, kind="stable")[:, : MOST_NEIGHBOURS + 1]
+    far_m = np.full(len(arcs.weight), NO_WAY_M)
+    if len(arcs.first_m):
+        np.minimum.at(far_m, arcs.target, arcs.first_m.min(axis=0))
+    return Ground(
+        arcs.first_m,
+        arcs.onward_m,
+        arcs.end_m,
+        arcs.target,
+        arcs.service_s,
+        arcs.done,
+        arcs.limit_m,
+        arcs.speed_mps,
+        arcs.most,
+        arcs.weight,
+        arcs.is_makespan,
+        np.ascontiguousarray(arcs.onward_m.T),
+        _twins(problem),
+        option,
+        option_from,
+        np.ascontiguousarray(usable),
+        np.ascontiguousarray(near),
+        far_m,
+    )
+
+
+def _twins(problem: Problem) -> IntArray:
+    twin = np.arange(len(problem.visits))
+    for visits in problem.visits_of_target():
+        if len(visits) == 2 and problem.visits[visits[0]].is_reversed != problem.visits[visits[1]].is_reversed:
+            twin[visits] = visits[::-1]
+    return twin
+
+
+def _apart_m(arcs: Arcs) -> FloatArray:
+    """Metres between targets, over their nearest visits and the better direction, (t, t); below 0 from each to itself."""
+    targets = len(arcs.weight)
+    apart_m = np.full((targets, targets), NO_WAY_M)
+    np.minimum.at(apart_m, (arcs.target[:, None], arcs.target[None, :]), arcs.onward_m)
+    apart_m = np.asarray(np.minimum(apart_m, apart_m.T), dtype=np.float64)
+    np.fill_diagonal(apart_m, -1.0)
+    return apart_m
+
+
+def empty_plan(uavs: int, targets: int) -> Plan:
+    return Plan(
+        np.zeros((uavs, targets), dtype=np.int64),
+        np.zeros(uavs, dtype=np.int64),
+        np.zeros((uavs, targets + 1)),
+        np.zeros(uavs),
+        np.zeros(uavs),
+        np.zeros(uavs, dtype=np.int64),
+        np.full(targets, -1, dtype=np.int64),
+        np.zeros(targets, dtype=np.int64),
+    )
+
+
+def routes_of(plan: Plan) -> Routes:
+    return tuple(tuple(route[:count]) for route, count in zip(plan.visit.tolist(), plan.size.tolist(), strict=True))
+
+
+@njit(cache=True, nogil=True)
+def settle(ground: Ground, plan: Plan, uav: int) -> None:
+    """Work out everything that follows from a UAV's visits."""
+    count = plan.size[uav]
+    visit, gap_m = plan.visit[uav], plan.gap_m[uav]
+    length_m, service_s, done = 0.0, 0.0, 0
+    if count:
+        gap_m[0] = ground.first_m[uav, visit[0]]
+        for place in range(1, count):
+            gap_m[place] = ground.onward_m[visit[place - 1], visit[place]]
+        gap_m[count] = ground.end_m[uav, visit[count - 1]]
+        for place in range(count):
+            length_m += gap_m[place]
+            service_s += ground.service_s[visit[place]]
+            done += ground.done[visit[place]]
+            plan.uav_of[ground.target[visit[place]]] = uav
+            plan.place[ground.target[visit[place]]] = place
+        length_m += gap_m[count]
+    plan.length_m[uav], plan.service_s[uav], plan.done[uav] = length_m, service_s, done
+
+
+@njit(cache=True, nogil=True)
+def copy_plan(source: Plan, copy: Plan) -> None:
+    for uav in range(len(source.size)):
+        copy_route(source, copy, uav)
+    copy.uav_of[:] = source.uav_of
+    copy.place[:] = source.place
+
+
+@njit(cache=True, nogil=True)
+def copy_route(source: Plan, copy: Plan, uav: int) -> None:
+    count = source.size[uav]
+    copy.size[uav] = count
+    copy.visit[uav, :count] = source.visit[uav, :count]
+    copy.gap_m[uav, : count + 1] = source.gap_m[uav, : count + 1]
+    copy.length_m[uav] = source.length_m[uav]
+    copy.service_s[uav] = source.service_s[uav]
+    copy.done[uav] = source.done[uav]
+
+
+@njit(cache=True, nogil=True)
+def values(ground: Ground, plan: Plan) -> tuple[float, float, float]:
+    """What is left out by weight, the total [m], the longest route [s]."""
+    missed, total_m, longest_s = 0.0, 0.0, 0.0
+    for target in range(len(plan.uav_of)):
+        if plan.uav_of[target] < 0:
+            missed += ground.weight[target]
+    for uav in range(len(plan.size)):
+        total_m += plan.length_m[uav]
+        longest_s = max(longest_s, plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav])
+    return missed, total_m, longest_s
+
+
+@njit(cache=True, nogil=True)
+def draw(state: RandomState) -> float:
+    """A number from 0 up to 1 (xorshift64*, Vigna 2016)."""
+    number = state[0]
+    number ^= number >> np.uint64(12)
+    number ^= number << np.uint64(25)
+    number ^= number >> np.uint64(27)
+    state[0] = number
+    return float((number * np.uint64(0x2545F4914F6CDD1D)) >> np.uint64(11)) * (1.0 / 9007199254740992.0)
+
+
+@njit(cache=True, nogil=True)
+def draw_below(state: RandomState, bound: int) -> int:
+    return int(draw(state) * bound)

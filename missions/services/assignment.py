@@ -1,0 +1,164 @@
+"""From places and ways to the solver's problem with all that is wished; and what the locked runs cost."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from missions.models import EndAction
+from missions.routing.exact import MAX_TARGETS
+from missions.routing.problem import BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit, merit
+from missions.routing.progress import OnProgress, Progress
+from missions.routing.solver import Stop, solve
+from missions.routing.terminals import Ways
+from missions.services.places import Place
+from missions.services.refusals import Grounding
+from missions.services.requests import LockRequest, PlanRequest
+from missions.services.wishes import may_do
+
+_ENDS = {EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
+
+
+def route_end(request: PlanRequest, uav: int) -> End:
+    return _ENDS.get(request.end_action(uav), End.OPEN)
+
+
+@dataclass(frozen=True, eq=False)
+class Assignment:
+    """What is to be solved. `free` is the problem without the locks; `held_back` says of places, by their number, why no route has them.
+
+    A run of which a part cannot be flown is held back as a whole.
+    """
+
+    problem: Problem
+    free: Problem | None
+    held_back: dict[int, str]
+
+
+def assignment(
+    request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit], ways: Ways, grounded: dict[int, Grounding]
+) -> Assignment:
+    """uavs: those that fly, by their places in the request; visits: of the places, by their numbers."""
+    targets = [request.targets[place.target] for place in places]
+    ends = {request.end_action(uav) for uav in uavs}
+    free = Problem(
+        uavs=tuple(
+            UavStart(asked.max_range_m, route_end(request, uav), asked.cruise_speed_mps, asked.most_targets)
+            for uav, asked in ((uav, request.uavs[uav]) for uav in uavs)
+        ),
+        visits=tuple(visits),
+        target_count=len(places),
+        from_start_m=ways.from_start_m,
+        between_m=ways.between_m,
+        to_start_m=ways.to_start_m,
+        objective=request.objective,
+        to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(uavs))) if EndAction.BASE in ends else None,
+        allowed=_allowed(request, uavs, places, visits) if any(target.uav or target.sensor for target in targets) else None,
+        priorities=tuple(target.priority for target in targets) if any(target.priority != Priority.NORMAL for target in targets) else (),
+    )
+    if not request.locks:
+        return Assignment(free, None, {})
+    held_back, locks = _runs(request, uavs, places, grounded)
+    return Assignment(replace(free, locks=locks, allowed=_without(free, held_back)), free, held_back)
+
+
+def _allowed(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit]) -> BoolArray:
+    """Which visits each UAV may fly, (u, v)."""
+    of_place = [[may_do(request.uavs[uav], request.targets[place.target]) for place in places] for uav in uavs]
+    allowed = np.array(of_place, dtype=bool).reshape(len(uavs), len(places))
+    return allowed[:, [visit.target for visit in visits]]
+
+
+def _without(problem: Problem, held_back: dict[int, str]) -> BoolArray | None:
+    if not held_back:
+        return problem.allowed
+    allowed = np.ones((len(problem.uavs), len(problem.visits)), dtype=bool) if problem.allowed is None else problem.allowed
+    return allowed & np.array([visit.target not in held_back for visit in problem.visits], dtype=bool)
+
+
+def _runs(
+    request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], grounded: dict[int, Grounding]
+) -> tuple[dict[int, str], tuple[Lock, ...]]:
+    """What is left of runs that cannot be flown, with the reason, and the runs that can."""
+    start_of = {request.uavs[uav].name: start for start, uav in enumerate(uavs)}
+    on_the_ground = {request.uavs[uav].name for uav in grounded}
+    place_of = {place.target: number for number, place in enumerate(places)}
+    held_back: dict[int, str] = {}
+    locks: list[Lock] = []
+    for lock in request.locks:
+        if lock.uav in on_the_ground:
+            held_back |= _held(lock, place_of, f"It is locked to {lock.uav}, which cannot take off.")
+        elif any(target not in place_of for target in lock.targets):
+            held_back |= _held(lock, place_of, "It is locked to others of which one cannot be reached: the run is left out as a whole.")
+        else:
+            locks.append(Lock(start_of[lock.uav], tuple(place_of[target] for target in lock.targets), lock.at_start, lock.at_end))
+    return held_back, tuple(locks)
+
+
+def _held(lock: LockRequest, place_of: dict[int, int], why: str) -> dict[int, str]:
+    return {place_of[target]: why for target in lock.targets if target in place_of}
+
+
+@dataclass(frozen=True)
+class LockCost:
+    """The plan with the locks less the plan without them. Costs are None where the two do not reach as many targets."""
+
+    cost_m: float | None
+    cost_s: float | None
+    free_total_m: float
+    free_longest_s: float
+    left_out: int
+
+
+def solve_assignment(
+    asked: Assignment, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+) -> tuple[Solution, LockCost | None]:
+    """The plan; where runs are locked also what that costs. Where a search is needed the two plans share its time half and half."""
+    if asked.free is None:
+        return solve(asked.problem, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s), None
+    half_s = search_s / 2.0 if asked.free.target_count > MAX_TARGETS else search_s
+
+    def first_half(told: Progress) -> None:
+        on_progress(replace(told, share=told.share / 2.0))
+
+    def second_half(told: Progress) -> None:
+        on_progress(
+            Progress(0.5 + told.share / 2.0, "Working out what the locked parts cost")
+        )  # what is drawn stays the plan with the locks
+
+    solution = solve(asked.problem, stop=stop, on_progress=first_half, seed=seed, search_s=half_s)
+    free = solve(asked.free, stop=stop, on_progress=second_half, seed=seed, search_s=half_s)
+    return solution, _cost(asked.free, solution, free)
+
+
+def _cost(problem: Problem, solution: Solution, free: Solution) -> LockCost:
+    """The plan with the locks is one without them, too: where the search without them finds nothing better, they cost nothing."""
+    if merit(problem, solution.routes) <= merit(problem, free.routes):
+        free = solution
+    left_out = len(solution.unassigned) - len(free.unassigned)
+    is_comparable = {item.target for item in solution.unassigned} == {item.target for item in free.unassigned}
+    return LockCost(
+        cost_m=solution.total_m - free.total_m if is_comparable else None,
+        cost_s=solution.longest_s - free.longest_s if is_comparable else None,
+        free_total_m=free.total_m,
+        free_longest_s=free.longest_s,
+        left_out=left_out,
+    )
+
+
+def quality_of(solution: Solution, cost: LockCost | None, objective: Objective, *, total_m: float, longest_s: float) -> dict[str, object]:
+    """Bound, gap, method and the cost of the locks in the shape of the API.
+
+    total_m and longest_s are of the finished routes; the bound stays below them, whatever the drawing has rounded.
+    """
+    is_total = objective is Objective.TOTAL
+    bound = min(solution.lower_bound, total_m if is_total else longest_s)
+    return {
+        "lower_bound_m": math.floor(bound * 1_000) / 1_000 if is_total else None,
+        "lower_bound_s": None if is_total else math.floor(bound * 10) / 10,
+        "gap": round(solution.gap, 6),
+        "is_proven": solution.is_proven,
+        "method": solution.method,
+        "wish": None if cost is None else {name: value if value is None else round(value, 3) for name, value in vars(cost).items()},
+    }

@@ -1,0 +1,94 @@
+"""The best plan that a search has found until now, as lines on the map: drawn while the search goes on."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.graph.inspection_graph import InspectionGraph
+from missions.flight_plan.heights import FloatArray
+from missions.routing.problem import End, Objective, Problem, Routes
+from missions.routing.progress import Progress
+from missions.routing.terminals import Ways
+
+MOST_POINTS = 6_000  # of all lines together: some 150 kB, once a second
+
+
+@dataclass(frozen=True)
+class PlanProgress:
+    """How far the making of a plan is; `draw` gives the best so far in the shape of `Job.best`."""
+
+    share: float
+    message: str
+    draw: Callable[[], dict[str, Any]] | None = None
+
+
+OnPlanProgress = Callable[[PlanProgress], None]
+
+
+def unheard(progress: PlanProgress) -> None:
+    """For callers that do not watch."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sketch:
+    """Draws routes of visits along the network, without heights. `starts` and `uavs` (their numbers in the request) of those that fly.
+
+    `bases` are those of the ways.
+    """
+
+    problem: Problem
+    ways: Ways
+    graph: InspectionGraph
+    starts: Sequence[LonLat]
+    bases: Sequence[LonLat]
+    uavs: Sequence[int]
+    courses: Sequence[tuple[LonLat, ...]]
+
+    def of(self, progress: Progress) -> dict[str, Any] | None:
+        """None where there is nothing to draw."""
+        return None if progress.best_routes is None else self._drawn(progress.best_routes, progress.bound)
+
+    def _drawn(self, routes: Routes, bound: float | None) -> dict[str, Any]:
+        problem, is_total = self.problem, self.problem.objective is Objective.TOTAL
+        measured = [
+            problem.route_length_m(uav, route) if is_total else problem.route_duration_s(uav, route) for uav, route in enumerate(routes)
+        ]
+        lines = {uav: self._line(uav, route) for uav, route in enumerate(routes) if route}
+        step = max(1, -(-sum(map(len, lines.values())) // MOST_POINTS))
+        return {
+            "unit": "m" if is_total else "s",
+            "value": round(sum(measured) if is_total else max(measured, default=0.0), 3),
+            "bound": None if bound is None else round(bound, 3),
+            "left_out": problem.target_count - len({problem.visits[visit].target for route in routes for visit in route}),
+            "routes": {
+                "type": "FeatureCollection",
+                "features": [
+                    {
+                        "type": "Feature",
+                        "properties": {"uav": self.uavs[uav], "targets": len(routes[uav])},
+                        "geometry": {"type": "LineString", "coordinates": np.round(_thinned(line, step), 6).tolist()},
+                    }
+                    for uav, line in lines.items()
+                ],
+            },
+        }
+
+    def _line(self, uav: int, route: Sequence[int]) -> FloatArray:
+        position = self.graph.position
+        parts = [np.array([self.starts[uav]]), position[self.ways.out(uav, route[0])], np.array(self.courses[route[0]])]
+        for left, right in pairwise(route):
+            parts += [position[self.ways.onward(left, right)], np.array(self.courses[right])]
+        if self.problem.uavs[uav].end is End.RETURN:
+            parts += [position[self.ways.home(route[-1], uav)], np.array([self.starts[uav]])]
+        elif self.problem.uavs[uav].end is End.ANY_BASE:
+            parts += [position[self.ways.to_base(route[-1])], np.array([self.bases[self.ways.nearest_base[route[-1]]]])]
+        return np.concatenate(parts)
+
+
+def _thinned(line: FloatArray, step: int) -> FloatArray:
+    """Every so many points, and the last one."""
+    return line[np.unique(np.append(np.arange(0, len(line), step), len(line) - 1))]

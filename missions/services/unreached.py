@@ -1,0 +1,89 @@
+"""Why a target is left out after the routes are found: the solver's reason, and the wish, the distance or the zones behind it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from missions.routing.problem import End, Problem, Reason, Unassigned
+from missions.routing.terminals import Ways, is_near_network
+from missions.services.assignment import Assignment
+from missions.services.places import Place
+from missions.services.refusals import LeftOut, Scene
+from missions.services.requests import PlanRequest, TargetRequest
+from missions.services.wishes import has_sensor, may_do
+
+LOCKED = " It is locked to others: the run is left out as a whole."
+
+
+def unreached_places(
+    unassigned: Sequence[Unassigned], request: PlanRequest, asked: Assignment, places: Sequence[Place], ways: Ways, scene: Scene
+) -> list[LeftOut]:
+    """The solver's reasons in full; ways and visits as it had them."""
+    visits_of = asked.problem.visits_of_target()
+    in_runs = {target for lock in asked.problem.locks if len(lock.targets) > 1 for target in lock.targets}
+    found = []
+    for item in unassigned:
+        place, visits = places[item.target], visits_of[item.target]
+        if item.target in asked.held_back:
+            found.append(LeftOut(place.target, Reason.NOT_ALLOWED.value, asked.held_back[item.target]))
+            continue
+        reason, message = _why(item, request.targets[place.target], request, asked, visits, ways) or _way_barred(
+            place, item, visits, ways, scene
+        )
+        found.append(LeftOut(place.target, reason, message + (LOCKED if item.target in in_runs else "")))
+    return found
+
+
+def _why(
+    item: Unassigned, target: TargetRequest, request: PlanRequest, asked: Assignment, visits: Sequence[int], ways: Ways
+) -> tuple[str, str] | None:
+    """Where a wish is what keeps the target from its route, that wish."""
+    if item.reason is Reason.NOT_ALLOWED:
+        return item.reason.value, _nobody_may(target, request)
+    if item.reason is Reason.MOST_TARGETS:
+        return item.reason.value, _all_have_enough(target, item)
+    if item.reason is Reason.NO_PATH and _is_cut_off_from_bases(asked.problem, visits, ways):
+        return item.reason.value, "There is no way from it to a base that lies outside every no-fly zone."
+    return None
+
+
+def _is_cut_off_from_bases(problem: Problem, visits: Sequence[int], ways: Ways) -> bool:
+    """Whether every UAV that may do it has to land at a base, and none can be reached from where it meets the network."""
+    may = [uav for uav in range(len(problem.uavs)) if any(problem.may_fly(uav, visit) for visit in visits)]
+    return (
+        bool(may)
+        and all(problem.uavs[uav].end is End.ANY_BASE for uav in may)
+        and any(ways.exit_legs[visit] for visit in visits)
+        and not np.isfinite(ways.to_base_m[list(visits)]).any()
+    )
+
+
+def _nobody_may(target: TargetRequest, request: PlanRequest) -> str:
+    if target.uav:
+        tied = next((uav for uav in request.uavs if uav.name == target.uav), None)
+        if tied is not None and not has_sensor(tied, target.sensor):
+            return f"It is tied to {target.uav}, which does not have the sensor {target.sensor}."
+        return f"It is tied to {target.uav}, which cannot take off."
+    if any(may_do(uav, target) for uav in request.uavs):
+        return f"No UAV that can take off has the sensor {target.sensor}."
+    return f"No UAV of the plan has the sensor {target.sensor}."
+
+
+def _all_have_enough(target: TargetRequest, item: Unassigned) -> str:
+    if target.uav:
+        return f"It is tied to {target.uav}, which has as many targets as it may have."
+    return f"Each UAV with the sensor {target.sensor} that can do it has as many targets as it may have." if target.sensor else item.message
+
+
+def _way_barred(place: Place, item: Unassigned, visits: Sequence[int], ways: Ways, scene: Scene) -> tuple[str, str]:
+    """Where the solver found no way, whether that is the distance to the network or the zones around."""
+    if item.reason is not Reason.NO_PATH or not ways.uavs:
+        return item.reason.value, item.message
+    reach = f"{scene.access.access_leg_m / 1_000:g} km"
+    if not any(ways.entry_legs[visit] for visit in visits):
+        if any(is_near_network(scene.graph, end, scene.access.access_leg_m) for end in (place.course[0], place.course[-1])):
+            return Reason.NO_PATH.value, f"Every straight way to it from the network within {reach} meets a no-fly zone."
+        return "too_far_from_network", f"It is more than {reach} from the network."
+    if not any(ways.uav_legs):
+        return Reason.NO_PATH.value, f"No UAV has a clear way of up to {reach} to the network from where it stands."
+    return item.reason.value, item.message

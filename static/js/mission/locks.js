@@ -1,0 +1,194 @@
+/** Locked parts of routes: runs of targets that one UAV flies in this order, with nothing between. Values in, values out.
+ *
+ * A lock is { uav: name, targets: [keys, in order], at_start, at_end }; a target is in at most one. Orders are what a plan flies:
+ * [{ uav: name, targets: [keys] }].
+ */
+
+import { uavsByName, wishesOf, withWishes } from "./selection.js";
+
+const locksOf = (selection) => selection.locks ?? [];
+const isHeldAt = ({ at_start, at_end }) => at_start || at_end;
+const isWholeRoute = ({ at_start, at_end }) => Boolean(at_start && at_end);
+
+/** Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something more. */
+export function areContrary(a, b) {
+  if (a.targets.some((key) => b.targets.includes(key))) return true;
+  return a.uav === b.uav && Boolean((a.at_start && b.at_start) || (a.at_end && b.at_end) || isWholeRoute(a) || isWholeRoute(b));
+}
+
+/** Whether a lock to this name says which UAV is meant. */
+const isOneUav = (selection, uav) => uavsByName(selection).some(({ name }) => name === uav);
+
+/** The order of each UAV's targets in a plan; one that is visited in several pieces stands once. */
+export function ordersOf(plan) {
+  return (plan?.result.routes ?? []).map((route) => ({ uav: route.uav, targets: [...new Set(route.targets.map((target) => plan.targets[target]?.key).filter(Boolean))] }));
+}
+
+export const lockOf = (selection, key) => locksOf(selection).find(({ targets }) => targets.includes(key)) ?? null;
+
+/** What is left of a run; one target whose neighbours went is held no more, unless the run stands at an end of the route. */
+function leftOf(lock, targets) {
+  if (targets.length === lock.targets.length) return [lock];
+  if (!targets.length || (targets.length === 1 && !isHeldAt(lock))) return [];
+  return [{ ...lock, targets }];
+}
+
+const without = (locks, keys) => locks.flatMap((lock) => leftOf(lock, lock.targets.filter((key) => !keys.includes(key))));
+
+/** Locks and ties of targets and UAVs that are still there; the same selection where nothing has gone. */
+export function settled(selection) {
+  const known = new Set(selection.targets.map(({ key }) => key));
+  const names = new Set(selection.uavs.map(({ name }) => name));
+  const locks = locksOf(selection)
+    .filter(({ uav }) => names.has(uav))
+    .flatMap((lock) => leftOf(lock, lock.targets.filter((key) => known.has(key))));
+  const isTiedToNobody = (target) => wishesOf(target).uav !== null && !names.has(target.uav);
+  const isSame = locks.length === locksOf(selection).length && locks.every((lock, index) => lock === locksOf(selection)[index]);
+  if (isSame && !selection.targets.some(isTiedToNobody)) return selection;
+  return { ...selection, locks, targets: selection.targets.map((target) => (isTiedToNobody(target) ? { ...target, uav: null } : target)) };
+}
+
+/** The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned.
+ *
+ * One for each of `orders`, at its place, then those of UAVs to which something is locked and which fly nothing yet.
+ */
+export function wishedOrders(orders, locks) {
+  const wished = orders.map((order) => ({ ...order }));
+  const rank = ({ at_start, at_end }) => (at_end ? 2 : at_start ? 1 : 0);
+  for (const lock of [...locks].sort((a, b) => rank(a) - rank(b))) {
+    const held = new Set(lock.targets);
+    if (!wished.some(({ uav }) => uav === lock.uav)) wished.push({ uav: lock.uav, targets: [] });
+    const own = wished.find(({ uav }) => uav === lock.uav);
+    const anchor = own.targets.findIndex((key) => held.has(key));
+    for (const order of wished) order.targets = order.targets.filter((key) => !held.has(key));
+    const rest = own.targets;
+    const at = lock.at_start ? 0 : lock.at_end || anchor < 0 ? rest.length : anchor;
+    own.targets = [...rest.slice(0, at), ...lock.targets, ...rest.slice(at)];
+  }
+  return wished;
+}
+
+/** Whoever is given to another UAV than the one it was tied to is tied no more: the younger wish stands. */
+function untied(selection, keys, uav) {
+  const isTiedElsewhere = (target) => keys.includes(target.key) && wishesOf(target).uav !== null && target.uav !== uav;
+  return selection.targets.some(isTiedElsewhere) ? selection.targets.map((target) => (isTiedElsewhere(target) ? { ...target, uav: null } : target)) : selection.targets;
+}
+
+/** Locks with one more; a run that was the whole route of its UAV keeps the begin alone, so that there is room. */
+const withLock = (locks, lock) => [...locks.map((other) => (other.uav === lock.uav && isWholeRoute(other) ? { ...other, at_end: false } : other)), lock];
+
+/** Keys of the targets that a UAV may fly: they are picked still, and tied to nobody else. */
+const flyableBy = ({ targets }, uav) => new Set(targets.filter((target) => [null, uav].includes(wishesOf(target).uav)).map(({ key }) => key));
+
+const orderOf = (orders, uav) => orders.find((order) => order.uav === uav)?.targets ?? [];
+
+/** The place of a target in the orders as wished: { uav, index, last }, or null where no route visits it. */
+export function wishedPlace(orders, selection, key) {
+  const order = wishedOrders(orders, locksOf(selection)).find(({ targets }) => targets.includes(key));
+  return order ? { uav: order.uav, index: order.targets.indexOf(key), last: order.targets.length - 1 } : null;
+}
+
+/** Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin or the end.
+ *
+ * The same selection where two UAVs have the name.
+ */
+export function placed(selection, orders, keys, { uav, index }) {
+  if (!isOneUav(selection, uav)) return selection;
+  const locks = without(locksOf(selection), keys);
+  const others = orderOf(wishedOrders(orders, locks), uav).filter((key) => !keys.includes(key));
+  const at = Math.min(Math.max(0, index), others.length);
+  const flyable = flyableBy(selection, uav);
+  const before = others.slice(0, at).findLast((key) => flyable.has(key));
+  const after = others.slice(at).find((key) => flyable.has(key));
+  const runWith = (key) => locks.find((lock) => key !== undefined && lock.uav === uav && lock.targets.includes(key));
+  const [left, right] = [runWith(before), runWith(after)];
+  const isAlone = before === undefined && after === undefined;
+  const lock = { uav, targets: [...keys], at_start: before === undefined && !isAlone, at_end: after === undefined && !isAlone };
+  const joinsLeft = before !== undefined && (!lock.at_end || left?.at_end);
+  const joinsRight = after !== undefined && (!lock.at_start || right?.at_start);
+  if (joinsLeft) {
+    lock.targets.unshift(...(left ? left.targets.slice(0, left.targets.indexOf(before) + 1) : [before]));
+    lock.at_start = Boolean(left?.at_start);
+  }
+  if (joinsRight) {
+    lock.targets.push(...(right ? right.targets.slice(right.targets.indexOf(after)) : [after]));
+    lock.at_end = Boolean(right?.at_end);
+  }
+  const joined = [joinsLeft && left, joinsRight && right];
+  return { ...selection, targets: untied(selection, keys, uav), locks: withLock(locks.filter((other) => !joined.includes(other)), lock) };
+}
+
+/** A target is flown by this UAV, wherever in its order that is best. The same selection where two UAVs have the name. */
+export function flownBy(selection, key, uav) {
+  if (!isOneUav(selection, uav)) return selection;
+  return { ...selection, targets: untied(selection, [key], uav), locks: withLock(without(locksOf(selection), [key]), { uav, targets: [key], at_start: false, at_end: false }) };
+}
+
+/** One place earlier (−1) or later (1) in the order of its UAV; the same selection at an end. */
+export function shifted(selection, orders, key, step) {
+  const place = wishedPlace(orders, selection, key);
+  const index = place ? place.index + step : -1;
+  return place && index >= 0 && index <= place.last ? placed(selection, orders, [key], { uav: place.uav, index }) : selection;
+}
+
+/** Locked where it is flown now. */
+export function lockedHere(selection, orders, key) {
+  const place = wishedPlace(orders, selection, key);
+  return place ? placed(selection, orders, [key], place) : selection;
+}
+
+/** A target that may be flown by anybody at any place again; what was locked before and after it stays locked. */
+export function unlocked(selection, key) {
+  const parts = (lock) => {
+    const at = lock.targets.indexOf(key);
+    if (at < 0) return [lock];
+    const [head, tail] = [lock.targets.slice(0, at), lock.targets.slice(at + 1)];
+    return [...leftOf({ ...lock, at_end: false }, head), ...leftOf({ ...lock, at_start: false }, tail)];
+  };
+  return { ...selection, locks: locksOf(selection).flatMap(parts) };
+}
+
+/** Targets that only one UAV may fly; null frees them. What was locked to another UAV is locked no more. */
+export function tied(selection, keys, uav) {
+  const elsewhere = keys.filter((key) => uav !== null && ![undefined, uav].includes(lockOf(selection, key)?.uav));
+  return elsewhere.reduce(unlocked, withWishes(selection, keys, { uav }));
+}
+
+/** Where targets stand on the strip of a route whose order is another one as wished: [{ target, at, isMoved }], `at` in metres flown.
+ *
+ * stops: [{ target, at }] as planned. What keeps its place among the others stays where it is; what moves stands between its neighbours.
+ */
+export function stopsWished(stops, wished, length_m) {
+  const planned = new Map();
+  for (const { target, at } of stops) if (!planned.has(target)) planned.set(target, at);
+  const kept = longestRising(wished.map((target) => planned.get(target)));
+  const result = wished.map((target, index) => ({ target, at: kept.has(index) ? planned.get(target) : null, isMoved: !kept.has(index) }));
+  for (let index = 0; index < result.length; ) {
+    if (result[index].at !== null) index += 1;
+    else {
+      let end = index;
+      while (end < result.length && result[end].at === null) end += 1;
+      const [from, to] = [index ? result[index - 1].at : 0, result[end]?.at ?? length_m];
+      for (let step = index; step < end; step += 1) result[step].at = from + ((to - from) * (step - index + 1)) / (end - index + 1);
+      index = end;
+    }
+  }
+  return result;
+}
+
+/** Indices of the longest part of a list that rises; undefined values are never in it. */
+function longestRising(values) {
+  const best = values.map(() => ({ length: 0, before: -1 }));
+  let last = -1;
+  values.forEach((value, index) => {
+    if (value === undefined) return;
+    best[index].length = 1;
+    for (let other = 0; other < index; other += 1) {
+      if (values[other] < value && best[other].length >= best[index].length) best[index] = { length: best[other].length + 1, before: other };
+    }
+    if (last < 0 || best[index].length > best[last].length) last = index;
+  });
+  const kept = new Set();
+  for (let index = last; index >= 0; index = best[index].before) kept.add(index);
+  return kept;
+}

@@ -1,0 +1,77 @@
+"""Every process finds what set-up has compiled, also where the checkout is read-only."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from config import compiled_core
+from config.compiled_core import STAMP, STAMP_LETTERS, compiled_directory, compiled_stamp, is_compiled
+
+
+@pytest.fixture
+def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A compiled core as set-up leaves it, and a state of its own."""
+    folder = tmp_path / "checkout" / "compiled" / compiled_stamp()[:STAMP_LETTERS]
+    folder.mkdir(parents=True)
+    (folder / "ways.nbi").write_text("compiled")
+    (folder / STAMP).write_text(compiled_stamp())
+    monkeypatch.setattr(compiled_core, "SHIPPED", folder.parent)
+    monkeypatch.setenv("SPANWISE_VAR", str(tmp_path / "state"))
+    return folder
+
+
+def make_read_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "access", lambda path, mode: False)  # as root nothing else is
+
+
+def test_it_is_used_where_set_up_has_put_it(shipped):
+    assert compiled_directory() == shipped
+    assert is_compiled(shipped)
+
+
+def test_a_read_only_checkout_is_copied_to_the_state_once(shipped, tmp_path, monkeypatch):
+    make_read_only(monkeypatch)
+    own = compiled_directory()
+    assert own == tmp_path / "state" / "compiled" / shipped.name
+    assert (own / "ways.nbi").read_text() == "compiled"
+    (own / "more.nbi").write_text("made since")
+    assert (compiled_directory() / "more.nbi").exists()
+
+
+def test_a_copy_that_was_never_finished_is_replaced(shipped, tmp_path, monkeypatch):
+    own = tmp_path / "state" / "compiled" / shipped.name
+    own.mkdir(parents=True)
+    (own / "ways.nbi").write_text("half")
+    make_read_only(monkeypatch)
+    assert compiled_directory() == own
+    assert (own / "ways.nbi").read_text() == "compiled"
+    assert [path.name for path in own.parent.iterdir()] == [shipped.name]
+
+
+def test_nothing_is_read_that_was_compiled_from_other_sources(shipped, tmp_path, monkeypatch):
+    source = tmp_path / "core" / "ways.py"
+    source.parent.mkdir()
+    source.write_text("from numba import njit")
+    monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", (str(source.parent),))
+    before = compiled_directory()
+    source.write_text("from numba import njit, prange")
+    assert compiled_directory() != before
+    make_read_only(monkeypatch)
+    assert not compiled_directory().exists()
+
+
+def test_what_was_compiled_from_other_sources_is_not_taken_for_good(shipped):
+    (shipped / STAMP).write_text("other")
+    assert not is_compiled(shipped)
+    (shipped / STAMP).unlink()
+    assert not is_compiled(shipped)
+
+
+def test_a_place_named_from_outside_is_kept(shipped, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
+    compiled_core.use_compiled_directory()
+    assert os.environ["NUMBA_CACHE_DIR"] == "/elsewhere"
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    compiled_core.use_compiled_directory()
+    assert os.environ["NUMBA_CACHE_DIR"] == str(shipped)

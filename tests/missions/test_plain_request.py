@@ -1,0 +1,64 @@
+"""The quick reader of small plans takes nothing that the serializer would refuse or read otherwise."""
+
+import random
+from typing import Any
+
+import pytest
+
+from missions.serializers.inputs import PlanInputSerializer
+from missions.serializers.plain_request import plain_request
+from tests.missions.api import TERN, plan_body
+from tests.workspace.people import somebody
+
+pytestmark = pytest.mark.django_db
+
+ODD: list[Any] = [
+    None, True, False, 0, 1, -1, 3, 12, 2**63 - 1, 2**63, 2**70, 0.0, -0.0, 0.5, 1e-320, 99.9, 100, 100.5, 1e7, 1.1e7, 3600, 3600.5,
+    "", " ", "Tern", " Tern", "T" * 100, "T" * 101, "Mäwe", "a\tb", "total", "makespan", "hover", "return", "land", "hold", "dance",
+    [], {}, [10, 56], [10.5, 56.25], [181, 0], [0, 91], [10, True], [10, "56"], [10, 56, 0], [180, -90], [[10, 56], [11, 56]],
+    {"kind": "hold"}, {"kind": "photo", "hold_s": 3}, {"kind": "photo", "hold_s": None}, {"kind": "hold", "hold_s": 4e3}, {"kind": "x"},
+    {"id": 1}, [TERN], [{}],
+]  # fmt: skip
+PLACES = ["objective", "return_to_start", "uavs", "targets", "other"]
+UAV_FIELDS = ["id", "name", "position", "max_range_m", "cruise_speed_mps", "end_action", "other"]
+TARGET_FIELDS = ["asset", "position", "stretch", "task", "other"]
+
+
+def read_slowly(body: Any, organisation: Any) -> Any:
+    serializer = PlanInputSerializer(data=body, context={"organisation": organisation})
+    return serializer.to_request() if serializer.is_valid() else None
+
+
+def odd_body(draw: random.Random) -> dict[str, Any]:
+    body = plan_body({"asset": 3}, {"position": [10.0, 56.0]}, {"asset": 4, "task": {"kind": "hold", "hold_s": 2}}) | {
+        "uavs": [dict(TERN), {"name": "Gull", "position": [10, 56], "max_range_m": 900, "cruise_speed_mps": 8, "end_action": "return"}]
+    }
+    for _ in range(draw.choice([0, 1, 1, 1, 2])):
+        where = draw.random()
+        if where < 0.2:
+            body[draw.choice(PLACES)] = draw.choice(ODD)
+        elif where < 0.6 and isinstance(body["uavs"], list) and body["uavs"] and isinstance(body["uavs"][0], dict):
+            body["uavs"][0][draw.choice(UAV_FIELDS)] = draw.choice(ODD)
+        elif isinstance(body["targets"], list) and body["targets"] and isinstance(body["targets"][0], dict):
+            body["targets"][0][draw.choice(TARGET_FIELDS)] = draw.choice(ODD)
+    return body
+
+
+def test_what_the_quick_reader_takes_the_serializer_reads_the_same() -> None:
+    draw, organisation, taken = random.Random(3), somebody().organisation, 0
+    for _ in range(1_500):
+        body = odd_body(draw)
+        quick = plain_request(body)
+        if quick is not None:
+            taken += 1
+            assert quick == read_slowly(body, organisation), body
+    assert taken > 300
+
+
+@pytest.mark.parametrize("body", [None, [], "x", 3, {}, {"uavs": []}])
+def test_the_quick_reader_leaves_what_is_no_request_to_the_serializer(body: Any) -> None:
+    assert plain_request(body) is None
+
+
+def test_an_ordinary_small_plan_is_read_quickly() -> None:
+    assert plain_request(plan_body({"asset": 3}, {"asset": 4})) is not None

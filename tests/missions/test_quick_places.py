@@ -1,0 +1,33 @@
+"""Whole towers and bridges are read by a short way of their own: it must find what the long way finds."""
+
+from unittest import mock
+
+import pytest
+
+from inspection.models import Asset, AssetKind
+from missions.services import TargetRequest
+from missions.services.places import places_of
+from tests.missions.worlds import world
+
+pytestmark = pytest.mark.django_db
+
+
+def test_the_short_way_finds_what_the_long_way_finds() -> None:
+    here = world()
+    for number, tower in enumerate(here.towers):
+        Asset.objects.filter(pk=tower.pk).update(
+            height_m=31.5 + number,
+            ref=str(number),
+            name=f"Tower {number}",
+            operator="Grid",
+            max_voltage_v=380_000,
+            place_on_line=number + 1,
+            places_on_line=40,
+        )
+    assets = Asset.objects.filter(kind__in=(AssetKind.TOWER, AssetKind.BRIDGE))
+    targets = [TargetRequest(pk) for pk in assets.values_list("pk", flat=True)]
+    assert len(targets) > 3
+    quick = places_of(targets)
+    with mock.patch("missions.services.places._plain_places", return_value=None):
+        assert places_of(targets) == quick
+    assert {place.height_m for place in quick[0]} >= {31.5, 32.5}

@@ -1,0 +1,43 @@
+"""`Prefer: wait=N` (RFC 7240): a request that waits a while for the job that it has started."""
+
+import re
+import threading
+import time
+from uuid import UUID
+
+from django.conf import settings
+from rest_framework.request import Request
+
+from workspace.models import Job, JobState
+
+LOOK_EVERY_S = 0.1
+WAITING_AT_ONCE = 2  # of one process: the other threads go on answering
+
+_places = threading.BoundedSemaphore(WAITING_AT_ONCE)
+_WAIT = re.compile(r"""(?:^|[,;])\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=$|[,;])""", re.IGNORECASE)
+
+
+def preferred_wait_s(request: Request) -> int | None:
+    """The whole seconds that the request would wait, no more than the settings allow; None without the preference."""
+    found = _WAIT.search(request.headers.get("Prefer", ""))
+    return min(int(found[1]), int(settings.LONGEST_WAIT_S)) if found else None
+
+
+class NoRoomToWait(Exception):
+    """Enough requests of this process wait already; this one is answered at once."""
+
+
+def wait_for_job(job_id: UUID, wait_s: float) -> Job | None:
+    """The job as soon as it has ended; None when it takes longer. Raises NoRoomToWait."""
+    if not _places.acquire(blocking=False):
+        raise NoRoomToWait
+    try:
+        until_s = time.monotonic() + wait_s
+        while True:
+            if not Job.objects.filter(pk=job_id, state__in=(JobState.QUEUED, JobState.RUNNING)).exists():
+                return Job.objects.filter(pk=job_id).first()
+            if time.monotonic() >= until_s:
+                return None
+            time.sleep(LOOK_EVERY_S)
+    finally:
+        _places.release()
