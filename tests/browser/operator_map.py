@@ -6,6 +6,13 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 CLOSE_ZOOM = 16
+TOO_WIDE = """() => {
+    const wide = document.documentElement.scrollWidth - innerWidth;
+    if (wide <= 0) return [];
+    const leaves = (element) => element.getBoundingClientRect().right > innerWidth + 1;
+    const guilty = [...document.body.querySelectorAll("*")].filter(leaves).slice(0, 5);
+    return [`${wide} px too wide`, ...guilty.map((at) => at.outerHTML.slice(0, 120))];
+}"""
 
 
 def wait_for_map(page: Page) -> None:

@@ -1,4 +1,4 @@
-"""What axe finds on every page: wide in light, narrow in dark; the colours of both themes are measured in tokens.test.js as well."""
+"""Every page, wide in light and narrow in dark: what axe finds, and what leaves the window. Colours are measured in tokens.test.js, too."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page
 
 from tests.browser.conftest import PROJECT_DIR, Visitor
-from tests.browser.operator_map import stores_mission
+from tests.browser.operator_map import TOO_WIDE, stores_mission
 from tests.browser.page_lists import FOR_ADMINISTRATORS, FOR_CURATORS, FOR_OPERATORS, FOR_STRANGERS
 
 pytestmark = pytest.mark.browser
@@ -25,11 +25,11 @@ VIEWS: list[dict[str, Any]] = [
 
 def faults(page: Page) -> list[str]:
     page.evaluate(AXE.read_text())  # over the debugging protocol: the page's own policy would refuse it
-    return page.evaluate(RUN_AXE)
+    return [*page.evaluate(RUN_AXE), *page.evaluate(TOO_WIDE)]
 
 
 def looks_at(page: Page, paths: Iterable[str]) -> dict[str, list[str]]:
-    """Of each page, what axe finds serious or critical once it has loaded."""
+    """Of each page, what is wrong with it once it has loaded."""
     found = {}
     for path in paths:
         page.goto(path)
@@ -40,7 +40,7 @@ def looks_at(page: Page, paths: Iterable[str]) -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("view", VIEWS, ids=lambda view: f"{view['theme']}-{view['size'][0]}")
-def test_axe_finds_nothing_serious_on_any_page(visitor: Visitor, view: dict[str, Any]) -> None:
+def test_axe_finds_nothing_serious_and_nothing_leaves_the_window_on_any_page(visitor: Visitor, view: dict[str, Any]) -> None:
     assert AXE.exists(), f"{Path(AXE).name} is missing; scripts/setup installs it"
     found = looks_at(visitor.opens(**view), FOR_STRANGERS)
     page = visitor.signs_in("opal", **view)

@@ -51,7 +51,7 @@ def test_a_small_plan_is_the_best_of_all_plans(stretches: int, returns: bool, ob
 def test_the_search_for_large_problems_comes_close_to_the_best_plan_of_a_small_one(
     objective: Objective, tolerance: float, returns: bool
 ) -> None:
-    for seed in range(6):
+    for seed in range(3):
         problem = random_problem(seed, uavs=3, targets=10, stretches=3, returns=returns, objective=objective)
         found, best = merit(problem, by_search(problem)), merit(problem, best_plan(problem))
         assert found[0] == best[0] == 0
@@ -207,7 +207,7 @@ def test_a_search_improves_the_plan_and_reports_progress() -> None:
     assert merits[-1] == merit(problem, searched.routes)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.integers(0, 1_000_000), st.integers(1, 4))
 def test_the_search_keeps_every_limit_whatever_the_problem_holds(seed: int, uavs: int) -> None:
     problem = mixed_problem(seed, uavs=uavs, targets=9)
@@ -220,11 +220,11 @@ def test_the_search_keeps_every_limit_whatever_the_problem_holds(seed: int, uavs
 
 @pytest.mark.parametrize("objective", list(Objective))
 def test_the_search_finds_the_best_plan_of_nearly_all_small_problems(objective: Objective) -> None:
-    problems = [random_problem(seed, uavs=3, targets=12, stretches=4, objective=objective) for seed in range(12)]
+    problems = [random_problem(seed, uavs=3, targets=12, stretches=4, objective=objective) for seed in range(6)]
     exact = [merit(problem, best_plan(problem))[1] for problem in problems]
     found = [merit(problem, by_search(problem))[1] for problem in problems]
     assert found == pytest.approx(exact, rel=0.01)
-    assert sum(value <= least * (1 + 1e-9) for value, least in zip(found, exact, strict=True)) >= 10
+    assert sum(value <= least * (1 + 1e-9) for value, least in zip(found, exact, strict=True)) >= 5
 
 
 def test_stop_ends_a_long_search_and_keeps_the_best_plan() -> None:
