@@ -49,6 +49,10 @@ def _pytest(expression: str, arguments: list[str]) -> list[str]:
     return _python("-m", "pytest", "-m", expression, *arguments)
 
 
+def _browser_tests(lane: str, expression: str, arguments: list[str]) -> list[str]:
+    return _python("-m", "scripts.browser_tests", lane, "-m", expression, *arguments)
+
+
 def steps(arguments: list[str]) -> list[Step]:
     """The steps that these arguments ask for."""
     is_fast, is_long = "--fast" in arguments, "--long" in arguments
@@ -70,9 +74,9 @@ def steps(arguments: list[str]) -> list[Step]:
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
     if not is_fast:
         expression = f"browser{without_long}"
-        found.append(Step("browser tests of the ground and its people", _pytest(expression, list(BROWSER_TESTS_AFTER))))
+        found.append(Step("browser tests of the ground and its people", _browser_tests("ground", expression, list(BROWSER_TESTS_AFTER))))
         others = [f"--ignore={folder}" for folder in BROWSER_TESTS_AFTER]
-        found.append(Step("browser tests", _pytest(expression, ["tests/browser", *others]), runs_beside=True))
+        found.append(Step("browser tests", _browser_tests("others", expression, ["tests/browser", *others]), runs_beside=True))
     return found
 
 

@@ -6,6 +6,10 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 CLOSE_ZOOM = 16
+STANDS_STILL = """() => {
+    const map = document.getElementById("map");
+    return map.dataset.idle === "true" && map.querySelector("canvas").clientHeight === map.clientHeight; // it has followed the panel
+}"""
 TOO_WIDE = """() => {
     const wide = document.documentElement.scrollWidth - innerWidth;
     if (wide <= 0) return [];
@@ -37,7 +41,7 @@ def look_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> dict
         }""",
         [*position, zoom],
     )
-    page.wait_for_function("() => document.getElementById('map').dataset.idle === 'true'")
+    page.wait_for_function(STANDS_STILL)
     return place_of(page, position)
 
 

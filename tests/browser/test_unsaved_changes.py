@@ -70,7 +70,6 @@ def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) 
     is_kept_here(mine)
     saves_as(theirs, "River crossing, checked")
     expect(mine.get_by_text(BEHIND)).to_be_visible()
-    visitor.complaints.clear()  # of the saves that were cut
     assert len(targets(mine)) == 1
     mine.reload()
     wait_for_map(mine)
@@ -83,6 +82,7 @@ def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) 
     expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing, checked")
     expect(mine.locator("#target-list .target")).to_have_count(2)
     expect(mine.get_by_text(BEHIND)).to_be_hidden()
+    visitor.complaints[:] = [words for words in visitor.complaints if "ERR_FAILED" not in words]  # of the saves that were cut
     mine.get_by_role("button", name="Back to mine").click()
     expect(mine.locator("#target-list .target")).to_have_count(1)
     expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing, mine")
