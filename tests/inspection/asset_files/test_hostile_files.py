@@ -376,7 +376,7 @@ def test_a_hostile_file_is_refused_with_its_place_and_bounded_memory(name: str, 
     assert words in fault
     assert grown_kib < MOST_MEMORY_KIB
     assert (sorted(folder.iterdir()), list(scratch.iterdir())) == (left, [])
-    assert len(list(Path("/proc/self/fd").iterdir())) == open_files
+    assert len(list(Path("/proc/self/fd").iterdir())) <= open_files  # others may have closed theirs
 
 
 def test_triggers_and_views_beside_an_honest_layer_do_not_run(tmp_path: Path) -> None:
