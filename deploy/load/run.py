@@ -59,7 +59,7 @@ def running(program: Program, environment: dict[str, str], log: Path) -> Iterato
 
 
 def cpu_s(names: dict[str, list[int]]) -> dict[str, float]:
-    """Seconds of processor time so far of each group of processes, with those below them."""
+    """Seconds of processor time so far of each group of processes, with those below them, also of those that have ended."""
     parents, spent = {}, {}
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
@@ -67,7 +67,7 @@ def cpu_s(names: dict[str, list[int]]) -> dict[str, float]:
                 fields = (entry / "stat").read_text().rpartition(")")[2].split()
             except OSError:
                 continue
-            parents[int(entry.name)], spent[int(entry.name)] = int(fields[1]), (int(fields[11]) + int(fields[12])) / TICKS_PER_S
+            parents[int(entry.name)], spent[int(entry.name)] = int(fields[1]), sum(map(int, fields[11:15])) / TICKS_PER_S
 
     def is_below(process: int, roots: list[int]) -> bool:
         while process > 1:
