@@ -1,6 +1,6 @@
 """Who is asking: bearer tokens for programs, and what a role may do in the admin."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from django.conf import settings
 from django.contrib.auth.backends import ModelBackend
@@ -30,7 +30,7 @@ class BearerTokenAuthentication(BaseAuthentication):
         found = _valid_token(b"".join(rest).strip())
         if found is None:
             raise AuthenticationFailed(_("The token is not valid."))
-        note_use(token=found)
+        note_use(token=found.pk, last_used_at=found.last_used_at)
         return found.user, found
 
     def authenticate_header(self, request: Request) -> str:
@@ -49,11 +49,33 @@ def user_of_token(token: bytes) -> User | None:
     return found.user if found else None
 
 
-def _valid_token(token: bytes) -> ApiToken | None:
-    if not token.isascii() or len(token) > LONGEST_TOKEN:
+class Holder(NamedTuple):
+    """Whom a token belongs to, as far as a program's plainest requests need to know."""
+
+    key: int
+    role: Role
+
+
+def holder_of(authorization: str) -> Holder | None:
+    """Who asks with this header, whose use is noted; None where BearerTokenAuthentication has to look itself."""
+    scheme, _, token = authorization.partition(" ")
+    rows = _rows_of(_HOLDER, token.strip().encode("latin-1", "replace")) if scheme.lower() == "bearer" else []
+    if not rows:
         return None
-    rows = prepared_rows(_VALID_TOKEN, [hash_token(token.decode("ascii"))])
+    token_key, last_used_at, holder, role = rows[0]
+    note_use(token=token_key, last_used_at=last_used_at)
+    return Holder(holder, Role(role))
+
+
+def _valid_token(token: bytes) -> ApiToken | None:
+    rows = _rows_of(_VALID_TOKEN, token)
     return _token_of(rows[0]) if rows else None
+
+
+def _rows_of(statement: str, token: bytes) -> list[tuple[Any, ...]]:
+    if not token.isascii() or len(token) > LONGEST_TOKEN:
+        return []
+    return prepared_rows(statement, [hash_token(token.decode("ascii"))])
 
 
 def _columns(model: type[Model], table: str) -> str:
@@ -71,13 +93,13 @@ def _token_of(row: tuple[Any, ...]) -> ApiToken:
     return token
 
 
-# Each request of a program begins with this: it is prepared once per connection.
+# Each request of a program begins with one of these: they are prepared once per connection, and say with the same words what is valid.
+_HELD = "workspace_apitoken AS token JOIN workspace_user AS holder ON holder.id = token.user_id"
+_VALID = "token.token_sha256 = %s AND token.revoked_at IS NULL AND token.expires_at > statement_timestamp() AND holder.is_active"
 _VALID_TOKEN = f"""
     SELECT {_columns(ApiToken, "token")}, {_columns(User, "holder")}, {_columns(Organisation, "organisation")}
-    FROM workspace_apitoken AS token
-    JOIN workspace_user AS holder ON holder.id = token.user_id
-    JOIN workspace_organisation AS organisation ON organisation.id = holder.organisation_id
-    WHERE token.token_sha256 = %s AND token.revoked_at IS NULL AND token.expires_at > statement_timestamp() AND holder.is_active"""  # noqa: S608
+    FROM {_HELD} JOIN workspace_organisation AS organisation ON organisation.id = holder.organisation_id WHERE {_VALID}"""  # noqa: S608
+_HOLDER = f"SELECT token.id, token.last_used_at, holder.id, holder.role FROM {_HELD} WHERE {_VALID}"  # noqa: S608
 
 
 class BearerTokenScheme(OpenApiAuthenticationExtension):

@@ -24,18 +24,21 @@ class StrictJSONParser(BaseParser):
         body = stream.read(limit + 1)
         if len(body) > limit:
             raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
-        try:
-            value = json.loads(body.decode(), parse_constant=_refuse_constant, parse_float=_finite_float)
-        except UnicodeDecodeError as error:
-            raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
-        except RecursionError as error:
-            raise ParseError(
-                _("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING}
-            ) from error
-        except ValueError as error:
-            raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
-        _check(value)
-        return value
+        return read_json(body)
+
+
+def read_json(body: bytes) -> Any:
+    """What a body says. Raises ParseError."""
+    try:
+        value = json.loads(body.decode(), parse_constant=_refuse_constant, parse_float=_finite_float)
+    except UnicodeDecodeError as error:
+        raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
+    except RecursionError as error:
+        raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING}) from error
+    except ValueError as error:
+        raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
+    _check(value)
+    return value
 
 
 class OctetParser(BaseParser):

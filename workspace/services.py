@@ -76,11 +76,11 @@ _NOTE_USE = """
     UPDATE workspace_apitoken SET last_used_at = %s FROM quick WHERE id = %s"""
 
 
-def note_use(*, token: ApiToken) -> None:
-    """When it was used last, to the minute: a script that asks often writes seldom."""
+def note_use(*, token: int, last_used_at: datetime | None) -> None:
+    """When the token with this key was used last, to the minute: a script that asks often writes seldom."""
     now = timezone.now()
-    if token.last_used_at is None or now - token.last_used_at >= USE_NOTED_EVERY:
-        prepared_rows(_NOTE_USE, [now, token.pk])
+    if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
+        prepared_rows(_NOTE_USE, [now, token])
 
 
 def record_change(

@@ -21,6 +21,13 @@ def _counters() -> Redis:
     return Redis.from_url(settings.REDIS_URL, socket_connect_timeout=1, socket_timeout=1)
 
 
+@cache
+def _rate(written: str | None) -> tuple[int | None, int | None]:
+    """Requests and seconds of "40/second"; none without a limit."""
+    parsed: tuple[int | None, int | None] = ScopedRateThrottle().parse_rate(written)
+    return parsed
+
+
 def _count(key: str, kept_s: int) -> int:
     """Count one more under this key, in one round trip."""
     pipeline = _counters().pipeline(transaction=False)
@@ -39,15 +46,24 @@ class ScopedRate(ScopedRateThrottle):
         self.scope = getattr(view, self.scope_attr, None)
         if not self.scope:
             return True
-        self.rate = self.get_rate()
-        self.num_requests, self.duration = self.parse_rate(self.rate)
-        if self.num_requests is None:
+        self.num_requests, self.duration = _rate(self.THROTTLE_RATES[self.scope])
+        return self.has_room(self.scope, self.get_cache_key(request, view))
+
+    @classmethod
+    def allows(cls, scope: str, user: int) -> bool:
+        """Count one more request of this user, as for a view that names the scope."""
+        return cls.has_room(scope, cls.cache_format % {"scope": scope, "ident": user})
+
+    @classmethod
+    def has_room(cls, scope: str, key: str) -> bool:
+        requests, duration_s = _rate(cls.THROTTLE_RATES[scope])
+        if requests is None or duration_s is None:
             return True
-        window = int(time.time() // self.duration)
+        window = int(time.time() // duration_s)
         try:
-            return _count(f"{self.get_cache_key(request, view)}:{window}", self.duration * 2) <= self.num_requests
+            return _count(f"{key}:{window}", duration_s * 2) <= requests
         except (RedisError, OSError) as error:
-            self._note_absence(error)
+            cls._note_absence(error)
             return True
 
     def wait(self) -> float | None:

@@ -1,22 +1,22 @@
 """From what the operator picked to places on the ground: a point, or the course of a line."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 
 import numpy as np
 from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point
-from django.db import DEFAULT_DB_ALIAS
 from django.utils.translation import gettext as _
 from django.utils.translation import override
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_label
+from inspection.selectors.planning import PointAsset, planning_read
 from missions.flight_plan.heights import FloatArray, asset_height_m
 from missions.flight_plan.stretches import PlaceOnLine, nearest_on_line, stretch_between
 from missions.routing.problem import Task, default_task
 from missions.services.requests import InvalidRequest, TargetRequest
-from workspace.prepared import prepared_rows
 
 NEAR_ASSET_M = 500.0  # a picked point farther from the asset than this is a mistake, not a point on it
 LINEAR = {AssetKind.LINE, AssetKind.RAILWAY}
@@ -27,24 +27,37 @@ class Place:
     """A target on the ground. `course` has one position for a point and the vertices in the line's direction for a stretch."""
 
     target: int
-    label: str
     course: tuple[LonLat, ...]
     task: Task
     height_m: float
     asset: int | None = None
     kind: str | None = None
+    called: Callable[[], str] = field(kw_only=True, compare=False, repr=False)
+
+    @cached_property
+    def label(self) -> str:
+        """What it is called, in English: it is stored, for readers of any language."""
+        with override("en"):
+            return self.called()
 
     @property
     def is_stretch(self) -> bool:
         return len(self.course) > 1
 
 
-def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]:
+def whole_assets(targets: Sequence[TargetRequest]) -> list[int]:
+    """The keys of the assets if every target is a whole one, as most are in small plans; else none."""
+    keys = [target.asset for target in targets if target.asset is not None and target.position is None and target.stretch is None]
+    return keys if len(keys) == len(targets) else []
+
+
+def places_of(targets: Sequence[TargetRequest], points: Mapping[int, PointAsset] | None = None) -> tuple[list[Place], list[int]]:
     """The place of each target, and the targets whose asset has been deleted since they were picked.
 
-    Raises InvalidRequest with every fault: an unknown asset, a point or stretch that is not on its asset.
+    points: of their `whole_assets` the towers and bridges, where they have been read already. Raises InvalidRequest with every fault: an
+    unknown asset, a point or stretch that is not on its asset.
     """
-    plain = _plain_places(targets)
+    plain = _plain_places(targets, points)
     if plain is not None:
         return plain, []
     assets = Asset.objects.defer("tags", "node_osm_ids", "parts").in_bulk({target.asset for target in targets if target.asset is not None})
@@ -54,7 +67,7 @@ def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]
             if target.position is None:
                 gone.append(index)
             else:
-                places.append(Place(index, position_label(target.position), (target.position,), _task(target, None, is_path=False), 0.0))
+                places.append(_place_at(target.position, index, target))
         elif target.asset not in assets:
             faults[f"targets.{index}.asset"] = f"There is no asset {target.asset}."
         else:
@@ -67,32 +80,25 @@ def places_of(targets: Sequence[TargetRequest]) -> tuple[list[Place], list[int]]
     return places, gone
 
 
-_NEEDED = {
-    "id", "kind", "subtype", "ref", "name", "operator", "max_voltage_v", "line_id", "place_on_line", "places_on_line", "osm_type",
-    "osm_id", "height_m",
-}  # fmt: skip
-# What a whole tower or bridge needs, without its geometry; in the model's own order, in which `from_db` takes the values.
-_PLAIN_FIELDS = tuple(field.attname for field in Asset._meta.concrete_fields if field.attname in _NEEDED)
-_PLAIN_ASSETS = f"""
-    SELECT {", ".join(_PLAIN_FIELDS)}, ST_X(centre), ST_Y(centre) FROM inspection_asset
-    WHERE id = ANY(%s::bigint[]) AND kind = ANY(ARRAY['{AssetKind.TOWER}', '{AssetKind.BRIDGE}'])"""  # noqa: S608 - no value of anybody's
+def _plain_places(targets: Sequence[TargetRequest], points: Mapping[int, PointAsset] | None) -> list[Place] | None:
+    """The places where all targets are whole towers and bridges; None where anything has to be looked into."""
+    keys = whole_assets(targets)
+    if not keys:
+        return None
+    found = planning_read(keys).points if points is None else points
+    if any(key not in found for key in keys):
+        return None
+    return [_plain_place(found[key], index, target) for index, (key, target) in enumerate(zip(keys, targets, strict=True))]
 
 
-def _plain_places(targets: Sequence[TargetRequest]) -> list[Place] | None:
-    """The places where all targets are whole towers and bridges, as most are in small plans; None where anything has to be looked into."""
-    keys = [target.asset for target in targets if target.asset is not None and target.position is None and target.stretch is None]
-    if len(keys) != len(targets):
-        return None
-    rows = {row[0]: row for row in prepared_rows(_PLAIN_ASSETS, [keys])}
-    if any(key not in rows for key in keys):
-        return None
-    places = []
-    with override("en"):  # once for all of them
-        for index, target in enumerate(targets):
-            row = rows[target.asset]
-            asset = Asset.from_db(DEFAULT_DB_ALIAS, _PLAIN_FIELDS, row[: len(_PLAIN_FIELDS)])
-            places.append(_place_of(asset, index, target, (LonLat(*row[len(_PLAIN_FIELDS) :]),), asset_label(asset)))
-    return places
+def _plain_place(point: PointAsset, index: int, target: TargetRequest) -> Place:
+    height_m = asset_height_m(kind=point.kind, subtype=point.subtype, tagged_m=point.height_m, voltage_v=point.max_voltage_v)
+    task = _task(target, point.kind, is_path=False)
+    return Place(index, (point.position,), task, height_m, point.key, point.kind, called=lambda: asset_label(point.as_asset()))
+
+
+def _place_at(position: LonLat, index: int, target: TargetRequest) -> Place:
+    return Place(index, (position,), _task(target, None, is_path=False), 0.0, called=partial(position_label, position))
 
 
 def position_label(position: LonLat) -> str:
@@ -101,20 +107,14 @@ def position_label(position: LonLat) -> str:
 
 def _place_on(asset: Asset, index: int, target: TargetRequest) -> Place:
     course = _course(asset, index, target)
-    with override("en"):  # the label is stored, for readers of any language
-        label = asset_label(asset)
-    return _place_of(asset, index, target, course, label)
-
-
-def _place_of(asset: Asset, index: int, target: TargetRequest, course: tuple[LonLat, ...], label: str) -> Place:
     return Place(
         target=index,
-        label=label,
         course=course,
         task=_task(target, asset.kind, is_path=len(course) > 1),
         height_m=asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v),
         asset=asset.pk,
         kind=asset.kind,
+        called=partial(asset_label, asset),
     )
 
 

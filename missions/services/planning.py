@@ -9,7 +9,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import ground_revision, terrain_edition
 from inspection.selectors.graph import zones_of_edition
-from inspection.selectors.planning import Edition, edition_now, planning_ground
+from inspection.selectors.planning import Edition, PlanningGround, edition_now, planning_read
 from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
 from missions.flight_plan.flyable_graph import flyable_graph
 from missions.routing.problem import Visit
@@ -19,7 +19,7 @@ from missions.routing.terminals import AccessRules, Terminal, ways_between
 from missions.services.assignment import assignment, quality_of, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch, unheard
 from missions.services.drawing import Drawing
-from missions.services.places import Place, places_of
+from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import Scene, asset_gone, groundings, refused_place, zone_at
 from missions.services.requests import PlanRequest
@@ -47,8 +47,9 @@ def make_plan(
     Raises InvalidRequest, NoGraph or GraphOutdated.
     """
     on_progress(PlanProgress(0.0, "Looking up the targets"))
-    every_place, gone = places_of(request.targets)
-    scene = current_scene()
+    read = planning_read(whole_assets(request.targets))
+    every_place, gone = places_of(request.targets, read.points)
+    scene = _scene_on(read.ground())
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]
@@ -116,8 +117,12 @@ def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:
 
 
 def current_scene() -> Scene:
+    """Raises NoGraph."""
+    return _scene_on(planning_read().ground())
+
+
+def _scene_on(ground: PlanningGround) -> Scene:
     linking, routing, flight = settings.GRAPH_RULES, settings.ROUTING_RULES, settings.FLIGHT_RULES
-    ground = planning_ground()
     access = AccessRules(
         access_leg_m=routing.access_leg_m,
         direct_leg_m=routing.direct_leg_m,

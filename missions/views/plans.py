@@ -4,6 +4,7 @@ from typing import Any
 from uuid import UUID
 
 from django.conf import settings
+from django.http import HttpRequest, HttpResponseBase
 from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
@@ -15,6 +16,7 @@ from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.plain_request import plain_request
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.views.problems import api_problems
+from missions.views.small_plans import small_plan
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Job, JobState, User
@@ -48,6 +50,9 @@ class PlanList(APIView):
     renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]
     throttle_scope = "plans"
+
+    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
+        return small_plan(request, throttle_scope=self.throttle_scope) or super().dispatch(request, *args, **kwargs)
 
     @extend_schema(
         operation_id="make_plan",

@@ -1,0 +1,60 @@
+"""The shortest way from a program's request to a small plan.
+
+Most requests of a busy installation are the same: a bearer token, a plain body of a few targets. REST framework's ceremony costs such a
+request as much as its plan. Here the same functions are asked in the same order - who is it, may they, is the body what it should be, is
+it too often - and wherever an answer is not a plain yes, the view begins anew and says what is wrong.
+"""
+
+import orjson
+from django.conf import settings
+from django.http import HttpRequest, HttpResponse
+from rest_framework.exceptions import APIException
+
+from inspection.selectors import NoGraph
+from missions import services
+from missions.serializers.plain_request import plain_request
+from workspace.authentication import holder_of
+from workspace.errors import DATABASE_AWAY
+from workspace.parsers import read_json
+from workspace.permissions import PLANNERS
+from workspace.throttling import ScopedRate
+
+LARGEST_BODY = 64 * 1024
+_ORDINARY_ACCEPT = frozenset({"", "*/*", "application/json"})
+_NOT_ORDINARY = ("HTTP_IDEMPOTENCY_KEY", "HTTP_PREFER", "QUERY_STRING")
+_BEGIN_ANEW = (services.InvalidRequest, NoGraph, services.GraphOutdated, *DATABASE_AWAY)
+
+
+def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | None:
+    """The plan as JSON; None where the view has to look at the request itself. A request that fails after it was counted counts twice."""
+    if not _is_ordinary(request):
+        return None
+    holder = holder_of(request.META.get("HTTP_AUTHORIZATION", ""))
+    if holder is None or holder.role not in PLANNERS:
+        return None
+    try:
+        asked = plain_request(read_json(request.body))
+    except APIException:
+        return None
+    if asked is None or len(asked.targets) > settings.ROUTING_RULES.small_plan_targets:
+        return None
+    if not ScopedRate.allows(throttle_scope, holder.key):
+        return None
+    try:
+        plan = services.make_plan(request=asked, as_text=True)
+    except _BEGIN_ANEW:
+        return None
+    return HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
+
+
+def _is_ordinary(request: HttpRequest) -> bool:
+    told = request.META
+    length = told.get("CONTENT_LENGTH", "")
+    return (
+        request.method == "POST"
+        and told.get("CONTENT_TYPE") == "application/json"
+        and length.isdecimal()
+        and int(length) <= LARGEST_BODY
+        and told.get("HTTP_ACCEPT", "") in _ORDINARY_ACCEPT
+        and not any(told.get(name) for name in _NOT_ORDINARY)
+    )
