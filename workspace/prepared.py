@@ -75,4 +75,7 @@ def _numbered(statement: str) -> str:
 def _checked(result: pq.abc.PGresult, server: psycopg.Connection[Any]) -> pq.abc.PGresult:
     if result.status in (pq.ExecStatus.TUPLES_OK, pq.ExecStatus.COMMAND_OK):
         return result
-    raise psycopg.errors.error_from_result(result, server.info.encoding)
+    error = psycopg.errors.error_from_result(result)
+    if server.pgconn.status == pq.ConnStatus.BAD:
+        raise psycopg.OperationalError(str(error)) from error
+    raise error

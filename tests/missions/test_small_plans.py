@@ -1,0 +1,160 @@
+"""The short way of a program's small plan: the view's own answers, the view's own refusals."""
+
+import json
+from datetime import timedelta
+from typing import Any
+from unittest import mock
+
+import pytest
+from django.test import Client
+from django.utils import timezone
+
+from inspection.models import GraphSnapshot
+from missions.views.plans import PlanList
+from tests.missions.api import plan_body
+from tests.missions.worlds import World, world
+from tests.workspace.counters import forget_counts
+from tests.workspace.people import client_of, somebody
+from workspace.models import ApiToken, Role, User
+from workspace.services import create_api_token
+from workspace.throttling import ScopedRate
+
+pytestmark = pytest.mark.django_db
+SHORT_WAY = "missions.views.plans.small_plan"
+
+
+@pytest.fixture
+def here() -> World:
+    return world()
+
+
+def program_of(user: User) -> Client:
+    token = create_api_token(user=user, name="load", expires_at=timezone.now() + timedelta(days=1))
+    return Client(headers={"Authorization": f"Bearer {token}"}, raise_request_exception=False)
+
+
+def asked(client: Client, body: Any, **options: Any) -> Any:
+    return client.post("/api/v1/plans", body, content_type="application/json", **options)
+
+
+def both_ways(client: Client, body: Any, **options: Any) -> tuple[Any, Any, bool]:
+    """The answer, the answer of the view alone, and whether the short way was gone."""
+    taken = []
+
+    def noted(*args: Any, **kwargs: Any) -> Any:
+        taken.append(short(*args, **kwargs))
+        return taken[0]
+
+    short = PlanList.dispatch.__globals__["small_plan"]
+    with mock.patch(SHORT_WAY, noted):
+        first = asked(client, body, **options)
+    with mock.patch(SHORT_WAY, return_value=None):
+        second = asked(client, body, **options)
+    return first, second, taken[0] is not None
+
+
+def test_the_answer_is_the_views_byte_for_byte(here: World) -> None:
+    client = program_of(somebody(Role.OPERATOR))
+    bodies = [
+        plan_body(here.towers[2], here.towers[4]),
+        plan_body(here.towers[1], {"position": [10.0, 56.3]}),  # the second is too far away: said in words
+        plan_body(here.line),
+        plan_body(here.towers[0], objective="makespan", return_to_start=True),
+    ]
+    for body in bodies:
+        short, long, _ = both_ways(client, body)
+        assert short.status_code == long.status_code == 200, short.content
+        assert short.content == long.content
+        assert {name: short[name] for name in short.headers if name != "Allow"} == {
+            name: long[name] for name in long.headers if name not in ("Allow", "Vary")
+        }
+    assert both_ways(client, bodies[0])[2]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"",
+        b"{",
+        b"[]",
+        b'{"uavs": NaN}',
+        b'\xff{"uavs": []}',
+        json.dumps({"uavs": [], "targets": []}).encode(),
+        json.dumps({"uavs": [{"name": "A", "position": [10, 91]}], "targets": [{"position": [10, 56]}]}).encode(),
+        json.dumps({"uavs": [{"name": "A", "position": [10, 56]}], "targets": [{"asset": 999_999_999}]}).encode(),
+        b" " * 70_000 + b"{}",
+    ],
+    ids=["empty", "half", "list", "nan", "no utf-8", "nobody", "north of the pole", "unknown asset", "long"],
+)
+def test_what_is_wrong_is_said_by_the_view(here: World, body: bytes) -> None:
+    short, long, gone = both_ways(program_of(somebody(Role.OPERATOR)), body)
+    assert not gone
+    assert short.status_code == long.status_code == 400
+    assert short.content == long.content
+
+
+@pytest.mark.parametrize("role", Role)
+def test_a_role_may_plan_the_short_way_if_the_view_lets_it(here: World, role: Role) -> None:
+    short, long, gone = both_ways(program_of(somebody(role)), plan_body(here.towers[2]))
+    assert short.status_code == long.status_code == (200 if role in (Role.OPERATOR, Role.ADMINISTRATOR) else 403)
+    assert gone == (short.status_code == 200)
+
+
+def refused(client: Client, here: World) -> int:
+    short, long, gone = both_ways(client, plan_body(here.towers[2]))
+    assert not gone
+    assert short.status_code == long.status_code
+    return short.status_code
+
+
+def test_no_token_no_plan(here: World) -> None:
+    user = somebody(Role.OPERATOR)
+    client = program_of(user)
+    assert asked(client, plan_body(here.towers[2])).status_code == 200
+    ApiToken.objects.update(expires_at=timezone.now())
+    assert refused(client, here) == 401
+    ApiToken.objects.update(expires_at=timezone.now() + timedelta(days=1), revoked_at=timezone.now())
+    assert refused(client, here) == 401
+    ApiToken.objects.update(revoked_at=None)
+    User.objects.update(is_active=False)
+    assert refused(client, here) == 401
+    for header in ("Bearer", "Bearer ", "Bearer spw_ünknown", "Basic spw_x", "Bearer " + 300 * "x"):
+        assert refused(Client(headers={"Authorization": header}), here) == 401
+    assert refused(Client(), here) == 401
+
+
+def test_a_session_goes_the_long_way_with_its_csrf_token(here: World) -> None:
+    _, _, gone = both_ways(client_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    assert not gone
+
+
+def test_a_key_and_a_preference_are_for_the_view(here: World) -> None:
+    client = program_of(somebody(Role.OPERATOR))
+    for headers in ({"Idempotency-Key": "k1"}, {"Prefer": "wait=5"}, {"Accept": "text/html"}):
+        assert not both_ways(client, plan_body(here.towers[2]), headers=headers)[2]
+
+
+def test_the_use_of_a_token_is_noted(here: World) -> None:
+    asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    assert ApiToken.objects.get().last_used_at is not None
+
+
+def test_both_ways_count_as_one(here: World) -> None:
+    client = program_of(somebody(Role.OPERATOR))
+    forget_counts()
+    with mock.patch.object(ScopedRate, "THROTTLE_RATES", {"plans": "4/hour"}):
+        statuses = [asked(client, plan_body(here.towers[2])).status_code for _ in range(2)]
+        with mock.patch(SHORT_WAY, return_value=None):
+            statuses += [asked(client, plan_body(here.towers[2])).status_code for _ in range(2)]
+        answer = asked(client, plan_body(here.towers[2]))
+    forget_counts()
+    assert statuses == [200] * 4
+    assert answer.status_code == 429
+    assert 0 < int(answer["Retry-After"]) <= 3600
+
+
+def test_without_a_network_the_view_says_so(here: World) -> None:
+    GraphSnapshot.objects.all().delete()
+    short, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    assert not gone
+    assert (short.status_code, short.json()["error"]["code"]) == (503, "no_graph")
