@@ -5,6 +5,8 @@ request as much as its plan. Here the same functions are asked in the same order
 it too often - and wherever an answer is not a plain yes, the view begins anew and says what is wrong.
 """
 
+from typing import Any
+
 import orjson
 from django.conf import settings
 from django.http import HttpRequest, HttpResponse
@@ -22,29 +24,28 @@ from workspace.throttling import ScopedRate
 LARGEST_BODY = 64 * 1024
 _ORDINARY_ACCEPT = frozenset({"", "*/*", "application/json"})
 _NOT_ORDINARY = ("HTTP_IDEMPOTENCY_KEY", "HTTP_PREFER", "QUERY_STRING")
-_BEGIN_ANEW = (services.InvalidRequest, NoGraph, services.GraphOutdated, *DATABASE_AWAY)
+_BEGIN_ANEW = (APIException, services.InvalidRequest, NoGraph, services.GraphOutdated, *DATABASE_AWAY)
 
 
 def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | None:
     """The plan as JSON; None where the view has to look at the request itself. A request that fails after it was counted counts twice."""
-    if not _is_ordinary(request):
+    try:
+        plan = _plan_of(request, throttle_scope) if _is_ordinary(request) else None
+    except _BEGIN_ANEW:
         return None
+    return None if plan is None else HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
+
+
+def _plan_of(request: HttpRequest, throttle_scope: str) -> dict[str, Any] | None:
     holder = holder_of(request.META.get("HTTP_AUTHORIZATION", ""))
     if holder is None or holder.role not in PLANNERS:
         return None
-    try:
-        asked = plain_request(read_json(request.body))
-    except APIException:
-        return None
+    asked = plain_request(read_json(request.body))
     if asked is None or len(asked.targets) > settings.ROUTING_RULES.small_plan_targets:
         return None
     if not ScopedRate.allows(throttle_scope, holder.key):
         return None
-    try:
-        plan = services.make_plan(request=asked, as_text=True)
-    except _BEGIN_ANEW:
-        return None
-    return HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
+    return services.make_plan(request=asked, as_text=True)
 
 
 def _is_ordinary(request: HttpRequest) -> bool:

@@ -6,6 +6,7 @@ from typing import Any
 from unittest import mock
 
 import pytest
+from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone
 
@@ -158,3 +159,14 @@ def test_without_a_network_the_view_says_so(here: World) -> None:
     short, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
     assert not gone
     assert (short.status_code, short.json()["error"]["code"]) == (503, "no_graph")
+
+
+@pytest.mark.parametrize("where", ["missions.views.small_plans.holder_of", "missions.services.planning.edition_now"])
+def test_without_the_database_the_view_says_so(here: World, where: str) -> None:
+    client = program_of(somebody(Role.OPERATOR))
+    with mock.patch(where, side_effect=OperationalError("away")):
+        _, _, gone = both_ways(client, plan_body(here.towers[2]))
+    with mock.patch("workspace.authentication.prepared_rows", side_effect=OperationalError("away")):
+        answer = asked(client, plan_body(here.towers[2]))
+    assert not gone
+    assert (answer.status_code, answer.json()["error"]["code"]) == (503, "database_away")
