@@ -1,9 +1,9 @@
-"""How often a user may ask. Redis counts; without Redis nobody is refused."""
+"""How often a user may ask. Redis counts over all processes; without Redis nobody is refused."""
 
 import logging
 import time
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 from django.conf import settings
 from redis import Redis
@@ -14,6 +14,7 @@ from rest_framework.throttling import ScopedRateThrottle
 logger = logging.getLogger(__name__)
 
 LOG_EVERY_S = 60.0
+GENEROUS = 20  # of so many requests the first one that a process sees in a window is not worth a question to Redis
 
 
 @cache
@@ -38,9 +39,14 @@ def _count(key: str, kept_s: int) -> int:
 
 
 class ScopedRate(ScopedRateThrottle):
-    """Limits views that name a `throttle_scope`, per user, in fixed windows counted atomically over all processes."""
+    """Limits views that name a `throttle_scope`, per user, in fixed windows counted atomically over all processes.
+
+    Most users ask once in a while. Where the limit is generous, the first request of a user that a process sees in a window is let
+    through uncounted, so that over all processes one more each may pass.
+    """
 
     quiet_until_s = 0.0  # of this process: the log is told once in a while, not at each request
+    seen: ClassVar[dict[str, tuple[int, set[str]]]] = {}  # by scope: the window, and who has asked this process in it
 
     def allow_request(self, request: Request, view: Any) -> bool:
         self.scope = getattr(view, self.scope_attr, None)
@@ -60,11 +66,24 @@ class ScopedRate(ScopedRateThrottle):
         if requests is None or duration_s is None:
             return True
         window = int(time.time() // duration_s)
+        if requests >= GENEROUS and cls._is_first(scope, key, window):
+            return True
         try:
             return _count(f"{key}:{window}", duration_s * 2) <= requests
         except (RedisError, OSError) as error:
             cls._note_absence(error)
             return True
+
+    @classmethod
+    def _is_first(cls, scope: str, key: str, window: int) -> bool:
+        at, keys = cls.seen.get(scope, (None, set()))
+        if at != window:
+            cls.seen[scope] = window, {key}
+            return True
+        if key in keys:
+            return False
+        keys.add(key)
+        return True
 
     def wait(self) -> float | None:
         return self.duration - time.time() % self.duration

@@ -46,3 +46,9 @@ def test_without_redis_nobody_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_views_without_a_scope_are_not_counted() -> None:
     client = client_of(somebody())
     assert {client.get("/api/v1/jobs").status_code for _ in range(5)} == {200}
+
+
+def test_of_a_generous_limit_the_first_request_that_a_process_sees_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ScopedRate, "THROTTLE_RATES", {"plans": "20/hour"})
+    assert statuses(23) == [200] * 21 + [429] * 2
+    assert statuses(23) == [200] * 21 + [429] * 2
