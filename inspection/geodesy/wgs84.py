@@ -39,52 +39,55 @@ def distance_m(start: FloatArray, end: FloatArray) -> FloatArray:
 _ROWS = types.Array(float64, 2, "A", readonly=True)  # mapped and broadcast arrays, too
 
 
-@njit([(_ROWS, _ROWS)], cache=True, nogil=True)
-def _short_distances_m(start: FloatArray, end: FloatArray) -> tuple[FloatArray, bool]:
-    """The distances, and whether all are short enough for them to be right.
+@njit(cache=True, nogil=True)
+def short_distance_m(lon_1: float, lat_1: float, lon_2: float, lat_2: float) -> float:
+    """Geodesic distance between two positions [deg]; for compiled code, which knows that they are near to one another.
 
     Source: T. Vincenty, Direct and Inverse Solutions of Geodesics on the Ellipsoid, Survey Review 23 (1975).
     """
+    lon = math.radians(lon_2 - lon_1)
+    tan_1 = (1 - FLATTENING) * math.tan(math.radians(lat_1))
+    tan_2 = (1 - FLATTENING) * math.tan(math.radians(lat_2))
+    cos_1, cos_2 = 1 / math.sqrt(1 + tan_1 * tan_1), 1 / math.sqrt(1 + tan_2 * tan_2)
+    sin_1, sin_2 = tan_1 * cos_1, tan_2 * cos_2
+    # sin(U2 - U1) in a form that does not cancel where both are near
+    sin_gap = cos_1 * cos_2 * (tan_2 - tan_1)
+    on_sphere = lon * (1 + FLATTENING * cos_1 * cos_2)  # which is nearly it for a short way
+    for _ in range(MOST_ROUNDS):
+        sin_half = math.sin(on_sphere / 2)
+        bow = 2 * sin_half * sin_half
+        across, along = cos_2 * math.sin(on_sphere), sin_gap + sin_1 * cos_2 * bow
+        sin_arc = math.sqrt(across * across + along * along)
+        if sin_arc == 0:
+            return 0.0
+        cos_arc = sin_1 * sin_2 + cos_1 * cos_2 * (1 - bow)
+        arc = math.atan2(sin_arc, cos_arc)
+        sin_azimuth = cos_1 * across / sin_arc
+        cos2_azimuth = 1 - sin_azimuth * sin_azimuth
+        cos_middle = cos_arc - 2 * sin_1 * sin_2 / cos2_azimuth if cos2_azimuth > 1e-15 else 0.0
+        part = FLATTENING / 16 * cos2_azimuth * (4 + FLATTENING * (4 - 3 * cos2_azimuth))
+        twist = cos_middle + part * cos_arc * (2 * cos_middle * cos_middle - 1)
+        before = on_sphere
+        on_sphere = lon + (1 - part) * FLATTENING * sin_azimuth * (arc + part * sin_arc * twist)
+        if abs(on_sphere - before) < 1e-14:
+            break
+    squeeze = cos2_azimuth * (MAJOR_M * MAJOR_M - MINOR_M * MINOR_M) / (MINOR_M * MINOR_M)
+    scale = 1 + squeeze / 16_384 * (4_096 + squeeze * (-768 + squeeze * (320 - 175 * squeeze)))
+    wave = squeeze / 1_024 * (256 + squeeze * (-128 + squeeze * (74 - 47 * squeeze)))
+    inner = cos_arc * (2 * cos_middle * cos_middle - 1) - wave / 6 * cos_middle * (4 * sin_arc * sin_arc - 3) * (
+        4 * cos_middle * cos_middle - 3
+    )
+    return MINOR_M * scale * (arc - wave * sin_arc * (cos_middle + wave / 4 * inner))
+
+
+@njit([(_ROWS, _ROWS)], cache=True, nogil=True)
+def _short_distances_m(start: FloatArray, end: FloatArray) -> tuple[FloatArray, bool]:
+    """The distances, and whether all are short enough for them to be right."""
     metres = np.empty(len(start))
     for pair in range(len(start)):
-        lon = math.radians(end[pair, 0] - start[pair, 0])
         if not (abs(end[pair, 0] - start[pair, 0]) <= SHORT_DEG and abs(end[pair, 1] - start[pair, 1]) <= SHORT_DEG):
             return metres, False
-        tan_1 = (1 - FLATTENING) * math.tan(math.radians(start[pair, 1]))
-        tan_2 = (1 - FLATTENING) * math.tan(math.radians(end[pair, 1]))
-        cos_1, cos_2 = 1 / math.sqrt(1 + tan_1 * tan_1), 1 / math.sqrt(1 + tan_2 * tan_2)
-        sin_1, sin_2 = tan_1 * cos_1, tan_2 * cos_2
-        # sin(U2 - U1) in a form that does not cancel where both are near
-        sin_gap = cos_1 * cos_2 * (tan_2 - tan_1)
-        on_sphere = lon * (1 + FLATTENING * cos_1 * cos_2)  # which is nearly it for a short way
-        for _ in range(MOST_ROUNDS):
-            sin_half = math.sin(on_sphere / 2)
-            bow = 2 * sin_half * sin_half
-            across, along = cos_2 * math.sin(on_sphere), sin_gap + sin_1 * cos_2 * bow
-            sin_arc = math.sqrt(across * across + along * along)
-            if sin_arc == 0:
-                break
-            cos_arc = sin_1 * sin_2 + cos_1 * cos_2 * (1 - bow)
-            arc = math.atan2(sin_arc, cos_arc)
-            sin_azimuth = cos_1 * across / sin_arc
-            cos2_azimuth = 1 - sin_azimuth * sin_azimuth
-            cos_middle = cos_arc - 2 * sin_1 * sin_2 / cos2_azimuth if cos2_azimuth > 1e-15 else 0.0
-            part = FLATTENING / 16 * cos2_azimuth * (4 + FLATTENING * (4 - 3 * cos2_azimuth))
-            twist = cos_middle + part * cos_arc * (2 * cos_middle * cos_middle - 1)
-            before = on_sphere
-            on_sphere = lon + (1 - part) * FLATTENING * sin_azimuth * (arc + part * sin_arc * twist)
-            if abs(on_sphere - before) < 1e-14:
-                break
-        if sin_arc == 0:
-            metres[pair] = 0.0
-            continue
-        squeeze = cos2_azimuth * (MAJOR_M * MAJOR_M - MINOR_M * MINOR_M) / (MINOR_M * MINOR_M)
-        scale = 1 + squeeze / 16_384 * (4_096 + squeeze * (-768 + squeeze * (320 - 175 * squeeze)))
-        wave = squeeze / 1_024 * (256 + squeeze * (-128 + squeeze * (74 - 47 * squeeze)))
-        inner = cos_arc * (2 * cos_middle * cos_middle - 1) - wave / 6 * cos_middle * (4 * sin_arc * sin_arc - 3) * (
-            4 * cos_middle * cos_middle - 3
-        )
-        metres[pair] = MINOR_M * scale * (arc - wave * sin_arc * (cos_middle + wave / 4 * inner))
+        metres[pair] = short_distance_m(start[pair, 0], start[pair, 1], end[pair, 0], end[pair, 1])
     return metres, True
 
 

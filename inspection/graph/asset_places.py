@@ -26,12 +26,12 @@ class AssetPlaces:
 
     def node_of(self, asset: int) -> int | None:
         """The node of a tower or bridge; None for one that is not on the graph."""
-        at = int(np.searchsorted(self.single_asset, asset))
+        at = int(self.single_asset.searchsorted(asset))
         return int(self.single_node[at]) if at < len(self.single_asset) and self.single_asset[at] == asset else None
 
     def edges_of(self, asset: int) -> IntArray:
         """The edges of a line or railway."""
-        first, last = np.searchsorted(self.way_asset, [asset, asset + 1])
+        first, last = self.way_asset.searchsorted([asset, asset + 1])
         return self.way_edge[first:last].astype(np.int64)
 
 

@@ -1,6 +1,6 @@
 """The graph as immutable arrays: what the builder makes, what is stored, and what planners memory-map."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import IntEnum
 
 import numpy as np
@@ -60,6 +60,13 @@ class InspectionGraph:
     zone_id: NDArray[np.int64]
     zone_name: tuple[str, ...]
 
+    def __post_init__(self) -> None:
+        """Nobody writes to the arrays; and to what is compiled they are of one type, mapped or not."""
+        for field in fields(self):
+            array = getattr(self, field.name)
+            if isinstance(array, np.ndarray) and array.flags.writeable:
+                object.__setattr__(self, field.name, _read_only(array))
+
     @property
     def node_count(self) -> int:
         return len(self.position)
@@ -67,3 +74,9 @@ class InspectionGraph:
     @property
     def edge_count(self) -> int:
         return len(self.edge)
+
+
+def _read_only(array: NDArray[np.generic]) -> NDArray[np.generic]:
+    view = np.ascontiguousarray(array).view()
+    view.setflags(write=False)
+    return view

@@ -27,19 +27,24 @@ class NodeTree:
     point: FloatArray
     axis: NDArray[np.uint8]
 
+    @property
+    def arrays(self) -> tuple[NumberArray, FloatArray, NDArray[np.uint8]]:
+        """In the order in which compiled searches take them."""
+        return self.order, self.point, self.axis
+
     def nearest(self, position: LonLat, count: int, within: float = np.inf) -> IntArray:
         """Up to `count` nodes nearest to a position, no farther than the chord `within` on the unit sphere, the nearest first."""
-        nodes: IntArray = _nearest(_point(position), count, float(within * within), self.order, self.point, self.axis)
+        nodes: IntArray = nearest_in_tree(_point(position), count, float(within * within), *self.arrays)
         return nodes
 
     def around(self, position: LonLat, within: float) -> IntArray:
         """All nodes no farther from a position than the chord `within` on the unit sphere, sorted."""
-        nodes: IntArray = _around(_point(position), float(within * within), self.order, self.point, self.axis)
+        nodes: IntArray = around_in_tree(_point(position), float(within * within), *self.arrays)
         return np.sort(nodes)
 
     def nearest_of_each(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
         """For each position (q, 2) the nearest node, and how far away it is as a chord on the unit sphere; the tree has nodes."""
-        node, chord = _nearest_of_each(on_unit_sphere(positions), self.order, self.point, self.axis)
+        node, chord = _nearest_of_each(on_unit_sphere(positions), *self.arrays)
         return node, chord
 
 
@@ -60,6 +65,22 @@ def tree_of(lon: FloatArray, lat: FloatArray) -> NodeTree:
 def _point(position: LonLat) -> FloatArray:
     point: FloatArray = on_unit_sphere(np.array([position], dtype=np.float64))[0]
     return point
+
+
+@njit(cache=True, nogil=True)
+def point_on_sphere(lon: float, lat: float) -> FloatArray:
+    """As nearness.on_unit_sphere, for compiled code: shape (3,)."""
+    x, y = np.radians(lon), np.radians(lat)
+    return np.array([np.cos(y) * np.cos(x), np.cos(y) * np.sin(x), np.sin(y)])
+
+
+@njit(cache=True, nogil=True)
+def points_on_sphere(position: FloatArray) -> FloatArray:
+    """The same of several positions (n, 2): shape (n, 3)."""
+    points = np.empty((len(position), 3))
+    for number in range(len(position)):
+        points[number] = point_on_sphere(position[number, 0], position[number, 1])
+    return points
 
 
 @njit(cache=True, nogil=True)
@@ -129,7 +150,10 @@ def _build(lon: FloatArray, lat: FloatArray) -> tuple[NumberArray, FloatArray, N
 
 
 @njit(cache=True, nogil=True)
-def _nearest(here: FloatArray, count: int, within_2: float, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]) -> IntArray:
+def nearest_in_tree(
+    here: FloatArray, count: int, within_2: float, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]
+) -> IntArray:
+    """Up to `count` nodes nearest to a point on the unit sphere, no farther than the root of within_2, the nearest first."""
     best_2 = np.full(count, np.inf)
     best = np.full(count, -1, dtype=np.int64)
     ranges = np.empty((128, 2), dtype=np.int64)
@@ -166,7 +190,8 @@ def _nearest(here: FloatArray, count: int, within_2: float, order: NumberArray, 
 
 
 @njit(cache=True, nogil=True)
-def _around(here: FloatArray, within_2: float, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]) -> IntArray:
+def around_in_tree(here: FloatArray, within_2: float, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]) -> IntArray:
+    """All nodes no farther from a point on the unit sphere than the root of within_2."""
     nodes = np.empty(64, dtype=np.int64)
     found = 0
     ranges = np.empty((128, 2), dtype=np.int64)

@@ -7,11 +7,9 @@ from threading import RLock
 from typing import Any, Generic, TypeVar
 from weakref import WeakKeyDictionary
 
-import numpy as np
-
 from inspection.graph.asset_places import build_asset_places
-from inspection.graph.condensed import CORE, CondensedGraph, condense
-from inspection.graph.hub_labels import HubLabels, IntArray, label
+from inspection.graph.condensed import CondensedGraph, NumberArray, condense
+from inspection.graph.hub_labels import HubLabels, label
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.node_tree import build_node_tree
 
@@ -27,11 +25,10 @@ class RouteIndex:
     def component_count(self) -> int:
         return int(self.labels.component.max(initial=-1)) + 1
 
-    def component_of(self, nodes: IntArray) -> IntArray:
-        """The number of each node's connected component."""
-        chain, place = self.condensed.node_chain[nodes], self.condensed.node_place[nodes]
-        core = np.where(chain == CORE, place, self.condensed.chain_tail[chain]) if len(self.condensed.chain_tail) else place
-        return self.labels.component[core].astype(np.int64)
+    @cached_property
+    def component_arrays(self) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray]:
+        """In the order in which compiled code takes them to look up the components of nodes."""
+        return self.condensed.node_chain, self.condensed.node_place, self.condensed.chain_tail, self.labels.component
 
     @cached_property
     def query_arrays(self) -> tuple[Any, ...]:

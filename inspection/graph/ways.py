@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numba import njit
@@ -9,7 +10,7 @@ from numba import njit
 from inspection.graph.condensed import FloatArray, NumberArray
 from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.legs import Attachment, DirectLeg, NoWay
+from inspection.graph.legs import Attachment, Attachments, DirectLeg, NoWay, joined
 from inspection.graph.route_index import RouteIndex, route_index
 
 # What `Travel.way` holds in place of an entry: there is no way, or the way is the direct leg, or it stays within one chain.
@@ -59,8 +60,8 @@ class Travel:
 
 def travel_between(
     graph: InspectionGraph,
-    outward: Sequence[Sequence[Attachment]],
-    inward: Sequence[Sequence[Attachment]],
+    outward: Sequence[Attachments | Sequence[Attachment]],
+    inward: Sequence[Attachments | Sequence[Attachment]],
     direct: Sequence[DirectLeg] = (),
 ) -> Travel:
     """Least-cost ways from each source to each sink.
@@ -70,14 +71,15 @@ def travel_between(
     """
     # A place that is source and sink has one list of legs for both: what its legs reach is looked up once.
     number = {key: place for place, key in enumerate(dict.fromkeys(id(legs) for legs in (*outward, *inward)))}
-    legs_of = {id(legs): legs for legs in (*outward, *inward)}
-    legs = [leg for key in number for leg in legs_of[key]]
+    legs_of = {id(legs): Attachments.of(legs) for legs in (*outward, *inward)}
+    places = [legs_of[key] for key in number]
+    legs = joined(places)
     travel = travel_of_legs(
         route_index(graph),
-        np.cumsum([0, *(len(legs_of[key]) for key in number)], dtype=np.int64),
-        np.array([leg.node for leg in legs], dtype=np.int32),
-        np.array([leg.cost for leg in legs], dtype=np.float64),
-        np.array([leg.length_m for leg in legs], dtype=np.float64),
+        np.array([0, *accumulate(map(len, places))], dtype=np.int64),
+        legs.node,
+        legs.cost,
+        legs.length_m,
         np.array([number[id(legs)] for legs in outward], dtype=np.int64),
         np.array([number[id(legs)] for legs in inward], dtype=np.int64),
     )

@@ -53,12 +53,12 @@ class ZoneIndex:
     def meets(self, start: ArrayLike, end: ArrayLike, clearance_m: float = 0.0) -> BoolArray:
         """Whether each leg touches a zone or comes nearer to one than the clearance.
 
-        start and end have shape (n, 2), columns lon, lat [deg]. Without clearance the answer is exact in the plane;
-        with one it errs on the far side by up to 0.5 %, more for a zone that spans many degrees of latitude.
+        start and end have shape (n, 2), columns lon, lat [deg]; one row alone goes with all of the other. Without clearance the answer
+        is exact in the plane; with one it errs on the far side by up to 0.5 %, more for a zone that spans many degrees of latitude.
         """
         start, end = _rows(start), _rows(end)
-        met = np.zeros(len(start), dtype=bool)
-        if len(self._parts) and len(start):
+        met = np.zeros(max(len(start), len(end)) if len(start) and len(end) else 0, dtype=bool)
+        if len(self._parts) and len(met) and self._may_meet(start, end, clearance_m):
             leg_index, _ = self._meetings(_legs(start, end), clearance_m)
             met[leg_index] = True
         return met
@@ -103,6 +103,14 @@ class ZoneIndex:
             touching = shapely.intersects(parts[part_index], shapes[shape_index])
         return shape_index[touching], part_index[touching]
 
+    def _may_meet(self, start: FloatArray, end: FloatArray, clearance_m: float) -> bool:
+        """Whether a zone's box meets that of the legs as a whole: it seldom does."""
+        west, south = np.minimum(start.min(axis=0), end.min(axis=0)).tolist()
+        east, north = np.maximum(start.max(axis=0), end.max(axis=0)).tolist()
+        with self._one_thread:
+            _, tree = self._widened_by(clearance_m)
+            return bool(len(tree.query(shapely.box(west, south, east, north))))
+
     def _widened_by(self, clearance_m: float) -> tuple[NDArray[np.object_], STRtree]:
         if clearance_m not in self._widened:
             parts = widen(self._parts, clearance_m) if clearance_m > 0 else self._parts
@@ -136,7 +144,7 @@ def _points(positions: FloatArray) -> NDArray[np.object_]:
 
 
 def _legs(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
-    return np.asarray(shapely.linestrings(np.stack([start, end], axis=1)), dtype=object)
+    return np.asarray(shapely.linestrings(np.stack(np.broadcast_arrays(start, end), axis=1)), dtype=object)
 
 
 _index_of_graph: WeakKeyDictionary[InspectionGraph, ZoneIndex] = WeakKeyDictionary()

@@ -2,13 +2,24 @@
 
 import numpy as np
 
+from inspection.graph.rehearsal import BESIDE, graph_to_rehearse_on
+from inspection.graph.zone_index import ZoneIndex
 from missions.routing import exact
 from missions.routing.problem import Objective, Problem, UavStart, Visit
 from missions.routing.solver import solve
+from missions.routing.terminals import AccessRules, Terminal, ways_between
 
 
 def rehearse() -> None:
-    """Solve a problem that is proven and one that is searched, for either objective."""
+    """Find the ways of a UAV and a target; solve a problem that is proven and one that is searched, for either objective."""
+    ways_between(
+        graph_to_rehearse_on(),
+        ZoneIndex([], [], []),
+        [Terminal(BESIDE)],
+        [Terminal(BESIDE)],
+        [Terminal(BESIDE)],
+        AccessRules(1_000.0, 1_000.0, on_asset_m=1.0, off_network_factor=2.0, zone_clearance_m=0.0),
+    )
     for targets in (2, exact.MAX_TARGETS + 1):
         places = np.arange(1.0, targets + 1.0)
         for objective in Objective:

@@ -5,19 +5,23 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.geodesy.wgs84 import short_distance_m
 from inspection.graph.access import clear_legs
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.legs import Attachment, DirectLeg
-from inspection.graph.nearness import chord, on_unit_sphere
+from inspection.graph.legs import NO_LEGS, Attachment, Attachments, DirectLeg, joined
+from inspection.graph.nearness import chord
+from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.route_index import asset_places, node_tree
 from inspection.graph.ways import Travel, travel_between
 from inspection.graph.zone_index import ZoneIndex
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -39,20 +43,20 @@ class AccessRules:
     zone_clearance_m: float
 
 
-def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> list[Attachment]:
+def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> Attachments:
     """How a terminal meets the network: at its own node, along its own line, else over access legs that are clear of zones."""
     if terminal.asset is not None:
         places = asset_places(graph)
         node = places.node_of(terminal.asset)
         if node is not None and tuple(graph.position[node]) == tuple(terminal.position):
-            return [Attachment(node, 0.0, 0.0)]
+            return Attachments.of([Attachment(node, 0.0, 0.0)])
         along = _along_own_line(graph, zones, terminal.position, places.edges_of(terminal.asset), rules)
-        if along:
+        if len(along):
             return along
     return access_legs(graph, zones, terminal, rules)
 
 
-def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> list[Attachment]:
+def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> Attachments:
     return clear_legs(
         graph, zones, terminal.position, radius_m=rules.access_leg_m, factor=rules.off_network_factor, clearance_m=rules.zone_clearance_m
     )
@@ -66,10 +70,10 @@ def is_near_network(graph: InspectionGraph, position: LonLat, radius_m: float) -
 
 def _along_own_line(
     graph: InspectionGraph, zones: ZoneIndex, position: LonLat, edges: NDArray[np.int64], rules: AccessRules
-) -> list[Attachment]:
+) -> Attachments:
     """Legs to both ends of the asset's edge nearest to the position; flown along the asset, they cost what they measure."""
     if not len(edges):
-        return []
+        return NO_LEGS
     frame = LocalFrame.around(position.lon, position.lat)
     tail, head = frame.to_metres(graph.position[graph.edge[edges, 0]]), frame.to_metres(graph.position[graph.edge[edges, 1]])
     along = head - tail
@@ -78,14 +82,14 @@ def _along_own_line(
     gap_m = np.hypot(*(tail + share[:, None] * along).T)
     nearest = int(gap_m.argmin())
     if gap_m[nearest] > rules.on_asset_m:
-        return []
+        return NO_LEGS
     nodes = graph.edge[edges[nearest]]
     here = np.broadcast_to(np.array(position), (2, 2))
     length_m = distance_m(here, graph.position[nodes])
     clear = ~zones.meets(here, graph.position[nodes], rules.zone_clearance_m)
     if (length_m == 0).any():
         clear &= length_m == 0  # the place is a node
-    return [Attachment(int(nodes[end]), float(length_m[end]), float(length_m[end])) for end in np.flatnonzero(clear)]
+    return Attachments(nodes[clear], length_m[clear], length_m[clear])
 
 
 def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLat]) -> float:
@@ -99,19 +103,41 @@ def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLa
 
 def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: ZoneIndex, rules: AccessRules) -> list[DirectLeg]:
     """Legs straight from place to place, no longer than the rule allows and clear of zones."""
-    if not sources or not sinks:
+    start = np.array([place.position for place in sources], dtype=np.float64).reshape(-1, 2)
+    end = np.array([place.position for place in sinks], dtype=np.float64).reshape(-1, 2)
+    source, sink, length_m = _near_pairs(start, end, float(rules.direct_leg_m), chord(float(rules.direct_leg_m)))
+    if not len(source):
         return []
-    start, end = np.array([place.position for place in sources]), np.array([place.position for place in sinks])
-    gap = np.linalg.norm(on_unit_sphere(start)[:, None] - on_unit_sphere(end)[None], axis=2)
-    near = gap <= chord(rules.direct_leg_m)
-    near &= np.abs(start[:, None, 0] - end[None, :, 0]) <= 180.0
-    source, sink = np.nonzero(near)
-    length_m = distance_m(start[source], end[sink])
-    clear = (length_m <= rules.direct_leg_m) & ~zones.meets(start[source], end[sink], rules.zone_clearance_m)
+    clear = ~zones.meets(start[source], end[sink], rules.zone_clearance_m)
     return [
-        DirectLeg(int(source[leg]), int(sink[leg]), float(length_m[leg]), float(length_m[leg]) * rules.off_network_factor)
-        for leg in np.flatnonzero(clear)
+        DirectLeg(*leg, leg[2] * rules.off_network_factor)
+        for leg in zip(source[clear].tolist(), sink[clear].tolist(), length_m[clear].tolist(), strict=True)
     ]
+
+
+@njit(cache=True, nogil=True)
+def _near_pairs(start: FloatArray, end: FloatArray, longest_m: float, within: float) -> tuple[IntArray, IntArray, FloatArray]:
+    """Pairs of a start and an end that lie no more than the longest leg apart, on one side of the antimeridian, and their metres.
+
+    `within` is a chord on the unit sphere in which all of them lie.
+    """
+    left, right = points_on_sphere(start), points_on_sphere(end)
+    source, sink = np.empty(16, dtype=np.int64), np.empty(16, dtype=np.int64)
+    length_m = np.empty(16)
+    pairs = 0
+    for one in range(len(start)):
+        for other in range(len(end)):
+            gap_2 = (left[one, 0] - right[other, 0]) ** 2 + (left[one, 1] - right[other, 1]) ** 2 + (left[one, 2] - right[other, 2]) ** 2
+            if gap_2 > within * within or abs(start[one, 0] - end[other, 0]) > 180.0:
+                continue
+            metres = short_distance_m(start[one, 0], start[one, 1], end[other, 0], end[other, 1])
+            if metres > longest_m:
+                continue
+            if pairs == len(source):
+                source, sink, length_m = np.append(source, source), np.append(sink, sink), np.append(length_m, length_m)
+            source[pairs], sink[pairs], length_m[pairs] = one, other, metres
+            pairs += 1
+    return source[:pairs].copy(), sink[:pairs].copy(), length_m[:pairs].copy()
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,9 +147,9 @@ class Ways:
     travel: Travel
     uavs: int
     visits: int
-    uav_legs: tuple[tuple[Attachment, ...], ...]  # how each start meets the network; none: not at all
-    entry_legs: tuple[tuple[Attachment, ...], ...]  # how each visit's entry does, and its exit
-    exit_legs: tuple[tuple[Attachment, ...], ...]
+    uav_legs: tuple[Attachments, ...]  # how each start meets the network; none: not at all
+    entry_legs: tuple[Attachments, ...]  # how each visit's entry does, and its exit
+    exit_legs: tuple[Attachments, ...]
     bases: int = 0
 
     @property
@@ -178,10 +204,7 @@ def ways_between(
 
     A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
     """
-    legs_of: dict[Terminal, list[Attachment]] = {}
-    for terminal in [*starts, *entries, *exits, *bases]:
-        if terminal not in legs_of:
-            legs_of[terminal] = attachments(graph, zones, terminal, rules)
+    legs_of = {terminal: attachments(graph, zones, terminal, rules) for terminal in dict.fromkeys([*starts, *entries, *exits, *bases])}
     sources, sinks = [*starts, *exits], [*entries, *starts, *bases]
     direct = direct_legs(sources, sinks, zones, rules)
 
@@ -193,14 +216,14 @@ def ways_between(
     alone = {place for visit in cut_off for place in (entries[visit], exits[visit])}
     if alone:
         for place in alone:
-            legs_of[place] = [*legs_of[place], *access_legs(graph, zones, place, rules)]
+            legs_of[place] = joined([legs_of[place], access_legs(graph, zones, place, rules)])
         found = travel()
     return Ways(
         found,
         len(starts),
         len(entries),
-        uav_legs=tuple(tuple(legs_of[place]) for place in starts),
-        entry_legs=tuple(tuple(legs_of[place]) for place in entries),
-        exit_legs=tuple(tuple(legs_of[place]) for place in exits),
+        uav_legs=tuple(legs_of[place] for place in starts),
+        entry_legs=tuple(legs_of[place] for place in entries),
+        exit_legs=tuple(legs_of[place] for place in exits),
         bases=len(bases),
     )

@@ -57,7 +57,7 @@ def test_a_leg_too_near_to_a_zone_is_not_offered():
 
 
 def test_a_position_inside_a_zone_has_no_legs():
-    assert legs(zones=ZoneIndex([box(9.999, 50.0005, 10.001, 50.0015)], [1], ["around"])) == []
+    assert not len(legs(zones=ZoneIndex([box(9.999, 50.0005, 10.001, 50.0015)], [1], ["around"])))
 
 
 def test_a_component_beyond_the_nearest_nodes_is_offered_too():
@@ -73,4 +73,12 @@ def test_no_leg_crosses_the_antimeridian():
 
 
 def test_an_empty_graph_offers_nothing():
-    assert legs(drawn_graph([], [])) == []
+    assert not len(legs(drawn_graph([], [])))
+
+
+def test_a_graph_cannot_be_written_to():
+    position = np.array([(10.0, 50.0), (10.001, 50.0)])
+    graph = drawn_graph(position, [(0, 1, 72.0)])
+    position[0] = 9.0  # the drawer's own array
+    with pytest.raises(ValueError, match="read-only"):
+        graph.position[0] = 9.0

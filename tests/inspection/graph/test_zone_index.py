@@ -89,6 +89,13 @@ def test_the_border_belongs_to_the_zone():
     assert zones.contains([(10.1 + 40 / 71_700, 50.05), (10.1 + 60 / 71_700, 50.05)], 50.0).tolist() == [True, False]
 
 
+def test_one_start_goes_with_every_end():
+    ends = [(10.2, 50.05), (9.8, 50.05), (10.0, 50.0)]
+    assert (
+        index(SQUARE).meets([(9.9, 50.05)], ends).tolist() == index(SQUARE).meets([(9.9, 50.05)] * 3, ends).tolist() == [True, False, True]
+    )
+
+
 def test_without_zones_nothing_is_met():
     zones = index()
     assert zones.meets([(0, 0)], [(1, 1)], 5.0).tolist() == [False]
