@@ -147,6 +147,7 @@ class Route(models.Model):
     graph_version = models.BigIntegerField(help_text="equals the mission's: a mission is never mixed from two plans")
     length_m = models.FloatField()
     duration_s = models.FloatField()
+    base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
 
     class Meta:

@@ -131,6 +131,7 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "uav": uav.name,
         "uav_id": uav.uav_id,
         "end_action": EndAction.RETURN if mission.return_to_start else uav.end_action,
+        "base": route.base_name or None,
         "length_m": route.length_m,
         "duration_s": route.duration_s,
         "targets": targets,

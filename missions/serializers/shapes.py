@@ -34,6 +34,7 @@ class RouteSerializer(serializers.Serializer):
     uav = serializers.CharField(help_text="name")
     uav_id = serializers.IntegerField(allow_null=True)
     end_action = serializers.ChoiceField(choices=EndAction.choices)
+    base = serializers.CharField(allow_null=True, help_text="the base at which it lands, where it ends at one")
     length_m = serializers.FloatField(help_text="metres flown")
     duration_s = serializers.FloatField()
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")

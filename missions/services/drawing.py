@@ -53,6 +53,7 @@ class Drawing:
         action = self.request.end_action(uav)
         legs = [self.ways.out(start, order[0]), *(self.ways.onward(left, right) for left, right in pairwise(order))]
         way_home = self._way_home(action, order[-1], start)
+        base = self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None
         passed = self._passed(legs if way_home is None else [*legs, way_home])
         points = route_points(
             start=asked.position,
@@ -60,7 +61,7 @@ class Drawing:
             targets=[self._target(visit) for visit in order],
             ways=passed[: len(legs)],
             way_home=None if way_home is None else passed[-1],
-            home=self.bases[self.ways.nearest_base[order[-1]]].position if action is EndAction.BASE else None,
+            home=None if base is None else base.position,
         )
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, self.ground, flight)
@@ -77,6 +78,7 @@ class Drawing:
                 rules=flight,
             ),
             end_action=action,
+            base=None if base is None else base.name,
             is_flat=is_flat,
         )
 

@@ -129,6 +129,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             graph_version=plan["graph_version"],
             length_m=route["length_m"],
             duration_s=route["duration_s"],
+            base_name=route.get("base") or "",
             geometry=LineString(route["geometry"]["coordinates"], srid=4326) if route["geometry"] else None,
         )
         for mission_uav, route in zip(mission.mission_uavs.all(), plan["routes"], strict=True)

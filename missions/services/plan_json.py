@@ -31,6 +31,7 @@ class PlannedRoute:
     length_m: float = 0.0
     duration_s: float = 0.0
     end_action: EndAction = EndAction.HOVER
+    base: str | None = None  # where it lands
     is_flat: bool = False
 
 
@@ -67,6 +68,7 @@ def plan_to_json(
                 "uav": uav.name,
                 "uav_id": uav.uav,
                 "end_action": route.end_action.value,
+                "base": route.base,
                 "length_m": length_m,
                 "duration_s": round(route.duration_s, 1),
                 "targets": list(route.targets),

@@ -70,7 +70,8 @@ test("a UAV of the fleet brings its own sensors, another says them", () => {
 
 test("a UAV's row says how many targets it takes and that it lands at a base", () => {
   assert.match(factsOfUav({ max_range_m: null, end_action: "base", most_targets: 3 }, false), /^at most 3 targets · .* lands at the nearest base$/);
-  assert.equal(endingOf({ end_action: "base", letter: "A", targets: [] }), "lands at the nearest base");
+  assert.equal(endingOf({ end_action: "base", base: "Depot West", letter: "A", targets: [] }), "lands at the base Depot West");
+  assert.equal(endingOf({ end_action: "base", base: null, letter: "A", targets: [] }), "lands at the nearest base");
 });
 
 test("locks are sent when they change, and again when the places in the list do", () => {

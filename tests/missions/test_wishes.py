@@ -107,6 +107,7 @@ def test_a_route_ends_at_the_base_that_is_nearest_to_its_last_target(here: World
     plan = make_plan(request=request(*towers(here, 5), uavs=(LANDING,), bases=(FAR, NEAR)))
     assert end_of(plan) == NEAR.position
     assert plan["routes"][0]["end_action"] == "base"
+    assert plan["routes"][0]["base"] == NEAR.name
     assert plan["is_proven"]
 
 

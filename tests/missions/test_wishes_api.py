@@ -186,6 +186,15 @@ def test_a_mission_without_its_base_says_so_when_it_is_planned(here: World, clie
     assert faults(post(client, f"missions/{made['id']}/plan")) == ["uavs.0.end_action"]
 
 
+def test_a_mission_knows_the_base_at_which_a_route_lands(here: World, client: Client) -> None:
+    Base.objects.create(name="North", location="SRID=4326;POINT(10.0205 56.0)")
+    made = post(client, "missions", mission_body(here.towers[0], uavs=[TERN | {"end_action": "base"}], plan=True)).json()
+    copy = post(client, f"missions/{made['id']}/duplicate").json()
+    assert [mission["plan"]["routes"][0]["base"] for mission in (made, copy)] == ["North", "North"]
+    other = post(client, "missions", mission_body(here.towers[0], plan=True)).json()
+    assert other["plan"]["routes"][0]["base"] is None
+
+
 def test_a_target_that_is_left_out_is_stored_with_its_reason(here: World, client: Client) -> None:
     post(client, "missions", mission_body({"asset": here.towers[0].pk, "sensor": "Lidar"}, here.towers[1], plan=True))
     row = InspectionTarget.objects.get(sequence=0)

@@ -131,9 +131,9 @@ export function bestWordsOf(best) {
 }
 
 /** How a route's flight ends: "ends hovering at A2". */
-export function endingOf({ end_action, letter, targets }) {
+export function endingOf({ end_action, base, letter, targets }) {
   if (end_action === "return") return t("returns to start");
-  if (end_action === "base") return t("lands at the nearest base");
+  if (end_action === "base") return base ? t("lands at the base {name}", { name: base }) : t("lands at the nearest base");
   const last = `${letter}${targets.length}`;
   return end_action === "land" ? t("lands at {target}", { target: last }) : t("ends hovering at {target}", { target: last });
 }

@@ -18,6 +18,7 @@ export default {
   "High": "Hoch",
   "High priority": "Hohe Priorität",
   "Land at the nearest base": "Auf der nächsten Basis landen",
+  "lands at the base {name}": "landet auf der Basis {name}",
   "lands at the nearest base": "landet auf der nächsten Basis",
   "Later": "Später",
   "Lock here": "Hier festlegen",
