@@ -17,6 +17,7 @@ from django.db.models.functions import Coalesce, Lower
 from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_revision
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route
+from missions.stale_selectors import landing_routes_without_base
 from workspace.cache_absence import CACHE_AWAY
 from workspace.models import Organisation
 
@@ -77,7 +78,7 @@ def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet
     if asked.uav is not None:
         missions = missions.filter(Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav=asked.uav)))
     if asked.is_stale is not None:
-        stale = ~Q(state=MissionState.DRAFT) & ~Q(ground_revision=ground_revision())
+        stale = ~Q(state=MissionState.DRAFT) & (~Q(ground_revision=ground_revision()) | Q(landing_routes_without_base()))
         missions = missions.filter(stale) if asked.is_stale else missions.exclude(stale)
     if asked.changed_from is not None:
         missions = missions.filter(updated_at__gte=asked.changed_from)
@@ -97,6 +98,7 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[Mission]:
             target_count=_count_of(InspectionTarget.objects.all()),
             unassigned_count=_count_of(InspectionTarget.objects.exclude(unassigned_reason="")),
             uav_count=_count_of(MissionUav.objects.all()),
+            has_lost_base=landing_routes_without_base(),
             duration_s=Subquery(longest, output_field=FloatField()),
             # with fields of their own: a page's cursor reads these values, not those of the columns they are made from
             sort_name=Lower("name", output_field=CharField()),

@@ -1,15 +1,17 @@
-"""What a change of the ground means for a mission that was planned before it: which zone, which leg, which target."""
+"""What has changed since a mission was planned and what it means for it: which zone, which leg, which target, which base."""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from django.contrib.gis.db.models import PointField
+from django.db.models import Exists, Func, OuterRef
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, ground_revision, zones_in_force
 from missions.flight_plan.clearance import legs_that_meet
-from missions.models import Mission, MissionState, Route, WaypointKind
+from missions.models import Base, Mission, MissionState, Route, WaypointKind
 
 TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
 MOST_CAUSES = 20
@@ -19,7 +21,7 @@ MOST_CAUSES = 20
 class StaleCause:
     """One thing that changed and what of the mission it touches. `uav` and `target` are places in the mission."""
 
-    what: str  # zone, asset, terrain or elsewhere
+    what: str  # zone, base, asset, terrain or elsewhere
     message: str
     uav: int | None = None
     target: int | None = None
@@ -27,16 +29,25 @@ class StaleCause:
     position: tuple[float, float] | None = None
 
 
-def is_stale(mission: Mission, revision: int) -> bool:
-    """Whether assets, zones or terrain have changed since the mission was planned; `revision` is the ground's now."""
-    return mission.state != MissionState.DRAFT and mission.ground_revision != revision
+def landing_routes_without_base() -> Exists:
+    """For missions: whether one of their routes lands where a base was and none is any more."""
+    end = Func("geometry", function="ST_EndPoint", output_field=PointField(srid=4326))
+    bases = Base.objects.filter(organisation=OuterRef("mission__organisation"), location=OuterRef("end"))
+    landing = Route.objects.filter(mission=OuterRef("pk")).exclude(base_name="").exclude(geometry=None)
+    return Exists(landing.annotate(end=end).filter(~Exists(bases)))
+
+
+def is_stale(mission: Mission, revision: int, *, has_lost_base: bool) -> bool:
+    """Whether assets, zones, terrain or the bases to land at have changed since it was planned; `revision` is the ground's now."""
+    return mission.state != MissionState.DRAFT and (mission.ground_revision != revision or has_lost_base)
 
 
 def stale_causes(mission: Mission) -> list[StaleCause]:
-    """What the change of the ground means for the mission, the worst first; empty if the ground is as it was."""
-    if not is_stale(mission, ground_revision()):
-        return []
-    causes = [*_zones(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
+    """What the changes mean for the mission, the worst first; empty if all is as it was."""
+    bases = _bases(mission)
+    if not is_stale(mission, ground_revision(), has_lost_base=False):
+        return bases
+    causes = [*_zones(mission), *bases, *_vanished_targets(mission), *_passed_assets_gone(mission)]
     if not causes:
         causes = _terrain(mission)
     return causes[:MOST_CAUSES] or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
@@ -48,6 +59,7 @@ def stale_reason(causes: list[StaleCause]) -> str:
         return ""
     headline = {
         "zone": _("A zone changed since this was planned."),
+        "base": _("A base changed since this was planned."),
         "asset": _("An asset changed since this was planned."),
         "terrain": _("The terrain changed since this was planned."),
         "elsewhere": _("The ground has changed since this was planned."),
@@ -105,6 +117,23 @@ def _leg_words(zone: str, ends: tuple[str, str], uav: str) -> str:
 def route_letter(sequence: int) -> str:
     """A to Z, then AA: as on the map."""
     return chr(65 + sequence) if sequence < 26 else f"{chr(64 + sequence // 26)}{chr(65 + sequence % 26)}"
+
+
+def _bases(mission: Mission) -> list[StaleCause]:
+    landing = [route for route in mission.routes.all() if route.base_name and route.geometry is not None]
+    if mission.state == MissionState.DRAFT or not landing:
+        return []
+    bases = {base.location.coords for base in Base.objects.filter(organisation=mission.organisation_id)}
+    return [
+        StaleCause(
+            "base",
+            _("%(uav)s is to land at %(base)s, which is no longer there.") % {"uav": route.mission_uav.name, "base": route.base_name},
+            route.mission_uav.sequence,
+            position=tuple(route.geometry.coords[-1]),
+        )
+        for route in landing
+        if route.geometry.coords[-1] not in bases
+    ]
 
 
 def _vanished_targets(mission: Mission) -> list[StaleCause]:

@@ -55,7 +55,7 @@ def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any]) ->
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,
         "duration_s": mission.duration_s,
-        "is_stale": is_stale(mission, revision),
+        "is_stale": is_stale(mission, revision, has_lost_base=mission.has_lost_base),
         "sketch": sketch(mission),
         "places": drawing["places"],
         "lines": drawing["lines"],

@@ -181,7 +181,7 @@ class MissionTargetSerializer(serializers.Serializer):
 class StaleCauseSerializer(serializers.Serializer):
     """One thing that changed since the mission was planned, and what of the mission it touches."""
 
-    what = serializers.ChoiceField(choices=["zone", "asset", "terrain", "elsewhere"])
+    what = serializers.ChoiceField(choices=["zone", "base", "asset", "terrain", "elsewhere"])
     message = serializers.CharField()
     uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV")
     target = serializers.IntegerField(allow_null=True, help_text="index of the target")
@@ -203,7 +203,7 @@ class MissionSerializer(serializers.Serializer):
     updated_at = serializers.DateTimeField()
     planned_at = serializers.DateTimeField(allow_null=True)
     graph_version = serializers.IntegerField(allow_null=True)
-    is_stale = serializers.BooleanField(help_text="the ground has changed since the mission was planned")
+    is_stale = serializers.BooleanField(help_text="the ground, or a base to land at, has changed since the mission was planned")
     stale_reason = serializers.CharField(help_text="the headline and the worst cause; empty where the ground is as it was")
     stale_causes = StaleCauseSerializer(many=True)
     flat_ground_assumed = serializers.BooleanField(allow_null=True)

@@ -195,6 +195,31 @@ def test_a_mission_knows_the_base_at_which_a_route_lands(here: World, client: Cl
     assert other["plan"]["routes"][0]["base"] is None
 
 
+@pytest.mark.parametrize("is_moved", [True, False], ids=["moved", "deleted"])
+def test_a_base_that_is_gone_makes_the_missions_stale_that_land_at_it(here: World, client: Client, *, is_moved: bool) -> None:
+    base = Base.objects.create(name="North", location="SRID=4326;POINT(10.0205 56.0)")
+    landing = post(client, "missions", mission_body(here.towers[0], uavs=[TERN | {"end_action": "base"}], plan=True)).json()
+    post(client, "missions", mission_body(here.towers[0], plan=True) | {"name": "Hovers"})
+
+    def stale_ones() -> list[str]:
+        listed = client.get("/api/v1/missions").json()["results"]
+        filtered = client.get("/api/v1/missions?stale=true").json()["results"]
+        assert [row["name"] for row in listed if row["is_stale"]] == [row["name"] for row in filtered]
+        return [row["name"] for row in filtered]
+
+    assert stale_ones() == []
+    Base.objects.filter(pk=base.pk).update(name="Northern", location="SRID=4326;POINT(10.0205 56.0)")
+    assert stale_ones() == []  # only its name is another one
+    if is_moved:
+        Base.objects.filter(pk=base.pk).update(location="SRID=4326;POINT(9.999 56.0)")
+    else:
+        base.delete()
+    assert stale_ones() == [landing["name"]]
+    now = client.get(f"/api/v1/missions/{landing['id']}").json()
+    assert now["stale_reason"] == "A base changed since this was planned. Tern is to land at North, which is no longer there."
+    assert [(cause["what"], cause["uav"]) for cause in now["stale_causes"]] == [("base", 0)]
+
+
 def test_a_target_that_is_left_out_is_stored_with_its_reason(here: World, client: Client) -> None:
     post(client, "missions", mission_body({"asset": here.towers[0].pk, "sensor": "Lidar"}, here.towers[1], plan=True))
     row = InspectionTarget.objects.get(sequence=0)
