@@ -6,9 +6,11 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 CLOSE_ZOOM = 16
-STANDS_STILL = """() => {
+STANDS_STILL_AT = """(position) => {
     const map = document.getElementById("map");
-    return map.dataset.idle === "true" && map.querySelector("canvas").clientHeight === map.clientHeight; // it has followed the panel
+    const { x, y } = map.project(position);
+    const isThere = Math.hypot(x - map.clientWidth / 2, y - map.clientHeight / 2) < 2;
+    return isThere && map.dataset.idle === "true" && map.querySelector("canvas").clientHeight === map.clientHeight; // as high as the panel lets it
 }"""
 TOO_WIDE = """() => {
     const wide = document.documentElement.scrollWidth - innerWidth;
@@ -41,7 +43,7 @@ def look_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> dict
         }""",
         [*position, zoom],
     )
-    page.wait_for_function(STANDS_STILL)
+    page.wait_for_function(STANDS_STILL_AT, arg=position)
     return place_of(page, position)
 
 
