@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
@@ -19,6 +20,7 @@ from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.route_index import asset_places, node_tree
 from inspection.graph.ways import Travel, travel_between
 from inspection.graph.zone_index import ZoneIndex
+from missions.routing.problem import End
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -177,6 +179,15 @@ class Ways:
             return np.full(self.visits, np.inf)
         to_base_m: FloatArray = self.travel.length_m[self.uavs + np.arange(self.visits), self.visits + self.uavs + self.nearest_base]
         return to_base_m
+
+    def of_route(self, uav: int, order: Sequence[int], end: End) -> list[tuple[int, int]]:
+        """Source and sink, in `travel`, of each way of a route of visits, which are some, and on to where it ends."""
+        ways = [(uav, order[0]), *((self.uavs + left, right) for left, right in pairwise(order))]
+        if end is End.RETURN:
+            ways.append((self.uavs + order[-1], self.visits + uav))
+        elif end is End.ANY_BASE:
+            ways.append((self.uavs + order[-1], self.visits + self.uavs + int(self.nearest_base[order[-1]])))
+        return ways
 
     def out(self, uav: int, visit: int) -> NDArray[np.int64]:
         return self.travel.path(uav, visit)
