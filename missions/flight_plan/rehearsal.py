@@ -3,7 +3,7 @@
 import numpy as np
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.route_points import PassedNodes, TargetPoints, route_points, with_short_legs
+from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.routing.problem import Task, TaskKind
 
 
@@ -12,4 +12,4 @@ def rehearse() -> None:
     ways = PassedNodes(np.array([[9.0, 47.0]]), np.array([60.0]), np.array([7]), np.array([0, 1]))
     target = TargetPoints(0, (LonLat(9.1, 47.0),), 60.0, Task(TaskKind.LOOK, 5.0), 8)
     points = route_points(start=LonLat(9.0, 47.001), transit_agl_m=60.0, targets=[target], ways=ways, home=None)
-    with_short_legs(points, 900.0)
+    line_of(with_short_legs(points, 900.0)[0])

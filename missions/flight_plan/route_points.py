@@ -93,30 +93,33 @@ def _route_points(
     target = np.full(most, NONE, dtype=np.int64)
     own = np.empty(len(stop_count), dtype=np.int64)
 
-    position[0], agl_m[0], kind[0] = ends[0], transit_agl_m, START
+    position[0, 0], position[0, 1], agl_m[0], kind[0] = ends[0, 0], ends[0, 1], transit_agl_m, START
     at, stop = 1, 0
     for number in range(len(stop_count)):
         for node in range(way_first[number], way_first[number + 1]):
-            at = _pass(way_position[node], way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
-        low_m = stop_agl_m[number]
-        at = _pass(stop_position[stop], max(low_m, transit_agl_m), stop_asset[number], transit_agl_m, at, position, agl_m, asset)
+            lon, lat = way_position[node, 0], way_position[node, 1]
+            at = _pass(lon, lat, way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
+        lon, lat, low_m = stop_position[stop, 0], stop_position[stop, 1], stop_agl_m[number]
+        at = _pass(lon, lat, max(low_m, transit_agl_m), stop_asset[number], transit_agl_m, at, position, agl_m, asset)
         if kind[at - 1] == PASS and target[at - 1] == NONE and agl_m[at - 1] == low_m:
             at -= 1  # the target's own point takes its place
         own[number] = at
         for vertex in range(stop, stop + stop_count[number]):
-            if vertex > stop and _is_same_place(stop_position[vertex], position[at - 1]):
+            lon, lat = stop_position[vertex, 0], stop_position[vertex, 1]
+            if vertex > stop and _is_at(lon, lat, position, at - 1):
                 continue
-            position[at], agl_m[at], asset[at], target[at] = stop_position[vertex], low_m, stop_asset[number], stop_target[number]
-            kind[at] = TARGET if vertex == stop else PASS
+            position[at, 0], position[at, 1], agl_m[at] = lon, lat, low_m
+            kind[at], asset[at], target[at] = TARGET if vertex == stop else PASS, stop_asset[number], stop_target[number]
             at += 1
         stop += stop_count[number]
     if comes_home:
         for node in range(way_first[-2], way_first[-1]):
-            at = _pass(way_position[node], way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
-        at = _climb(ends[1], transit_agl_m, at, position, agl_m, asset)
-        position[at], agl_m[at] = ends[1], transit_agl_m
+            lon, lat = way_position[node, 0], way_position[node, 1]
+            at = _pass(lon, lat, way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
+        at = _climb(ends[1, 0], ends[1, 1], transit_agl_m, at, position, agl_m, asset)
+        position[at, 0], position[at, 1], agl_m[at] = ends[1, 0], ends[1, 1], transit_agl_m
     else:
-        position[at], agl_m[at] = position[at - 1], agl_m[at - 1]
+        position[at, 0], position[at, 1], agl_m[at] = position[at - 1, 0], position[at - 1, 1], agl_m[at - 1]
     kind[at], asset[at] = END, NONE
     at += 1
     return position[:at].copy(), agl_m[:at].copy(), kind[:at].copy(), asset[:at].copy(), target[:at].copy(), own
@@ -124,7 +127,8 @@ def _route_points(
 
 @njit(cache=True, nogil=True)
 def _pass(
-    place: FloatArray,
+    lon: float,
+    lat: float,
     passed_agl_m: float,
     passed_asset: int,
     transit_agl_m: float,
@@ -134,25 +138,26 @@ def _pass(
     asset: IntArray,
 ) -> int:
     """Put in a point that is passed outside targets, unless it repeats the one before; returns how many points there are."""
-    if _is_same_place(place, position[at - 1]) and agl_m[at - 1] == passed_agl_m:
+    if agl_m[at - 1] == passed_agl_m and _is_at(lon, lat, position, at - 1):
         return at
-    at = _climb(place, transit_agl_m, at, position, agl_m, asset)
-    position[at], agl_m[at], asset[at] = place, passed_agl_m, passed_asset
+    at = _climb(lon, lat, transit_agl_m, at, position, agl_m, asset)
+    position[at, 0], position[at, 1], agl_m[at], asset[at] = lon, lat, passed_agl_m, passed_asset
     return at + 1
 
 
 @njit(cache=True, nogil=True)
-def _climb(towards: FloatArray, transit_agl_m: float, at: int, position: FloatArray, agl_m: FloatArray, asset: IntArray) -> int:
-    """Before the way leads on from a low target, rise above it; returns how many points there are."""
-    if agl_m[at - 1] >= transit_agl_m or _is_same_place(towards, position[at - 1]):
+def _climb(lon: float, lat: float, transit_agl_m: float, at: int, position: FloatArray, agl_m: FloatArray, asset: IntArray) -> int:
+    """Before the way leads on from a low target to somewhere else, rise above it; returns how many points there are."""
+    if agl_m[at - 1] >= transit_agl_m or _is_at(lon, lat, position, at - 1):
         return at
-    position[at], agl_m[at], asset[at] = position[at - 1], transit_agl_m, asset[at - 1]
+    position[at, 0], position[at, 1], agl_m[at], asset[at] = position[at - 1, 0], position[at - 1, 1], transit_agl_m, asset[at - 1]
     return at + 1
 
 
 @njit(cache=True, nogil=True)
-def _is_same_place(left: FloatArray, right: FloatArray) -> bool:
-    return bool(abs(left[0] - right[0]) <= SAME_PLACE_DEG and abs(left[1] - right[1]) <= SAME_PLACE_DEG)
+def _is_at(lon: float, lat: float, position: FloatArray, place: int) -> bool:
+    """Whether the point at this place in the list lies there."""
+    return bool(abs(lon - position[place, 0]) <= SAME_PLACE_DEG and abs(lat - position[place, 1]) <= SAME_PLACE_DEG)
 
 
 def with_short_legs(points: RoutePoints, longest_leg_m: float) -> tuple[RoutePoints, float]:
@@ -194,8 +199,17 @@ def _divisions(position: FloatArray, longest_leg_m: float) -> tuple[IntArray, Fl
 
 def line_of(points: RoutePoints) -> NDArray[np.float64]:
     """The route on the map, shape (n, 2), n >= 2: positions without repeated ones; a UAV that stays in its place has it twice."""
-    position = points.position
-    moved = np.ones(len(position), dtype=bool)
-    np.any(position[1:] != position[:-1], axis=1, out=moved[1:])
-    line: NDArray[np.float64] = position[moved]
+    line: NDArray[np.float64] = _without_repeats(points.position)
     return line if len(line) > 1 else np.repeat(line, 2, axis=0)
+
+
+@njit(cache=True, nogil=True)
+def _without_repeats(position: FloatArray) -> FloatArray:
+    line = np.empty_like(position)
+    count = 0
+    for place in range(len(position)):
+        lon, lat = position[place, 0], position[place, 1]
+        if place == 0 or lon != position[place - 1, 0] or lat != position[place - 1, 1]:
+            line[count, 0], line[count, 1] = lon, lat
+            count += 1
+    return line[:count]

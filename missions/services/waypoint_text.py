@@ -23,15 +23,16 @@ def waypoints_text(waypoints: Waypoints) -> orjson.Fragment:
     pieces[1::_PIECES] = [_KIND[PASS]] * count
     pieces[2::_PIECES] = _items(points.asset)
     pieces[3::_PIECES] = _heights(waypoints)
-    for place in np.flatnonzero(points.asset == NONE).tolist():
-        pieces[_PIECES * place + 2] = b"null"
-    for place in np.flatnonzero(points.kind != PASS).tolist():
-        pieces[_PIECES * place + 1] = _KIND[points.kind[place]]
-    for place in {*np.flatnonzero(points.target != NONE).tolist(), *points.task}:
-        target, task = int(points.target[place]), points.task.get(place)
-        words = orjson.dumps(None if target == NONE else target), orjson.dumps(task and task_to_json(task))
-        heights = pieces[_PIECES * place + 3].removeprefix(_NO_TARGET)
-        pieces[_PIECES * place + 3] = b',"target":%b,"task":%b' % words + heights
+    is_plain = (points.kind == PASS) & (points.asset != NONE) & (points.target == NONE)
+    for place in {*np.flatnonzero(~is_plain).tolist(), *points.task}:
+        asset, target, task = points.asset[place], points.target[place], points.task.get(place)
+        piece = _PIECES * place
+        pieces[piece + 1] = _KIND[points.kind[place]]
+        if asset == NONE:
+            pieces[piece + 2] = b"null"
+        if target != NONE or task is not None:
+            words = orjson.dumps(None if target == NONE else int(target)), orjson.dumps(task and task_to_json(task))
+            pieces[piece + 3] = b',"target":%b,"task":%b' % words + pieces[piece + 3].removeprefix(_NO_TARGET)
     text = b"".join(pieces)
     return orjson.Fragment(_OPENING + text[: -len(_NEXT)] + _CLOSING)
 
@@ -47,7 +48,7 @@ def _heights(waypoints: Waypoints) -> list[bytes]:
         agl_m = points.agl_m.tolist()
         shown = {height_m: orjson.dumps(round(height_m, 2)) for height_m in set(agl_m)}
         ready = {height_m: _rest(text, b"null", text) for height_m, text in shown.items()}
-        return [ready[height_m] for height_m in agl_m]
+        return [*ready.values()] * len(agl_m) if len(ready) == 1 else [ready[height_m] for height_m in agl_m]
     amsl_m = [b"null"] * len(points) if waypoints.amsl_m is None else _rounded(waypoints.amsl_m)
     return [_rest(*texts) for texts in zip(_rounded(points.agl_m), amsl_m, _rounded(waypoints.relative_m), strict=True)]
 
