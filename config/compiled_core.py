@@ -15,7 +15,7 @@ from pathlib import Path
 
 from config.private_servers import PROJECT_DIR, state_directory
 
-SOURCE_FOLDERS = ("inspection/geodesy", "inspection/graph", "missions/routing")
+SOURCE_FOLDERS = ("inspection/geodesy", "inspection/graph", "missions/routing", "missions/flight_plan")
 SHIPPED = PROJECT_DIR / ".venv" / "compiled"
 STAMP = "stamp"
 STAMP_LETTERS = 16  # of it are in the folder's name

@@ -19,11 +19,13 @@ def main() -> int:
     folder.mkdir(parents=True)
     # Only now: numba reads where to keep things as it is imported.
     from inspection.graph import rehearsal as of_the_graph  # noqa: PLC0415
+    from missions.flight_plan import rehearsal as of_the_drawing  # noqa: PLC0415
     from missions.routing import file_plans  # noqa: PLC0415
     from missions.routing import rehearsal as of_the_solvers  # noqa: PLC0415
 
     of_the_graph.rehearse()
     of_the_solvers.rehearse()
+    of_the_drawing.rehearse()
     file_plans.rehearse()
     (folder / STAMP).write_text(compiled_stamp())
     return 0

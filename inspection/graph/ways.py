@@ -47,12 +47,9 @@ class Travel:
         return nodes
 
     def paths(self, legs: IntArray) -> tuple[IntArray, IntArray]:
-        """Nodes of several legs (k, 2), source and sink, one after another, and where each leg's begin (k + 1,).
-
-        No leg may be without a way or direct.
-        """
+        """Nodes of several ways (k, 2), source and sink, one after another, and where each way's begin (k + 1,); as `path`."""
         ways = self.way[legs[:, 0], legs[:, 1]]
-        if (ways[:, 0] == NO_WAY).any() or (ways[:, 0] == DIRECT).any():
+        if (ways[:, 0] == NO_WAY).any():
             raise NoWay(legs.tolist())
         nodes, first = _paths(ways, self.leg_node, self.entry_leg, self.entry_label, *self.index.path_arrays)
         return nodes, first
@@ -377,6 +374,9 @@ def _paths(
     nodes = np.empty(1024, dtype=np.int64)
     first = np.zeros(len(ways) + 1, dtype=np.int64)
     for leg in range(len(ways)):
+        if ways[leg, 0] == DIRECT:
+            first[leg + 1] = first[leg]
+            continue
         path = _path(
             ways[leg, 0],
             ways[leg, 1],

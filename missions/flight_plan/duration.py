@@ -14,9 +14,9 @@ def duration_s(waypoints: Waypoints, *, length_m: float, cruise_speed_mps: float
     """
     if not waypoints:
         return 0.0
-    relative_m = np.array(waypoints.relative_m)
-    vertical_m = waypoints.points.agl_m[0] + float(np.abs(np.diff(relative_m)).sum())
+    relative_m, agl_m = waypoints.relative_m, waypoints.points.agl_m
+    vertical_m = float(agl_m[0]) + float(np.abs(relative_m[1:] - relative_m[:-1]).sum())
     if lands:
-        vertical_m += waypoints.points.agl_m[-1]
-    hold_s = sum(task.hold_s for task in waypoints.points.task if task is not None)
+        vertical_m += float(agl_m[-1])
+    hold_s = sum(task.hold_s for task in waypoints.points.task.values())
     return length_m / cruise_speed_mps + vertical_m / rules.climb_speed_mps + hold_s

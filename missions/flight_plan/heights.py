@@ -11,7 +11,7 @@ from inspection.graph.flyable import UNTAGGED_HEIGHT_M
 from inspection.graph.inspection_graph import NodeKind
 from inspection.terrain.heights import amsl_m, counted_from
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import RoutePoints, Waypoints, point_between
+from missions.flight_plan.waypoints import RoutePoints, Waypoints
 
 FloatArray = NDArray[np.float64]
 GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
@@ -63,7 +63,7 @@ def with_heights(points: RoutePoints, ground_heights_m: GroundHeights | None, ru
     flat = Waypoints(points, None, points.agl_m)
     if ground_heights_m is None or not points:
         return flat, bool(points)
-    position = points.positions()
+    position = points.position
     shares = [np.arange(count) / count for count in _sample_counts(position)]  # from each leg's start up to but without its end
     samples = [start + share[:, None] * (end - start) for start, end, share in zip(position[:-1], position[1:], shares, strict=True)]
     ground_m = ground_heights_m(np.concatenate([*samples, position[-1:]]))
@@ -71,24 +71,23 @@ def with_heights(points: RoutePoints, ground_heights_m: GroundHeights | None, ru
         return flat, True
 
     take_off_m = float(ground_m[0])
-    flown, under = RoutePoints(), [take_off_m]
-    first = kept = 0
+    legs: list[int] = []  # with a bend, of which `bent` are the shares
+    bent: list[float] = []
+    under = [take_off_m]
+    first = 0
     for leg, share in enumerate(shares):
         under_m = ground_m[first : first + len(share) + 1]  # the next leg's first sample is this leg's end
         first += len(share)
-        bends = _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m)
-        if bends:
-            flown.extend(points, kept, leg + 1)
-            kept = leg + 1
-            for bend in bends:
-                flown.append(point_between(points[leg], points[leg + 1], float(share[bend])))
-                under.append(float(under_m[bend]))
+        for bend in _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m):
+            legs.append(leg)
+            bent.append(float(share[bend]))
+            under.append(float(under_m[bend]))
         under.append(float(under_m[-1]))
-    flown.extend(points, kept, len(points))
+    flown = points.with_points_between(np.array(legs, dtype=np.int64), np.array(bent, dtype=np.float64)) if legs else points
     ground = np.array(under)
-    above_sea_m = amsl_m(np.array(flown.agl_m), "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
+    above_sea_m = amsl_m(flown.agl_m, "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
     above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
-    return Waypoints(flown, above_sea_m.tolist(), above_take_off_m.tolist()), False
+    return Waypoints(flown, above_sea_m, above_take_off_m), False
 
 
 def _sample_counts(position: FloatArray) -> list[int]:

@@ -5,10 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from inspection.geodesy import LonLat, distance_m, path_length_m
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, point_between
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import short_distance_m
+from missions.flight_plan.waypoints import END, NONE, PASS, START, TARGET, FloatArray, IntArray, RoutePoints
 from missions.routing.problem import Task
 
 SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
@@ -16,18 +18,16 @@ SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
 
 @dataclass(frozen=True, eq=False)
 class PassedNodes:
-    """Nodes of the graph on a way, column by column: [lon, lat], the height above ground at which each is passed, and its asset.
+    """Nodes of the graph on the ways of a route, one way after another.
 
-    has_repeats tells that some node may stand where the one before it does.
+    position float64 (n, 2), lon lat [deg]; agl_m float64 (n,), the height above ground at which each is passed; asset int64 (n,), NONE
+    where there is none; way w has the nodes first[w] up to but without first[w + 1], (w + 1,).
     """
 
-    position: Sequence[list[float]]
-    agl_m: Sequence[float]
-    asset: Sequence[int | None]
-    has_repeats: bool
-
-    def __len__(self) -> int:
-        return len(self.position)
+    position: FloatArray
+    agl_m: FloatArray
+    asset: IntArray
+    first: IntArray
 
 
 @dataclass(frozen=True)
@@ -42,112 +42,174 @@ class TargetPoints:
 
 
 def route_points(
-    *,
-    start: LonLat,
-    transit_agl_m: float,
-    targets: Sequence[TargetPoints],
-    ways: Sequence[PassedNodes],
-    way_home: PassedNodes | None,
-    home: LonLat | None = None,
+    *, start: LonLat, transit_agl_m: float, targets: Sequence[TargetPoints], ways: PassedNodes, home: LonLat | None
 ) -> RoutePoints:
-    """The points of one route; ways[i] leads to targets[i], way_home on to `home` (None: the start), or the route ends at the last target.
+    """The points of one route. The first way leads to the first target, and so on; with a home one way more leads there.
 
     The route begins at transit height above the start, after a vertical climb, and ends above the place where the UAV hovers, lands or
-    comes home to. Each target has exactly one point of kind `target`: where it is, or where its stretch is entered; the stretch's other
-    vertices are passed and carry the target's index. A target that is inspected from below transit height is reached by a vertical
-    descent and left by a vertical climb, so that the UAV is never lower than that between targets. Passing the same place twice in a
-    row at the same height is one point.
+    comes home to; without a home, over the last target. Each target has exactly one point of kind `target`: where it is, or where its
+    stretch is entered; the stretch's other vertices are passed and carry the target's index. A target that is inspected from below
+    transit height is reached by a vertical descent and left by a vertical climb, so that the UAV is never lower than that between
+    targets. Passing the same place twice in a row at the same height is one point.
     """
-    route = _Route(transit_agl_m)
-    route.add(RoutePoint(start, WaypointKind.START, transit_agl_m))
-    for points, way in zip(targets, ways, strict=True):
-        route.add_way(way)
-        route.add_target(points)
-    if way_home is not None:
-        route.add_way(way_home)
-        route.add(RoutePoint(start if home is None else home, WaypointKind.END, transit_agl_m))
+    stops = [place for stop in targets for place in stop.positions]
+    position, agl_m, kind, asset, target, own = _route_points(
+        np.array([start, start if home is None else home], dtype=np.float64),
+        home is not None,
+        float(transit_agl_m),
+        ways.position,
+        ways.agl_m,
+        ways.asset,
+        ways.first,
+        np.array(stops, dtype=np.float64).reshape(-1, 2),
+        np.array([len(stop.positions) for stop in targets], dtype=np.int64),
+        np.array([stop.agl_m for stop in targets], dtype=np.float64),
+        np.array([NONE if stop.asset is None else stop.asset for stop in targets], dtype=np.int64),
+        np.array([stop.target for stop in targets], dtype=np.int64),
+    )
+    task = {place: stop.task for place, stop in zip(own.tolist(), targets, strict=True)}
+    return RoutePoints(position, agl_m, kind, asset, target, task)
+
+
+@njit(cache=True, nogil=True)
+def _route_points(
+    ends: FloatArray,
+    comes_home: bool,
+    transit_agl_m: float,
+    way_position: FloatArray,
+    way_agl_m: FloatArray,
+    way_asset: IntArray,
+    way_first: IntArray,
+    stop_position: FloatArray,
+    stop_count: IntArray,
+    stop_agl_m: FloatArray,
+    stop_asset: IntArray,
+    stop_target: IntArray,
+) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, IntArray]:
+    """Columns as in RoutePoints, and the places of the targets' own points."""
+    most = 2 * (len(way_position) + len(stop_position)) + 4  # before each point there may be a climb
+    position, agl_m = np.empty((most, 2)), np.empty(most)
+    kind, asset = np.full(most, PASS, dtype=np.int64), np.full(most, NONE, dtype=np.int64)
+    target = np.full(most, NONE, dtype=np.int64)
+    own = np.empty(len(stop_count), dtype=np.int64)
+
+    position[0, 0], position[0, 1], agl_m[0], kind[0] = ends[0, 0], ends[0, 1], transit_agl_m, START
+    at, stop = 1, 0
+    for number in range(len(stop_count)):
+        for node in range(way_first[number], way_first[number + 1]):
+            lon, lat = way_position[node, 0], way_position[node, 1]
+            at = _pass(lon, lat, way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
+        lon, lat, low_m = stop_position[stop, 0], stop_position[stop, 1], stop_agl_m[number]
+        at = _pass(lon, lat, max(low_m, transit_agl_m), stop_asset[number], transit_agl_m, at, position, agl_m, asset)
+        if kind[at - 1] == PASS and target[at - 1] == NONE and agl_m[at - 1] == low_m:
+            at -= 1  # the target's own point takes its place
+        own[number] = at
+        for vertex in range(stop, stop + stop_count[number]):
+            lon, lat = stop_position[vertex, 0], stop_position[vertex, 1]
+            if vertex > stop and _is_at(lon, lat, position, at - 1):
+                continue
+            position[at, 0], position[at, 1], agl_m[at] = lon, lat, low_m
+            kind[at], asset[at], target[at] = TARGET if vertex == stop else PASS, stop_asset[number], stop_target[number]
+            at += 1
+        stop += stop_count[number]
+    if comes_home:
+        for node in range(way_first[-2], way_first[-1]):
+            lon, lat = way_position[node, 0], way_position[node, 1]
+            at = _pass(lon, lat, way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
+        at = _climb(ends[1, 0], ends[1, 1], transit_agl_m, at, position, agl_m, asset)
+        position[at, 0], position[at, 1], agl_m[at] = ends[1, 0], ends[1, 1], transit_agl_m
     else:
-        last = route.points[-1]
-        route.points.append(RoutePoint(last.position, WaypointKind.END, last.agl_m))
-    return route.points
+        position[at, 0], position[at, 1], agl_m[at] = position[at - 1, 0], position[at - 1, 1], agl_m[at - 1]
+    kind[at], asset[at] = END, NONE
+    at += 1
+    return position[:at].copy(), agl_m[:at].copy(), kind[:at].copy(), asset[:at].copy(), target[:at].copy(), own
 
 
-class _Route:
-    def __init__(self, transit_agl_m: float) -> None:
-        self.transit_agl_m = transit_agl_m
-        self.points = RoutePoints()
+@njit(cache=True, nogil=True)
+def _pass(
+    lon: float,
+    lat: float,
+    passed_agl_m: float,
+    passed_asset: int,
+    transit_agl_m: float,
+    at: int,
+    position: FloatArray,
+    agl_m: FloatArray,
+    asset: IntArray,
+) -> int:
+    """Put in a point that is passed outside targets, unless it repeats the one before; returns how many points there are."""
+    if agl_m[at - 1] == passed_agl_m and _is_at(lon, lat, position, at - 1):
+        return at
+    at = _climb(lon, lat, transit_agl_m, at, position, agl_m, asset)
+    position[at, 0], position[at, 1], agl_m[at], asset[at] = lon, lat, passed_agl_m, passed_asset
+    return at + 1
 
-    def add_way(self, way: PassedNodes) -> None:
-        if not way:
-            return
-        if way.has_repeats or min(way.agl_m) < self.transit_agl_m:  # as on hardly any way
-            for node in range(len(way)):
-                self._add_node(way, node)
-        else:
-            self._add_node(way, 0)
-            self.points.extend_passed(way.position[1:], way.agl_m[1:], way.asset[1:])
 
-    def _add_node(self, way: PassedNodes, node: int) -> None:
-        lon, lat = way.position[node]
-        self.add(RoutePoint(LonLat(lon, lat), WaypointKind.PASS, way.agl_m[node], way.asset[node]))
+@njit(cache=True, nogil=True)
+def _climb(lon: float, lat: float, transit_agl_m: float, at: int, position: FloatArray, agl_m: FloatArray, asset: IntArray) -> int:
+    """Before the way leads on from a low target to somewhere else, rise above it; returns how many points there are."""
+    if agl_m[at - 1] >= transit_agl_m or _is_at(lon, lat, position, at - 1):
+        return at
+    position[at, 0], position[at, 1], agl_m[at], asset[at] = position[at - 1, 0], position[at - 1, 1], transit_agl_m, asset[at - 1]
+    return at + 1
 
-    def add_target(self, points: TargetPoints) -> None:
-        entry = points.positions[0]
-        self.add(RoutePoint(entry, WaypointKind.PASS, max(points.agl_m, self.transit_agl_m), points.asset))
-        before = self.points[-1]
-        if before.kind is WaypointKind.PASS and before.target is None and before.agl_m == points.agl_m:
-            self.points.pop()  # the target's own point takes its place
-        self.points.append(RoutePoint(entry, WaypointKind.TARGET, points.agl_m, points.asset, points.target, points.task))
-        for position in points.positions[1:]:
-            if not _same_place(position, self.points[-1].position):
-                self.points.append(RoutePoint(position, WaypointKind.PASS, points.agl_m, points.asset, points.target))
 
-    def add(self, point: RoutePoint) -> None:
-        """Put in a point outside targets, after a climb from a low target, unless it repeats the point before."""
-        if self.points:
-            before = self.points[-1]
-            here = _same_place(point.position, before.position)
-            if before.agl_m < self.transit_agl_m and not here:
-                self.points.append(RoutePoint(before.position, WaypointKind.PASS, self.transit_agl_m, before.asset))
-            elif here and point.kind is WaypointKind.PASS and point.agl_m == before.agl_m:
-                return
-        self.points.append(point)
+@njit(cache=True, nogil=True)
+def _is_at(lon: float, lat: float, position: FloatArray, place: int) -> bool:
+    """Whether the point at this place in the list lies there."""
+    return bool(abs(lon - position[place, 0]) <= SAME_PLACE_DEG and abs(lat - position[place, 1]) <= SAME_PLACE_DEG)
 
 
 def with_short_legs(points: RoutePoints, longest_leg_m: float) -> tuple[RoutePoints, float]:
     """The points, and in between as many more, evenly on the straight lon/lat line, as keep every leg within the longest; and metres."""
-    position = points.positions()
-    lengths_m = distance_m(position[:-1], position[1:])
-    if not (lengths_m > longest_leg_m).any():
-        return points, float(lengths_m.sum())
-    divided = RoutePoints()
-    first = 0
-    for leg in np.flatnonzero(lengths_m > longest_leg_m).tolist():
-        divided.extend(points, first, leg + 1)
-        parts = math.ceil(lengths_m[leg] / longest_leg_m)
-        for part in range(1, parts):
-            divided.append(point_between(points[leg], points[leg + 1], part / parts))
-        first = leg + 1
-    divided.extend(points, first, len(points))
-    return divided, path_length_m(divided.positions())
+    legs, shares, lengths_m = _divisions(points.position, float(longest_leg_m))
+    return points.with_points_between(legs, shares) if len(legs) else points, float(lengths_m.sum())
 
 
-def _same_place(left: LonLat, right: LonLat) -> bool:
-    return abs(left[0] - right[0]) <= SAME_PLACE_DEG and abs(left[1] - right[1]) <= SAME_PLACE_DEG
-
-
-def repeats(position: NDArray[np.float64], ends: Sequence[int]) -> bool:
-    """Whether any of the positions (n, 2) of several ways, put end to end, is the one before it on its way; a way ends before ends[i]."""
-    same: NDArray[np.bool_] = np.all(np.abs(np.diff(position, axis=0)) <= SAME_PLACE_DEG, axis=1)
-    if not same.any():
-        return False
-    same[[end - 1 for end in ends if 0 < end < len(position)]] = False
-    return bool(same.any())
+@njit(cache=True, nogil=True)
+def _divisions(position: FloatArray, longest_leg_m: float) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Where legs are divided, as in with_points_between, and the metres of every leg then."""
+    undivided_m = np.empty(max(len(position) - 1, 0))
+    more = 0
+    for leg in range(len(undivided_m)):
+        undivided_m[leg] = short_distance_m(position[leg, 0], position[leg, 1], position[leg + 1, 0], position[leg + 1, 1])
+        more += max(math.ceil(undivided_m[leg] / longest_leg_m) - 1, 0)
+    legs, shares = np.empty(more, dtype=np.int64), np.empty(more)
+    lengths_m = np.empty(len(undivided_m) + more)
+    at = count = 0
+    for leg in range(len(undivided_m)):
+        parts = math.ceil(undivided_m[leg] / longest_leg_m)
+        if parts <= 1:
+            lengths_m[count] = undivided_m[leg]
+            count += 1
+            continue
+        lon, lat, to_lon, to_lat = position[leg, 0], position[leg, 1], position[leg + 1, 0], position[leg + 1, 1]
+        before_lon, before_lat = lon, lat
+        for part in range(1, parts + 1):
+            next_lon, next_lat = to_lon, to_lat
+            if part < parts:
+                legs[at], shares[at] = leg, part / parts
+                next_lon, next_lat = lon + shares[at] * (to_lon - lon), lat + shares[at] * (to_lat - lat)
+                at += 1
+            lengths_m[count] = short_distance_m(before_lon, before_lat, next_lon, next_lat)
+            count += 1
+            before_lon, before_lat = next_lon, next_lat
+    return legs, shares, lengths_m
 
 
 def line_of(points: RoutePoints) -> NDArray[np.float64]:
     """The route on the map, shape (n, 2), n >= 2: positions without repeated ones; a UAV that stays in its place has it twice."""
-    positions = points.positions()
-    moved = np.append(True, (np.diff(positions, axis=0) != 0).any(axis=1))
-    line: NDArray[np.float64] = positions[moved]
+    line: NDArray[np.float64] = _without_repeats(points.position)
     return line if len(line) > 1 else np.repeat(line, 2, axis=0)
+
+
+@njit(cache=True, nogil=True)
+def _without_repeats(position: FloatArray) -> FloatArray:
+    line = np.empty_like(position)
+    count = 0
+    for place in range(len(position)):
+        lon, lat = position[place, 0], position[place, 1]
+        if place == 0 or lon != position[place - 1, 0] or lat != position[place - 1, 1]:
+            line[count, 0], line[count, 1] = lon, lat
+            count += 1
+    return line[:count]

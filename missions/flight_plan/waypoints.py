@@ -2,14 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from missions.routing.problem import Task
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 
 class WaypointKind(StrEnum):
@@ -17,6 +20,11 @@ class WaypointKind(StrEnum):
     PASS = "pass"  # noqa: S105 (no password)
     TARGET = "target"
     END = "end"
+
+
+KINDS = tuple(WaypointKind)  # columns hold places in it
+START, PASS, TARGET, END = range(len(KINDS))
+NONE = -1  # in place of an asset's or a target's number
 
 
 class RoutePoint(NamedTuple):
@@ -34,67 +42,81 @@ class RoutePoint(NamedTuple):
 
 
 class RoutePoints:
-    """Points of a route, column by column: some hundred points are a handful of lists. Taken one by one, each is a RoutePoint.
+    """Points of a route, column by column: some hundred points are a handful of arrays. Taken one by one, each is a RoutePoint.
 
-    position holds [lon, lat], kind the values of WaypointKind; lists of points may share a [lon, lat], so nobody changes one.
+    position float64 (n, 2), lon lat [deg]; agl_m float64 (n,); kind (n,) places in KINDS; asset, target int64 (n,), NONE where there is
+    none; task: what is done at a point, by its place in the route.
     """
 
     __slots__ = ("agl_m", "asset", "kind", "position", "target", "task")
 
-    def __init__(self, points: Sequence[RoutePoint] = ()) -> None:
-        self.position: list[list[float]] = [list(point.position) for point in points]
-        self.kind: list[str] = [point.kind.value for point in points]
-        self.agl_m: list[float] = [point.agl_m for point in points]
-        self.asset: list[int | None] = [point.asset for point in points]
-        self.target: list[int | None] = [point.target for point in points]
-        self.task: list[Task | None] = [point.task for point in points]
+    def __init__(self, position: FloatArray, agl_m: FloatArray, kind: IntArray, asset: IntArray, target: IntArray, task: dict[int, Task]):
+        self.position = position
+        self.agl_m = agl_m
+        self.kind = kind
+        self.asset = asset
+        self.target = target
+        self.task = task
+
+    @classmethod
+    def of(cls, points: Sequence[RoutePoint]) -> "RoutePoints":
+        return cls(
+            np.array([point.position for point in points], dtype=np.float64).reshape(-1, 2),
+            np.array([point.agl_m for point in points], dtype=np.float64),
+            np.array([KINDS.index(point.kind) for point in points], dtype=np.int64),
+            np.array([NONE if point.asset is None else point.asset for point in points], dtype=np.int64),
+            np.array([NONE if point.target is None else point.target for point in points], dtype=np.int64),
+            {place: point.task for place, point in enumerate(points) if point.task is not None},
+        )
 
     def __len__(self) -> int:
         return len(self.position)
 
     def __getitem__(self, place: int) -> RoutePoint:
-        lon, lat = self.position[place]
-        kind = WaypointKind(self.kind[place])
-        return RoutePoint(LonLat(lon, lat), kind, self.agl_m[place], self.asset[place], self.target[place], self.task[place])
+        asset, target = int(self.asset[place]), int(self.target[place])
+        return RoutePoint(
+            LonLat(*self.position[place].tolist()),
+            KINDS[self.kind[place]],
+            float(self.agl_m[place]),
+            None if asset == NONE else asset,
+            None if target == NONE else target,
+            self.task.get(place),
+        )
 
     def __iter__(self) -> Iterator[RoutePoint]:
         return map(self.__getitem__, range(len(self)))
 
-    def append(self, point: RoutePoint) -> None:
-        self.position.append(list(point.position))
-        self.kind.append(point.kind.value)
-        self.agl_m.append(point.agl_m)
-        self.asset.append(point.asset)
-        self.target.append(point.target)
-        self.task.append(point.task)
+    def with_points_between(self, legs: IntArray, shares: FloatArray) -> "RoutePoints":
+        """With a point more, which is passed, at each share of a leg on its straight lon/lat line; both (k,), in the order of the route.
 
-    def extend_passed(self, position: Sequence[list[float]], agl_m: Sequence[float], asset: Sequence[int | None]) -> None:
-        """Points that are only passed."""
-        count = len(position)
-        self.position += position
-        self.kind += [WaypointKind.PASS.value] * count
-        self.agl_m += agl_m
-        self.asset += asset
-        self.target += [None] * count
-        self.task += [None] * count
+        Between two points of one target it belongs to the target.
+        """
+        columns = _with_points_between(self.position, self.agl_m, self.kind, self.asset, self.target, legs, shares)
+        return RoutePoints(*columns, {place + int(np.searchsorted(legs, place)): task for place, task in self.task.items()})
 
-    def extend(self, points: "RoutePoints", first: int, end: int) -> None:
-        """Those of the points from the first up to but without the end."""
-        self.position += points.position[first:end]
-        self.kind += points.kind[first:end]
-        self.agl_m += points.agl_m[first:end]
-        self.asset += points.asset[first:end]
-        self.target += points.target[first:end]
-        self.task += points.task[first:end]
 
-    def pop(self) -> None:
-        """Take the last point away."""
-        del self.position[-1], self.kind[-1], self.agl_m[-1], self.asset[-1], self.target[-1], self.task[-1]
-
-    def positions(self) -> NDArray[np.float64]:
-        """Lon lat of each, shape (n, 2)."""
-        flat = np.fromiter(chain.from_iterable(self.position), dtype=np.float64, count=2 * len(self.position))
-        return flat.reshape(-1, 2)
+@njit(cache=True, nogil=True)
+def _with_points_between(
+    position: FloatArray, agl_m: FloatArray, kind: IntArray, asset: IntArray, target: IntArray, legs: IntArray, shares: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray]:
+    count = len(position) + len(legs)
+    positions, heights_m = np.empty((count, 2)), np.empty(count)
+    kinds, assets, targets = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    at = more = 0
+    for place in range(len(position)):
+        positions[at], heights_m[at] = position[place], agl_m[place]
+        kinds[at], assets[at], targets[at] = kind[place], asset[place], target[place]
+        at += 1
+        while more < len(legs) and legs[more] == place:
+            share = shares[more]
+            for axis in range(2):
+                positions[at, axis] = position[place, axis] + share * (position[place + 1, axis] - position[place, axis])
+            heights_m[at] = agl_m[place] + share * (agl_m[place + 1] - agl_m[place])
+            kinds[at], assets[at] = PASS, NONE
+            targets[at] = target[place] if target[place] == target[place + 1] else NONE
+            at += 1
+            more += 1
+    return positions, heights_m, kinds, assets, targets
 
 
 class Waypoint(NamedTuple):
@@ -110,7 +132,7 @@ class Waypoints:
 
     __slots__ = ("amsl_m", "points", "relative_m")
 
-    def __init__(self, points: RoutePoints, amsl_m: list[float] | None, relative_m: list[float]) -> None:
+    def __init__(self, points: RoutePoints, amsl_m: FloatArray | None, relative_m: FloatArray) -> None:
         self.points = points
         self.amsl_m = amsl_m
         self.relative_m = relative_m
@@ -119,15 +141,7 @@ class Waypoints:
         return len(self.points)
 
     def __getitem__(self, place: int) -> Waypoint:
-        return Waypoint(self.points[place], None if self.amsl_m is None else self.amsl_m[place], self.relative_m[place])
+        return Waypoint(self.points[place], None if self.amsl_m is None else float(self.amsl_m[place]), float(self.relative_m[place]))
 
     def __iter__(self) -> Iterator[Waypoint]:
         return map(self.__getitem__, range(len(self)))
-
-
-def point_between(left: RoutePoint, right: RoutePoint, share: float) -> RoutePoint:
-    """A point that is passed on the straight lon/lat line; between two points of one target it belongs to the target."""
-    lon = left.position.lon + share * (right.position.lon - left.position.lon)
-    lat = left.position.lat + share * (right.position.lat - left.position.lat)
-    agl_m = left.agl_m + share * (right.agl_m - left.agl_m)
-    return RoutePoint(LonLat(lon, lat), WaypointKind.PASS, agl_m, target=left.target if left.target == right.target else None)

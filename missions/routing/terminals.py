@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
@@ -13,15 +14,19 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import short_distance_m
 from inspection.graph.access import clear_legs
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.legs import NO_LEGS, Attachment, Attachments, DirectLeg, joined
+from inspection.graph.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.graph.nearness import chord
 from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.route_index import asset_places, node_tree
 from inspection.graph.ways import Travel, travel_between
 from inspection.graph.zone_index import ZoneIndex
+from missions.routing.problem import End
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+
+
+_NO_WAY_TO_GO = np.zeros(1)  # metres from a place to its own node
 
 
 @dataclass(frozen=True)
@@ -48,8 +53,8 @@ def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, ru
     if terminal.asset is not None:
         places = asset_places(graph)
         node = places.node_of(terminal.asset)
-        if node is not None and tuple(graph.position[node]) == tuple(terminal.position):
-            return Attachments.of([Attachment(node, 0.0, 0.0)])
+        if node is not None and graph.position[node].tolist() == [*terminal.position]:
+            return Attachments(np.array([node], dtype=np.int32), _NO_WAY_TO_GO, _NO_WAY_TO_GO)
         along = _along_own_line(graph, zones, terminal.position, places.edges_of(terminal.asset), rules)
         if len(along):
             return along
@@ -178,6 +183,15 @@ class Ways:
         to_base_m: FloatArray = self.travel.length_m[self.uavs + np.arange(self.visits), self.visits + self.uavs + self.nearest_base]
         return to_base_m
 
+    def of_route(self, uav: int, order: Sequence[int], end: End) -> list[tuple[int, int]]:
+        """Source and sink, in `travel`, of each way of a route of visits, which are some, and on to where it ends."""
+        ways = [(uav, order[0]), *((self.uavs + left, right) for left, right in pairwise(order))]
+        if end is End.RETURN:
+            ways.append((self.uavs + order[-1], self.visits + uav))
+        elif end is End.ANY_BASE:
+            ways.append((self.uavs + order[-1], self.visits + self.uavs + int(self.nearest_base[order[-1]])))
+        return ways
+
     def out(self, uav: int, visit: int) -> NDArray[np.int64]:
         return self.travel.path(uav, visit)
 
@@ -204,26 +218,30 @@ def ways_between(
 
     A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
     """
-    legs_of = {terminal: attachments(graph, zones, terminal, rules) for terminal in dict.fromkeys([*starts, *entries, *exits, *bases])}
     sources, sinks = [*starts, *exits], [*entries, *starts, *bases]
+    number: dict[Terminal, int] = {}
+    source = [number.setdefault(place, len(number)) for place in sources]
+    sink = [number.setdefault(place, len(number)) for place in sinks]
+    legs = [attachments(graph, zones, place, rules) for place in number]
     direct = direct_legs(sources, sinks, zones, rules)
 
     def travel() -> Travel:
-        return travel_between(graph, [legs_of[place] for place in sources], [legs_of[place] for place in sinks], direct)
+        return travel_between(graph, [legs[place] for place in source], [legs[place] for place in sink], direct)
 
     found = travel()
-    cut_off = np.flatnonzero(np.isinf(found.length_m[: len(starts), : len(entries)]).all(axis=0)).tolist() if starts else []
-    alone = {place for visit in cut_off for place in (entries[visit], exits[visit])}
-    if alone:
-        for place in alone:
-            legs_of[place] = joined([legs_of[place], access_legs(graph, zones, place, rules)])
+    uavs, visits = len(starts), len(entries)
+    cut_off = np.flatnonzero(np.isinf(found.length_m[:uavs, :visits]).all(axis=0)).tolist() if starts else []
+    if cut_off:
+        alone = {number[place]: place for visit in cut_off for place in (entries[visit], exits[visit])}
+        for at, place in alone.items():
+            legs[at] = joined([legs[at], access_legs(graph, zones, place, rules)])
         found = travel()
     return Ways(
         found,
-        len(starts),
-        len(entries),
-        uav_legs=tuple(legs_of[place] for place in starts),
-        entry_legs=tuple(legs_of[place] for place in entries),
-        exit_legs=tuple(legs_of[place] for place in exits),
+        uavs,
+        visits,
+        uav_legs=tuple(legs[place] for place in source[:uavs]),
+        entry_legs=tuple(legs[place] for place in sink[:visits]),
+        exit_legs=tuple(legs[place] for place in source[uavs:]),
         bases=len(bases),
     )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.waypoints import Waypoints
+from missions.flight_plan.waypoints import KINDS, NONE, Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, lock_to_json, task_to_json
@@ -97,29 +97,31 @@ def waypoints_to_json(waypoints: Waypoints) -> list[dict[str, Any]]:
     return [
         {
             "position": position,
-            "kind": kind,
-            "asset": asset,
-            "target": target,
-            "task": task and task_to_json(task),
+            "kind": KINDS[kind].value,
+            "asset": None if asset == NONE else asset,
+            "target": None if target == NONE else target,
+            "task": task_to_json(points.task[place]) if place in points.task else None,
             "altitude_agl_m": shown_agl_m,
             "altitude_amsl_m": amsl_m,
             "altitude_relative_m": relative_m,
         }
-        for position, kind, asset, target, task, shown_agl_m, amsl_m, relative_m in zip(
-            points.position,
-            points.kind,
-            points.asset,
-            points.target,
-            points.task,
-            agl_m,
-            repeat(None, len(points)) if waypoints.amsl_m is None else _shown(waypoints.amsl_m),
-            agl_m if waypoints.relative_m is points.agl_m else _shown(waypoints.relative_m),
-            strict=True,
+        for place, (position, kind, asset, target, shown_agl_m, amsl_m, relative_m) in enumerate(
+            zip(
+                points.position.tolist(),
+                points.kind.tolist(),
+                points.asset.tolist(),
+                points.target.tolist(),
+                agl_m,
+                repeat(None, len(points)) if waypoints.amsl_m is None else _shown(waypoints.amsl_m),
+                agl_m if waypoints.relative_m is points.agl_m else _shown(waypoints.relative_m),
+                strict=True,
+            )
         )
     ]
 
 
-def _shown(heights_m: list[float]) -> list[float]:
+def _shown(heights_m: FloatArray) -> list[float]:
     """In centimetres. Most points of a route are passed at one of a few heights."""
-    shown = {height_m: round(height_m, 2) for height_m in set(heights_m)}
-    return [shown[height_m] for height_m in heights_m]
+    values = heights_m.tolist()
+    shown = {height_m: round(height_m, 2) for height_m in set(values)}
+    return [shown[height_m] for height_m in values]

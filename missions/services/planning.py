@@ -81,7 +81,7 @@ def make_plan(
     while True:
         ground_before = terrain_edition() if edition != scene.edition else None
         drawing = Drawing(request, scene, places, visits, courses, ways, bases, edition)
-        flown = {uav: drawing.route(uav, number, solution.routes[number]) for number, uav in enumerate(uavs) if solution.routes[number]}
+        flown = drawing.routes(uavs, solution.routes)
         routes = [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
         now = _look_at_zones_again(routes, scene)
         if now == edition or (ground_before is not None and terrain_edition() == ground_before):

@@ -7,6 +7,7 @@ from django.db import Error, connections
 from inspection.graph.rehearsal import rehearse as rehearse_ways
 from inspection.graph.route_index import asset_places, node_tree, route_index
 from inspection.selectors import NoGraph
+from missions.flight_plan.rehearsal import rehearse as rehearse_drawing
 from missions.routing.rehearsal import rehearse as rehearse_solvers
 from missions.services.planning import current_scene
 
@@ -17,6 +18,7 @@ def warm_up() -> None:
     """Load the compiled core, the graph and its index. Without a graph or a database the first plan will look for them again."""
     rehearse_ways()
     rehearse_solvers()
+    rehearse_drawing()
     try:
         scene = current_scene()
     except NoGraph:

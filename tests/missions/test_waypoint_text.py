@@ -42,7 +42,7 @@ def plain(waypoints: Waypoints) -> list[dict[str, object]]:
 
 @given(st.lists(POINTS, max_size=8))
 def test_over_flat_ground_the_text_is_that_of_the_plain_values(drawn: list[RoutePoint]) -> None:
-    points = RoutePoints(drawn)
+    points = RoutePoints.of(drawn)
     flat = Waypoints(points, None, points.agl_m)
     assert waypoints_to_json(flat) == plain(flat)
     assert orjson.dumps(waypoints_text(flat)) == orjson.dumps(plain(flat))
@@ -50,7 +50,8 @@ def test_over_flat_ground_the_text_is_that_of_the_plain_values(drawn: list[Route
 
 @given(st.lists(st.tuples(POINTS, HEIGHTS, HEIGHTS), min_size=1, max_size=8))
 def test_over_terrain_the_text_is_that_of_the_plain_values(drawn: list[tuple[RoutePoint, float, float]]) -> None:
-    waypoints = Waypoints(RoutePoints([point for point, _, _ in drawn]), [amsl for _, amsl, _ in drawn], [over for _, _, over in drawn])
+    points = RoutePoints.of([point for point, _, _ in drawn])
+    waypoints = Waypoints(points, np.array([amsl for _, amsl, _ in drawn]), np.array([over for _, _, over in drawn]))
     assert waypoints_to_json(waypoints) == plain(waypoints)
     assert orjson.dumps(waypoints_text(waypoints)) == orjson.dumps(plain(waypoints))
 

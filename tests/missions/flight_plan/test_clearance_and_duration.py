@@ -52,7 +52,7 @@ def waypoints(*heights: tuple[float, float, float | None]) -> Waypoints:
     """Heights above ground and above take-off, and the seconds held there."""
     tasks = [None if hold_s is None else Task(TaskKind.HOLD, hold_s) for _, _, hold_s in heights]
     points = [RoutePoint(LonLat(0, 0), WaypointKind.PASS, agl_m, task=task) for (agl_m, _, _), task in zip(heights, tasks, strict=True)]
-    return Waypoints(RoutePoints(points), None, [relative_m for _, relative_m, _ in heights])
+    return Waypoints(RoutePoints.of(points), None, np.array([relative_m for _, relative_m, _ in heights]))
 
 
 def test_a_route_takes_its_level_flight_its_climbs_and_its_holds() -> None:

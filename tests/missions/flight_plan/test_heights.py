@@ -15,7 +15,7 @@ RULES = FlightRules()
 
 def points(*places: tuple[float, float], agl_m: float = 60.0) -> RoutePoints:
     kinds = [WaypointKind.START, *[WaypointKind.PASS] * (len(places) - 2), WaypointKind.END]
-    return RoutePoints([RoutePoint(LonLat(*place), kind, agl_m) for place, kind in zip(places, kinds, strict=True)])
+    return RoutePoints.of([RoutePoint(LonLat(*place), kind, agl_m) for place, kind in zip(places, kinds, strict=True)])
 
 
 def hills(positions: FloatArray) -> FloatArray:

@@ -1,7 +1,6 @@
 """From ways and targets to the list of points."""
 
 from collections.abc import Iterable
-from itertools import pairwise
 
 import numpy as np
 
@@ -24,10 +23,14 @@ def node(east: float, agl_m: float = TRANSIT_M) -> tuple[float, float]:
     return east, agl_m
 
 
-def passed(nodes: Way) -> PassedNodes:
-    position = [list(at(east)) for east, _ in nodes]
-    has_repeats = any(left[0] == right[0] for left, right in pairwise(nodes))
-    return PassedNodes(position, [agl_m for _, agl_m in nodes], [int(east) for east, _ in nodes], has_repeats)
+def passed(ways: list[Way]) -> PassedNodes:
+    nodes = [node for way in ways for node in way]
+    return PassedNodes(
+        np.array([at(east) for east, _ in nodes], dtype=np.float64).reshape(-1, 2),
+        np.array([agl_m for _, agl_m in nodes], dtype=np.float64),
+        np.array([int(east) for east, _ in nodes], dtype=np.int64),
+        np.cumsum([0, *map(len, ways)]),
+    )
 
 
 def target(index: int, *easts: float, agl_m: float = TRANSIT_M) -> TargetPoints:
@@ -43,8 +46,9 @@ def draw(points: Iterable[RoutePoint]) -> list[str]:
 
 
 def points_of(targets: list[TargetPoints], ways: list[Way], way_home: Way | None) -> RoutePoints:
-    home = None if way_home is None else passed(way_home)
-    return route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=targets, ways=[passed(way) for way in ways], way_home=home)
+    home = None if way_home is None else at(0)
+    nodes = passed(ways if way_home is None else [*ways, way_home])
+    return route_points(start=at(0), transit_agl_m=TRANSIT_M, targets=targets, ways=nodes, home=home)
 
 
 def route(targets: list[TargetPoints], ways: list[Way], way_home: Way | None = None) -> list[str]:
@@ -152,17 +156,17 @@ def test_the_line_on_the_map_has_each_place_once() -> None:
 def test_long_legs_are_divided_evenly_on_the_drawn_line() -> None:
     """0 --- 20, some 2.2 km: three legs of 742 m, heights in between."""
     points = [RoutePoint(at(0), WaypointKind.START, 60.0), RoutePoint(at(20), WaypointKind.TARGET, 90.0, target=0)]
-    assert draw(with_short_legs(RoutePoints(points), 900.0)[0]) == ["start 0 @60", "pass 7 @70", "pass 13 @80", "target 20 @90 #0"]
+    assert draw(with_short_legs(RoutePoints.of(points), 900.0)[0]) == ["start 0 @60", "pass 7 @70", "pass 13 @80", "target 20 @90 #0"]
 
 
 def test_points_put_into_a_stretch_belong_to_its_target() -> None:
     points = [RoutePoint(at(0), WaypointKind.TARGET, 60.0, target=3), RoutePoint(at(10), WaypointKind.PASS, 60.0, target=3)]
-    assert draw(with_short_legs(RoutePoints(points), 900.0)[0])[1] == "pass 5 @60 #3"
+    assert draw(with_short_legs(RoutePoints.of(points), 900.0)[0])[1] == "pass 5 @60 #3"
 
 
 def test_no_leg_is_longer_than_the_longest_at_any_latitude() -> None:
     points = [RoutePoint(LonLat(24.0, 70.0), WaypointKind.START, 60.0), RoutePoint(LonLat(24.2, 70.05), WaypointKind.END, 60.0)]
-    position = np.array([point.position for point in with_short_legs(RoutePoints(points), 900.0)[0]])
+    position = np.array([point.position for point in with_short_legs(RoutePoints.of(points), 900.0)[0]])
     assert len(position) == 12
     assert distance_m(position[:-1], position[1:]).max() <= 900.0
 
@@ -173,4 +177,4 @@ def test_points_that_are_near_enough_stay_as_they_are() -> None:
         RoutePoint(at(0), WaypointKind.PASS, 30.0),
         RoutePoint(at(5), WaypointKind.END, 60.0),
     ]
-    assert list(with_short_legs(RoutePoints(points), 900.0)[0]) == points
+    assert list(with_short_legs(RoutePoints.of(points), 900.0)[0]) == points
