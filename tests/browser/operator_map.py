@@ -10,7 +10,7 @@ STANDS_STILL_AT = """(position) => {
     const map = document.getElementById("map");
     const { x, y } = map.project(position);
     const isThere = Math.hypot(x - map.clientWidth / 2, y - map.clientHeight / 2) < 2;
-    return isThere && map.dataset.idle === "true" && map.querySelector("canvas").clientHeight === map.clientHeight; // as high as the panel lets it
+    return isThere && map.dataset.idle === "true" && map.querySelector("canvas").clientHeight === map.clientHeight; // as the panel lets it
 }"""
 TOO_WIDE = """() => {
     const wide = document.documentElement.scrollWidth - innerWidth;
