@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.waypoints import KINDS, NONE, Waypoints
+from missions.flight_plan.waypoints import KINDS, NONE, IntArray, Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, lock_to_json, task_to_json
@@ -16,6 +16,7 @@ from missions.services.waypoint_text import line_text, waypoints_text
 
 FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
+_KIND_NAMES = [kind.value for kind in KINDS]
 NO_QUALITY: dict[str, Any] = {
     "lower_bound_m": None, "lower_bound_s": None, "gap": None, "is_proven": False, "method": "", "wish": None,
 }  # fmt: skip
@@ -94,30 +95,39 @@ def locked_targets(flown: Sequence[int], runs: Iterable[Sequence[int]]) -> list[
 def waypoints_to_json(waypoints: Waypoints) -> list[dict[str, Any]]:
     points = waypoints.points
     agl_m = _shown(points.agl_m)
+    tasks: list[dict[str, Any] | None] = [None] * len(points)
+    for place, task in points.task.items():
+        tasks[place] = task_to_json(task)
     return [
         {
             "position": position,
-            "kind": KINDS[kind].value,
-            "asset": None if asset == NONE else asset,
-            "target": None if target == NONE else target,
-            "task": task_to_json(points.task[place]) if place in points.task else None,
+            "kind": _KIND_NAMES[kind],
+            "asset": asset,
+            "target": target,
+            "task": task,
             "altitude_agl_m": shown_agl_m,
             "altitude_amsl_m": amsl_m,
             "altitude_relative_m": relative_m,
         }
-        for place, (position, kind, asset, target, shown_agl_m, amsl_m, relative_m) in enumerate(
-            zip(
-                points.position.tolist(),
-                points.kind.tolist(),
-                points.asset.tolist(),
-                points.target.tolist(),
-                agl_m,
-                repeat(None, len(points)) if waypoints.amsl_m is None else _shown(waypoints.amsl_m),
-                agl_m if waypoints.relative_m is points.agl_m else _shown(waypoints.relative_m),
-                strict=True,
-            )
+        for position, kind, asset, target, task, shown_agl_m, amsl_m, relative_m in zip(
+            points.position.tolist(),
+            points.kind.tolist(),
+            _numbers(points.asset),
+            _numbers(points.target),
+            tasks,
+            agl_m,
+            repeat(None, len(points)) if waypoints.amsl_m is None else _shown(waypoints.amsl_m),
+            agl_m if waypoints.relative_m is points.agl_m else _shown(waypoints.relative_m),
+            strict=True,
         )
     ]
+
+
+def _numbers(column: IntArray) -> list[int | None]:
+    numbers: list[int | None] = column.tolist()
+    for place in np.flatnonzero(column == NONE).tolist():
+        numbers[place] = None
+    return numbers
 
 
 def _shown(heights_m: FloatArray) -> list[float]:

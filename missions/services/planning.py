@@ -137,7 +137,7 @@ def visits_of_places(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[L
     """The ways of doing each place, with the course of each: a stretch can be flown from either end."""
     visits, courses = [], []
     for number, place in enumerate(places):
-        length_m = path_length_m(np.array(place.course))
+        length_m = path_length_m(np.array(place.course)) if place.is_stretch else 0.0
         visits.append(Visit(number, is_reversed=False, length_m=length_m, service_s=place.task.hold_s))
         courses.append(place.course)
         if place.is_stretch:

@@ -96,7 +96,7 @@ def groundings(uavs: Sequence[UavRequest], scene: Scene) -> dict[int, Grounding]
 
 def zone_at(position: LonLat, scene: Scene) -> str | None:
     """Name of the zone that holds the position; a place nearer to a zone than the clearance counts as inside it."""
-    if not scene.zones.contains([position], scene.access.zone_clearance_m)[0]:
+    if not len(scene.zones) or not scene.zones.contains([position], scene.access.zone_clearance_m)[0]:
         return None
     found = scene.zones.zone_at(position)
     return found[1] if found else f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
