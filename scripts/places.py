@@ -15,6 +15,7 @@ from config.private_servers import PROJECT_DIR, socket_directory
 SOCKET_PATH_LIMIT = 107  # bytes, sun_path of Linux
 DATABASE_USER = "postgres"  # PostgreSQL refuses to run as root
 DEMO_USER = "demo"
+WEB_PROGRAMS = ("web-1", "web-2")  # pages and API, each with a socket of its own
 
 
 class CannotStart(Exception):

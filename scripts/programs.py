@@ -5,7 +5,7 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from scripts.places import DATABASE_USER, CannotStart, Places
+from scripts.places import DATABASE_USER, WEB_PROGRAMS, CannotStart, Places
 from scripts.postgresql_installations import server_for
 from scripts.system_packages import find_program
 
@@ -107,25 +107,23 @@ def _worker(places: Places, queue: str, processes: int) -> Program:
     return _celery(places, f"worker-{queue}", "worker", *arguments, *quick_start)
 
 
-def web_programs(places: Places, sockets: Path) -> list[Program]:
-    """Every process of Spanwise itself."""
-    granian = [sys.executable, "-m", "granian", "--interface", "wsgi", "--uds", str(sockets / "web.sock"), "--workers", "2"]
+def _web(places: Places, name: str, socket: Path) -> Program:
+    """Pages and API. One process a program: of several on one socket the first to wake takes most of the work."""
+    granian = [sys.executable, "-m", "granian", "--interface", "wsgi", "--uds", str(socket), "--workers", "1"]
     granian += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "10"]
     granian += ["--respawn-failed-workers", "--respawn-interval", "0.5", "--log-level", "warning", "config.wsgi:application"]
+    return Program(name=name, stage=PROGRAM_STAGE, command=granian, folder=places.process(name), patience_s=20, stale_files=[socket])
+
+
+def web_programs(places: Places, sockets: Path) -> list[Program]:
+    """Every process of Spanwise itself."""
     live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
     live += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "5", "--respawn-failed-workers", "--respawn-interval", "0.5"]
     live += ["--log-level", "warning", "config.asgi:application"]
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
     return [
-        Program(
-            name="web",
-            stage=PROGRAM_STAGE,
-            command=granian,
-            folder=places.process("web"),
-            patience_s=20,
-            stale_files=[sockets / "web.sock"],
-        ),
+        *(_web(places, name, sockets / f"{name}.sock") for name in WEB_PROGRAMS),
         Program(
             name="live",
             stage=PROGRAM_STAGE,

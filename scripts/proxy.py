@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from scripts.places import CannotStart, Places
+from scripts.places import WEB_PROGRAMS, CannotStart, Places
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -144,6 +144,10 @@ def _websockets(scheme: str) -> str:
         }}"""
 
 
+def _servers(sockets: Path) -> str:
+    return "\n".join(f"        server {_quoted(f'unix:{sockets / name}.sock')} max_fails=0;" for name in WEB_PROGRAMS)
+
+
 def _file_limit() -> int:
     """How many files nginx may have open: a connection to a browser is one, and the one behind it another."""
     return min(MOST_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
@@ -222,7 +226,8 @@ http {{
     gzip_comp_level 2;
     gzip_types {COMPRESSED};
     upstream web {{
-        server {_quoted(f"unix:{sockets / 'web.sock'}")} max_fails=0;
+        least_conn;
+{_servers(sockets)}
         keepalive 64;
     }}
     upstream live {{

@@ -19,13 +19,13 @@ from typing import Any, NoReturn
 from config.private_servers import socket_directory
 from scripts import database_cluster, proxy
 from scripts.options import parse, port_problem
-from scripts.places import DEMO_USER, PROJECT_DIR, CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
+from scripts.places import DEMO_USER, PROJECT_DIR, WEB_PROGRAMS, CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
 from scripts.programs import Program, database_server, queue_server, web_programs
 from scripts.supervision import ProgramState, Supervisor
 
 READY_TIMEOUT_S = 120.0
 EXIT_NOT_RUNNING = 3
-FIRST_PROGRAMS = ("web", "proxy")
+FIRST_PROGRAMS = (*WEB_PROGRAMS, "proxy")
 
 
 def address(port: int) -> str:
@@ -170,8 +170,12 @@ class Installation:
         began = time.monotonic()
         print("Programs … ", end="", flush=True)
         self.supervisor.start_programs(FIRST_PROGRAMS)
-        web_socket = self.sockets / "web.sock"
-        while reasons := reasons_not_ready(self.options.port) if web_socket.exists() else ["the web program has not started"]:
+        web_sockets = [self.sockets / f"{name}.sock" for name in WEB_PROGRAMS]
+        while reasons := (
+            reasons_not_ready(self.options.port)
+            if all(socket.exists() for socket in web_sockets)
+            else ["the web programs have not started"]
+        ):
             if time.monotonic() - began > READY_TIMEOUT_S:
                 print("failed", flush=True)
                 raise CannotStart(f"not ready after {READY_TIMEOUT_S:.0f} s: {'; '.join(reasons)}. The logs are in {self.places.logs}")

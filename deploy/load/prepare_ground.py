@@ -47,6 +47,7 @@ from workspace.services import hash_token  # noqa: E402
 TOWER, RAILWAY, BRIDGE = 0, 1, 2  # kinds of make_graph.py
 BRIDGE_HALF_DEG = 1e-4
 M_PER_DEG = 111_195.0
+OSM_DECIMALS = 7  # of a degree, a centimetre: as every position of OpenStreetMap has
 TOKEN_DAYS = 7
 
 
@@ -63,7 +64,8 @@ class PlainGraph:
         with np.load(path, allow_pickle=False) as stored:
             edge = np.sort(np.column_stack([stored["u"], stored["v"]]), axis=1)
             edge = np.unique(edge[edge[:, 0] != edge[:, 1]], axis=0)
-            return cls(np.column_stack([stored["lon"], stored["lat"]]), stored["kind"], edge.astype(np.int32))
+            position = np.column_stack([stored["lon"], stored["lat"]]).round(OSM_DECIMALS)
+            return cls(position, stored["kind"], edge.astype(np.int32))
 
     def components(self) -> NDArray[np.int32]:
         nodes = len(self.position)

@@ -3,7 +3,7 @@
     python deploy/load/run.py                          5,000 users, +50 a second, 10 s wait, 60 s of hold
     python deploy/load/run.py --users 10000 --hold-s 60
 
-Wants the database and the files of prepare_ground.py (see deploy/load/README.md). It starts the programs `web` and `proxy` with the very
+Wants the database and the files of prepare_ground.py (see deploy/load/README.md). It starts the web programs and `proxy` with the very
 commands of ./run on a free port of the loopback, and Locust beside them, and ends all of them. Served demand counts the hold alone, when
 every user is there: answers in it, of users x hold / (wait + mean answer).
 """
@@ -28,7 +28,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from benchmarks.report import machine, table, write_section
 from config.private_servers import state_directory
-from scripts.places import PROJECT_DIR, Places
+from scripts.places import PROJECT_DIR, WEB_PROGRAMS, Places
 from scripts.programs import Program, web_programs
 from scripts.proxy import configuration
 
@@ -133,7 +133,7 @@ def main() -> int:
     programs = {program.name: program for program in web_programs(places, sockets)}
     address = f"http://127.0.0.1:{port}"
     with ExitStack() as stack:
-        web = stack.enter_context(running(programs["web"], environment, folder / "web.log"))
+        web = [stack.enter_context(running(programs[name], environment, folder / f"{name}.log")) for name in WEB_PROGRAMS]
         proxy = stack.enter_context(running(programs["proxy"], environment, folder / "proxy.log"))
         end_s = time.monotonic() + PATIENCE_S
         while True:
@@ -142,7 +142,7 @@ def main() -> int:
                 break
             except OSError:
                 if time.monotonic() > end_s:
-                    print(f"the programs do not answer; see {folder}/web.log", file=sys.stderr)
+                    print(f"the programs do not answer; see {folder}/web-1.log", file=sys.stderr)
                     return 1
                 time.sleep(0.2)
         for _ in range(40):  # every thread of every worker has its connection, its graph and its compiled core
@@ -164,7 +164,7 @@ def main() -> int:
         with (folder / "locust.log").open("wb") as words:
             locust = subprocess.Popen(command, env=environment | load, stdout=words, stderr=words, cwd=folder)
         groups = {
-            "web": [web],
+            "web": web,
             "proxy": [proxy],
             "PostgreSQL": servers_of(("postgres",)),
             "Redis": servers_of(("redis-server",)),

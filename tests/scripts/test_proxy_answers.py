@@ -17,7 +17,7 @@ from socketserver import ThreadingUnixStreamServer
 
 import pytest
 
-from scripts.places import Places
+from scripts.places import WEB_PROGRAMS, Places
 from scripts.proxy import configuration
 from scripts.system_packages import find_program
 
@@ -72,9 +72,10 @@ def site() -> Iterator[tuple[str, Path]]:
             process.wait()
 
 
-@pytest.fixture
-def application(site: tuple[str, Path]) -> Iterator[None]:
-    path = site[1] / "web.sock"
+@pytest.fixture(params=WEB_PROGRAMS)
+def application(site: tuple[str, Path], request: pytest.FixtureRequest) -> Iterator[None]:
+    """One of the web programs; the others are away."""
+    path = site[1] / f"{request.param}.sock"
     server = ThreadingUnixStreamServer(str(path), _Application)
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
     thread.start()
