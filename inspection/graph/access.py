@@ -27,16 +27,17 @@ def clear_legs(
     tree, index = node_tree(graph).arrays, route_index(graph)
     reach = float(position.lon), float(position.lat), float(radius_m), chord(float(radius_m))
 
-    def clear(node: NumberArray) -> IntArray:
-        return np.flatnonzero(~zones.meets([position], graph.position[node], clearance_m))
+    def clear(node: NumberArray) -> slice | NDArray[np.bool_]:
+        return ~zones.meets([position], graph.position[node], clearance_m) if len(zones) else slice(None)
 
     legs: list[Attachments] = []
     missing, tried, asked = want, 0, 2 * want
     while missing > 0 and tried < graph.node_count:
         node, length_m, found = _nearest_legs(*reach, tried, min(asked, graph.node_count), graph.position, *tree)
-        kept = clear(node)[:missing]
-        legs.append(Attachments(node[kept], length_m[kept], length_m[kept] * factor))
-        missing -= len(kept)
+        is_clear = clear(node)
+        node, length_m = node[is_clear][:missing], length_m[is_clear][:missing]
+        legs.append(Attachments(node, length_m, length_m * factor))
+        missing -= len(node)
         if found < asked:
             break
         tried, asked = asked, 2 * asked
@@ -47,10 +48,11 @@ def clear_legs(
     node, length_m, component = _legs_elsewhere(*reach, nearest.node, index.component_count, *index.component_arrays, graph.position, *tree)
     if not len(node):
         return nearest
-    kept = clear(node)
-    _, first = np.unique(component[kept], return_index=True)
-    kept = kept[np.sort(first)]
-    return joined([nearest, Attachments(node[kept], length_m[kept], length_m[kept] * factor)])
+    is_clear = clear(node)
+    node, length_m = node[is_clear], length_m[is_clear]
+    _, first = np.unique(component[is_clear], return_index=True)
+    shortest = np.sort(first)
+    return joined([nearest, Attachments(node[shortest], length_m[shortest], length_m[shortest] * factor)])
 
 
 @njit(cache=True, nogil=True)

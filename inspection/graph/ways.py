@@ -69,16 +69,32 @@ def travel_between(
     # A place that is source and sink has one list of legs for both: what its legs reach is looked up once.
     number = {key: place for place, key in enumerate(dict.fromkeys(id(legs) for legs in (*outward, *inward)))}
     legs_of = {id(legs): Attachments.of(legs) for legs in (*outward, *inward)}
-    places = [legs_of[key] for key in number]
-    legs = joined(places)
+    return travel_between_places(
+        graph,
+        [legs_of[key] for key in number],
+        [number[id(legs)] for legs in outward],
+        [number[id(legs)] for legs in inward],
+        direct,
+    )
+
+
+def travel_between_places(
+    graph: InspectionGraph,
+    legs: Sequence[Attachments],
+    sources: Sequence[int],
+    sinks: Sequence[int],
+    direct: Sequence[DirectLeg] = (),
+) -> Travel:
+    """The same where a place may be source and sink: place p meets the graph over legs[p], sources and sinks are places."""
+    all_legs = joined(legs)
     travel = travel_of_legs(
         route_index(graph),
-        np.array([0, *accumulate(map(len, places))], dtype=np.int64),
-        legs.node,
-        legs.cost,
-        legs.length_m,
-        np.array([number[id(legs)] for legs in outward], dtype=np.int64),
-        np.array([number[id(legs)] for legs in inward], dtype=np.int64),
+        np.array([0, *accumulate(map(len, legs))], dtype=np.int64),
+        all_legs.node,
+        all_legs.cost,
+        all_legs.length_m,
+        np.array(sources, dtype=np.int64),
+        np.array(sinks, dtype=np.int64),
     )
     for one in direct:
         if one.cost <= travel.cost[one.source, one.sink]:

@@ -18,7 +18,7 @@ from inspection.graph.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.graph.nearness import chord
 from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.route_index import asset_places, node_tree
-from inspection.graph.ways import Travel, travel_between
+from inspection.graph.ways import Travel, travel_between_places
 from inspection.graph.zone_index import ZoneIndex
 from missions.routing.problem import End
 
@@ -224,18 +224,14 @@ def ways_between(
     sink = [number.setdefault(place, len(number)) for place in sinks]
     legs = [attachments(graph, zones, place, rules) for place in number]
     direct = direct_legs(sources, sinks, zones, rules)
-
-    def travel() -> Travel:
-        return travel_between(graph, [legs[place] for place in source], [legs[place] for place in sink], direct)
-
-    found = travel()
+    found = travel_between_places(graph, legs, source, sink, direct)
     uavs, visits = len(starts), len(entries)
     cut_off = np.flatnonzero(np.isinf(found.length_m[:uavs, :visits]).all(axis=0)).tolist() if starts else []
     if cut_off:
         alone = {number[place]: place for visit in cut_off for place in (entries[visit], exits[visit])}
         for at, place in alone.items():
             legs[at] = joined([legs[at], access_legs(graph, zones, place, rules)])
-        found = travel()
+        found = travel_between_places(graph, legs, source, sink, direct)
     return Ways(
         found,
         uavs,

@@ -72,6 +72,8 @@ def test_a_direct_leg_wins_when_it_costs_less():
     assert travel.length_m.tolist() == [[50.0, 120.0]]
     assert travel.path(0, 0).tolist() == []
     assert travel.path(0, 1).tolist() == [0, 1]
+    nodes, first = travel.paths(np.array([[0, 0], [0, 1], [0, 0]]))
+    assert (nodes.tolist(), first.tolist()) == ([0, 1], [0, 0, 2, 2])
 
 
 def test_of_two_legs_to_one_node_the_cheaper_counts():

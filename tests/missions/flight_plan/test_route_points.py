@@ -3,11 +3,14 @@
 from collections.abc import Iterable
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
 from missions.routing.problem import Task, TaskKind
+from tests.missions.flight_plan.plain_route import plain_route
 
 TRANSIT_M = 60.0
 Way = list[tuple[float, float]]  # east and height of each node
@@ -53,6 +56,27 @@ def points_of(targets: list[TargetPoints], ways: list[Way], way_home: Way | None
 
 def route(targets: list[TargetPoints], ways: list[Way], way_home: Way | None = None) -> list[str]:
     return draw(points_of(targets, ways, way_home))
+
+
+NODES = st.lists(st.tuples(st.integers(0, 4), st.sampled_from([30.0, 60.0, 75.0])), max_size=4)
+
+
+@given(
+    stops=st.lists(
+        st.tuples(NODES, st.lists(st.integers(0, 4), min_size=1, max_size=3), st.sampled_from([25.0, 60.0, 90.0])), min_size=1, max_size=3
+    ),
+    way_home=st.none() | NODES,
+)
+def test_any_route_is_that_of_the_plain_rules(stops: list[tuple[Way, list[int], float]], way_home: Way | None) -> None:
+    """Few places and heights, so that they repeat."""
+    targets = [target(number, *easts, agl_m=agl_m) for number, (_, easts, agl_m) in enumerate(stops)]
+    ways = [way for way, _, _ in stops]
+    plain_ways = [
+        [RoutePoint(at(east), WaypointKind.PASS, agl_m, int(east)) for east, agl_m in way]
+        for way in [*ways, *([way_home] if way_home else [[]])]
+    ]
+    home = None if way_home is None else at(0)
+    assert list(points_of(targets, ways, way_home)) == plain_route(at(0), TRANSIT_M, targets, plain_ways, home)
 
 
 def test_an_open_route_ends_hovering_at_its_last_target() -> None:
