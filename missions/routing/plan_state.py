@@ -12,6 +12,7 @@ from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
 RandomState = NDArray[np.uint64]  # one number
 
 MOST_NEIGHBOURS = 60
+ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding
 NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
 
 
@@ -20,6 +21,7 @@ class Ground(NamedTuple):
 
     back_m   (v, v) the arcs that lead to a visit in one row
     twin     (v,) the same target the other way round; a visit that has none is its own
+    is_alike whether an arc is as long as its reverse, and nothing has a twin
     option   (v,) the visits of each target one after another, option_from (t + 1,) where each target's begin
     usable   (u, v) whether the UAV can and may fly the visit at all
     near     (t, k) the nearest targets of each, itself first
@@ -39,6 +41,7 @@ class Ground(NamedTuple):
     is_makespan: bool
     back_m: FloatArray
     twin: IntArray
+    is_alike: bool
     option: IntArray
     option_from: IntArray
     usable: BoolArray
@@ -67,6 +70,8 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     apart_m = _apart_m(arcs)
     near = np.argsort(apart_m, axis=1, kind="stable")[:, : MOST_NEIGHBOURS + 1]
     far_m = np.full(len(arcs.weight), NO_WAY_M)
+    twin = _twins(problem)
+    is_alike = np.allclose(arcs.onward_m, arcs.onward_m.T, rtol=0.0, atol=ALIKE_M)
     if len(arcs.first_m):
         np.minimum.at(far_m, arcs.target, arcs.first_m.min(axis=0))
     return Ground(
@@ -81,8 +86,9 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         arcs.most,
         arcs.weight,
         arcs.is_makespan,
-        np.ascontiguousarray(arcs.onward_m.T),
-        _twins(problem),
+        arcs.onward_m if is_alike else np.ascontiguousarray(arcs.onward_m.T),
+        twin,
+        is_alike and bool((twin == np.arange(len(twin))).all()),
         option,
         option_from,
         np.ascontiguousarray(usable),
