@@ -15,6 +15,8 @@ NEIGHBOURS = 12
 LONGEST_SEGMENT = 40
 SHORT_SEGMENT = 3
 EXCHANGE_SHARE = 0.1  # how often whole routes change their UAVs, or a tail goes to a UAV that does not fly
+APPENDED_SHARE = 0.5  # of these
+NEAREST_SHARE = 0.5  # how often the neighbour is one of the nearest, rather than one that a short plan is likely to join
 TAILS_SHARE = 0.4  # of the moves between routes
 NONE, TAILS, SEGMENT, TURN, WITHIN = 0, 1, 2, 3, 4
 
@@ -55,7 +57,8 @@ def draw_move(ground: Ground, plan: Plan, random: RandomState, longest: int) -> 
     target = draw_below(random, len(plan.uav_of))
     if longest >= 0:
         target = ground.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
-    other_target = ground.near[target, draw_below(random, min(ground.near.shape[1], NEIGHBOURS + 1))]
+    near = ground.near if draw(random) < NEAREST_SHARE else ground.joined
+    other_target = near[target, draw_below(random, min(near.shape[1], NEIGHBOURS + 1))]
     uav, other_uav = plan.uav_of[target], plan.uav_of[other_target]
     if uav < 0 or other_uav < 0 or target == other_target:
         return nothing
@@ -64,7 +67,9 @@ def draw_move(ground: Ground, plan: Plan, random: RandomState, longest: int) -> 
         other_uav = draw_below(random, len(plan.size))
         if other_uav == uav:
             return nothing
-        return Move(TAILS, uav, other_uav, place if plan.size[other_uav] == 0 else 0, 0, 0, False)
+        if draw(random) < APPENDED_SHARE or plan.size[other_uav] == 0:
+            return Move(TAILS, uav, other_uav, place, plan.size[other_uav], 0, False)
+        return Move(TAILS, uav, other_uav, 0, 0, 0, False)
     if uav != other_uav:
         if draw(random) < TAILS_SHARE:
             return Move(TAILS, uav, other_uav, place + 1, other, 0, False)

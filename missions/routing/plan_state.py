@@ -12,6 +12,7 @@ from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
 RandomState = NDArray[np.uint64]  # one number
 
 MOST_NEIGHBOURS = 60
+MOST_JOINED = 12
 ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding
 NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
 
@@ -25,6 +26,7 @@ class Ground(NamedTuple):
     option   (v,) the visits of each target one after another, option_from (t + 1,) where each target's begin
     usable   (u, v) whether the UAV can and may fly the visit at all
     near     (t, k) the nearest targets of each, itself first
+    joined   (t, k) those that a tree of the least metres joins it to, or would at the least detour, itself first
     far_m    (t,) from the nearest start
     """
 
@@ -46,6 +48,7 @@ class Ground(NamedTuple):
     option_from: IntArray
     usable: BoolArray
     near: IntArray
+    joined: IntArray
     far_m: FloatArray
 
 
@@ -93,6 +96,7 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         option_from,
         np.ascontiguousarray(usable),
         np.ascontiguousarray(near),
+        _joined(apart_m),
         far_m,
     )
 
@@ -113,6 +117,42 @@ def _apart_m(arcs: Arcs) -> FloatArray:
     apart_m = np.asarray(np.minimum(apart_m, apart_m.T), dtype=np.float64)
     np.fill_diagonal(apart_m, -1.0)
     return apart_m
+
+
+def _joined(apart_m: FloatArray) -> IntArray:
+    """The targets that cost the least to join to each, if the least spanning tree loses its longest arc between them for it.
+
+    Alpha-nearness: K. Helsgaun, European Journal of Operational Research 126 (2000). Unlike the nearest, they lead out of every cluster.
+    """
+    detour_m = apart_m - _longest_between(apart_m)
+    np.fill_diagonal(detour_m, -1.0)
+    order = np.lexsort((apart_m, np.round(detour_m, 3)), axis=1)
+    return np.ascontiguousarray(order[:, : MOST_JOINED + 1])
+
+
+@njit(cache=True, nogil=True)
+def _longest_between(apart_m: FloatArray) -> FloatArray:
+    """The longest arc between any two targets in the least spanning tree (Prim 1957), (t, t)."""
+    targets = len(apart_m)
+    longest_m = np.zeros((targets, targets))
+    key_m = np.full(targets, np.inf)
+    parent = np.full(targets, -1, dtype=np.int64)
+    is_in = np.zeros(targets, dtype=np.bool_)
+    order = np.empty(targets, dtype=np.int64)
+    for count in range(targets):
+        next_one = -1
+        for target in range(targets):
+            if not is_in[target] and (next_one < 0 or key_m[target] < key_m[next_one]):
+                next_one = target
+        for at in range(count):
+            other = order[at]
+            reach_m = max(longest_m[parent[next_one], other], key_m[next_one])
+            longest_m[next_one, other] = longest_m[other, next_one] = reach_m
+        order[count], is_in[next_one] = next_one, True
+        for target in range(targets):
+            if not is_in[target] and apart_m[next_one, target] < key_m[target]:
+                key_m[target], parent[target] = apart_m[next_one, target], next_one
+    return longest_m
 
 
 def empty_plan(uavs: int, targets: int) -> Plan:
