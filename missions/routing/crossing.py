@@ -111,7 +111,7 @@ def added_m(ground: Ground, plan: Plan, move: Move) -> float:
         if other_behind >= 0:
             last = plan.visit[other_uav, other_size - 1]
             longer_m += ground.end_m[uav, last] - ground.end_m[other_uav, last]
-        return longer_m
+        return float(longer_m)
     begin, last = plan.visit[other_uav, first], plan.visit[other_uav, end - 1]
     longer_m = 0.0
     if move.is_turned:
@@ -122,10 +122,10 @@ def added_m(ground: Ground, plan: Plan, move: Move) -> float:
     before, behind = _around(plan, other_uav, first, end)
     longer_m -= plan.gap_m[other_uav, first] + plan.gap_m[other_uav, end]
     if move.kind == TURN:
-        return longer_m + _joined_m(ground, uav, before, begin) + _joined_m(ground, uav, last, behind)
+        return float(longer_m + _joined_m(ground, uav, before, begin) + _joined_m(ground, uav, last, behind))
     left, right = _around(plan, uav, move.slot, move.slot)
     longer_m += _joined_m(ground, other_uav, before, behind) - plan.gap_m[uav, move.slot]
-    return longer_m + _joined_m(ground, uav, left, begin) + _joined_m(ground, uav, last, right)
+    return float(longer_m + _joined_m(ground, uav, left, begin) + _joined_m(ground, uav, last, right))
 
 
 @njit(cache=True, nogil=True)
@@ -226,8 +226,8 @@ def _around(plan: Plan, uav: int, first: int, end: int) -> tuple[int, int]:
 @njit(cache=True, nogil=True)
 def _joined_m(ground: Ground, uav: int, left: int, right: int) -> float:
     if left < 0:
-        return ground.first_m[uav, right] if right >= 0 else 0.0
-    return ground.onward_m[left, right] if right >= 0 else ground.end_m[uav, left]
+        return float(ground.first_m[uav, right]) if right >= 0 else 0.0
+    return float(ground.onward_m[left, right]) if right >= 0 else float(ground.end_m[uav, left])
 
 
 @njit(cache=True, nogil=True)

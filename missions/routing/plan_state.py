@@ -68,6 +68,19 @@ class Plan(NamedTuple):
     place: IntArray
 
 
+class Workspace(NamedTuple):
+    """The current plan, the best one, and room to work in."""
+
+    plan: Plan
+    best: Plan
+    saved: Plan
+    is_saved: BoolArray  # (u,)
+    is_removed: BoolArray  # (t,)
+    waiting: IntArray  # (t,) targets to be put in
+    key: FloatArray  # (t,) their order
+    random: RandomState
+
+
 def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     option, option_from = arcs.visits_of_target
     apart_m = _apart_m(arcs)
@@ -168,6 +181,19 @@ def empty_plan(uavs: int, targets: int) -> Plan:
     )
 
 
+def workspace(uavs: int, targets: int, seed: int) -> Workspace:
+    return Workspace(
+        empty_plan(uavs, targets),
+        empty_plan(uavs, targets),
+        empty_plan(uavs, targets),
+        np.zeros(uavs, dtype=np.bool_),
+        np.zeros(targets, dtype=np.bool_),
+        np.zeros(targets, dtype=np.int64),
+        np.zeros(targets),
+        np.array([(seed * 2 + 1) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF], dtype=np.uint64),
+    )
+
+
 def routes_of(plan: Plan) -> Routes:
     return tuple(tuple(route[:count]) for route, count in zip(plan.visit.tolist(), plan.size.tolist(), strict=True))
 
@@ -210,6 +236,13 @@ def copy_route(source: Plan, copy: Plan, uav: int) -> None:
     copy.length_m[uav] = source.length_m[uav]
     copy.service_s[uav] = source.service_s[uav]
     copy.done[uav] = source.done[uav]
+
+
+@njit(cache=True, nogil=True)
+def save(work: Workspace, uav: int) -> None:
+    if not work.is_saved[uav]:
+        work.is_saved[uav] = True
+        copy_route(work.plan, work.saved, uav)
 
 
 @njit(cache=True, nogil=True)

@@ -9,9 +9,9 @@ import numpy as np
 
 from missions.routing.arcs import Arcs
 from missions.routing.bounds import lower_bound
-from missions.routing.plan_state import Ground, ground_of, routes_of, values
+from missions.routing.plan_state import Ground, Workspace, ground_of, routes_of, values, workspace
 from missions.routing.problem import BoolArray, FloatArray, Problem, Routes, merit
-from missions.routing.ruin_and_recreate import Workspace, anneal, construct, workspace
+from missions.routing.ruin_and_recreate import anneal, construct
 
 Stop = Callable[[], bool]
 
