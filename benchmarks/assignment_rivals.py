@@ -13,49 +13,23 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 from pyvrp import Model
 
 from benchmarks.assignment_instances import WORKLOADS, instances, with_objective
-from missions.routing.problem import Objective, Problem
+from benchmarks.ortools_plans import routes_by_ortools
+from missions.routing.problem import Objective, Problem, merit
+from missions.routing.reach import needed_range_m, reachable
 
 KEPT = Path(__file__).resolve().parent / "assignment_rivals.json"
 UNITS_PER_M = 10  # rivals that count in whole numbers get decimetres
-SPAN_WEIGHT = 1_000
 
 
 def by_ortools(problem: Problem, cpu_s: float) -> float:
-    """Guided local search on a registered matrix; for the longest route with a span cost."""
-    uavs, targets = len(problem.uavs), problem.target_count
-    end = uavs + targets
-    arcs = np.zeros((end + 1, end + 1), dtype=np.int64)
-    arcs[:uavs, uavs:end] = np.round(problem.from_start_m * UNITS_PER_M)
-    arcs[uavs:end, uavs:end] = np.round(problem.between_m * UNITS_PER_M)
-    manager = pywrapcp.RoutingIndexManager(end + 1, uavs, list(range(uavs)), [end] * uavs)
-    routing = pywrapcp.RoutingModel(manager)
-    transit = routing.RegisterTransitMatrix(arcs.tolist())
-    routing.SetArcCostEvaluatorOfAllVehicles(transit)
-    if problem.objective is Objective.MAKESPAN:
-        routing.AddDimension(transit, 0, 10**12, True, "length")
-        routing.GetDimensionOrDie("length").SetGlobalSpanCostCoefficient(SPAN_WEIGHT)
-    parameters = pywrapcp.DefaultRoutingSearchParameters()
-    parameters.first_solution_strategy = routing_enums_pb2.FirstSolutionStrategy.PARALLEL_CHEAPEST_INSERTION
-    parameters.local_search_metaheuristic = routing_enums_pb2.LocalSearchMetaheuristic.GUIDED_LOCAL_SEARCH
-    parameters.time_limit.FromMilliseconds(int(cpu_s * 20_000))  # of the clock, in case the processor is never free
-    ends_s = process_time() + cpu_s
-    routing.AddSearchMonitor(routing.solver().CustomLimit(lambda: process_time() > ends_s))
-    found = routing.SolveWithParameters(parameters)
-    if found is None:
+    routes = routes_by_ortools(problem, reachable(problem, needed_range_m(problem)), cpu_s)
+    if routes is None:
         return float("inf")
-    lengths_m = []
-    for uav in range(uavs):
-        index, length = routing.Start(uav), 0
-        while not routing.IsEnd(index):
-            onward = found.Value(routing.NextVar(index))
-            length += int(arcs[manager.IndexToNode(index), manager.IndexToNode(onward)])
-            index = onward
-        lengths_m.append(length / UNITS_PER_M)
-    return sum(lengths_m) if problem.objective is Objective.TOTAL else max(lengths_m)
+    missed, value, _ = merit(problem, routes)
+    return value if missed == 0 else float("inf")
 
 
 def by_pyvrp(problem: Problem, cpu_s: float) -> float:

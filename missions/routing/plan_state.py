@@ -12,6 +12,8 @@ from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
 RandomState = NDArray[np.uint64]  # one number
 
 MOST_NEIGHBOURS = 60
+MOST_JOINED = 12
+ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding
 NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
 
 
@@ -20,9 +22,11 @@ class Ground(NamedTuple):
 
     back_m   (v, v) the arcs that lead to a visit in one row
     twin     (v,) the same target the other way round; a visit that has none is its own
+    is_alike whether an arc is as long as its reverse, and nothing has a twin
     option   (v,) the visits of each target one after another, option_from (t + 1,) where each target's begin
     usable   (u, v) whether the UAV can and may fly the visit at all
     near     (t, k) the nearest targets of each, itself first
+    joined   (t, k) those that a tree of the least metres joins it to, or would at the least detour, itself first
     far_m    (t,) from the nearest start
     """
 
@@ -39,10 +43,12 @@ class Ground(NamedTuple):
     is_makespan: bool
     back_m: FloatArray
     twin: IntArray
+    is_alike: bool
     option: IntArray
     option_from: IntArray
     usable: BoolArray
     near: IntArray
+    joined: IntArray
     far_m: FloatArray
 
 
@@ -62,11 +68,26 @@ class Plan(NamedTuple):
     place: IntArray
 
 
+class Workspace(NamedTuple):
+    """The current plan, the best one, and room to work in."""
+
+    plan: Plan
+    best: Plan
+    saved: Plan
+    is_saved: BoolArray  # (u,)
+    is_removed: BoolArray  # (t,)
+    waiting: IntArray  # (t,) targets to be put in
+    key: FloatArray  # (t,) their order
+    random: RandomState
+
+
 def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     option, option_from = arcs.visits_of_target
     apart_m = _apart_m(arcs)
     near = np.argsort(apart_m, axis=1, kind="stable")[:, : MOST_NEIGHBOURS + 1]
     far_m = np.full(len(arcs.weight), NO_WAY_M)
+    twin = _twins(problem)
+    is_alike = np.allclose(arcs.onward_m, arcs.onward_m.T, rtol=0.0, atol=ALIKE_M)
     if len(arcs.first_m):
         np.minimum.at(far_m, arcs.target, arcs.first_m.min(axis=0))
     return Ground(
@@ -81,12 +102,14 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         arcs.most,
         arcs.weight,
         arcs.is_makespan,
-        np.ascontiguousarray(arcs.onward_m.T),
-        _twins(problem),
+        arcs.onward_m if is_alike else np.ascontiguousarray(arcs.onward_m.T),
+        twin,
+        is_alike and bool((twin == np.arange(len(twin))).all()),
         option,
         option_from,
         np.ascontiguousarray(usable),
         np.ascontiguousarray(near),
+        _joined(apart_m),
         far_m,
     )
 
@@ -109,6 +132,42 @@ def _apart_m(arcs: Arcs) -> FloatArray:
     return apart_m
 
 
+def _joined(apart_m: FloatArray) -> IntArray:
+    """The targets that cost the least to join to each, if the least spanning tree loses its longest arc between them for it.
+
+    Alpha-nearness: K. Helsgaun, European Journal of Operational Research 126 (2000). Unlike the nearest, they lead out of every cluster.
+    """
+    detour_m = apart_m - _longest_between(apart_m)
+    np.fill_diagonal(detour_m, -1.0)
+    order = np.lexsort((apart_m, np.round(detour_m, 3)), axis=1)
+    return np.ascontiguousarray(order[:, : MOST_JOINED + 1])
+
+
+@njit(cache=True, nogil=True)
+def _longest_between(apart_m: FloatArray) -> FloatArray:
+    """The longest arc between any two targets in the least spanning tree (Prim 1957), (t, t)."""
+    targets = len(apart_m)
+    longest_m = np.zeros((targets, targets))
+    key_m = np.full(targets, np.inf)
+    parent = np.full(targets, -1, dtype=np.int64)
+    is_in = np.zeros(targets, dtype=np.bool_)
+    order = np.empty(targets, dtype=np.int64)
+    for count in range(targets):
+        next_one = -1
+        for target in range(targets):
+            if not is_in[target] and (next_one < 0 or key_m[target] < key_m[next_one]):
+                next_one = target
+        for at in range(count):
+            other = order[at]
+            reach_m = max(longest_m[parent[next_one], other], key_m[next_one])
+            longest_m[next_one, other] = longest_m[other, next_one] = reach_m
+        order[count], is_in[next_one] = next_one, True
+        for target in range(targets):
+            if not is_in[target] and apart_m[next_one, target] < key_m[target]:
+                key_m[target], parent[target] = apart_m[next_one, target], next_one
+    return longest_m
+
+
 def empty_plan(uavs: int, targets: int) -> Plan:
     return Plan(
         np.zeros((uavs, targets), dtype=np.int64),
@@ -119,6 +178,19 @@ def empty_plan(uavs: int, targets: int) -> Plan:
         np.zeros(uavs, dtype=np.int64),
         np.full(targets, -1, dtype=np.int64),
         np.zeros(targets, dtype=np.int64),
+    )
+
+
+def workspace(uavs: int, targets: int, seed: int) -> Workspace:
+    return Workspace(
+        empty_plan(uavs, targets),
+        empty_plan(uavs, targets),
+        empty_plan(uavs, targets),
+        np.zeros(uavs, dtype=np.bool_),
+        np.zeros(targets, dtype=np.bool_),
+        np.zeros(targets, dtype=np.int64),
+        np.zeros(targets),
+        np.array([(seed * 2 + 1) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF], dtype=np.uint64),
     )
 
 
@@ -164,6 +236,13 @@ def copy_route(source: Plan, copy: Plan, uav: int) -> None:
     copy.length_m[uav] = source.length_m[uav]
     copy.service_s[uav] = source.service_s[uav]
     copy.done[uav] = source.done[uav]
+
+
+@njit(cache=True, nogil=True)
+def save(work: Workspace, uav: int) -> None:
+    if not work.is_saved[uav]:
+        work.is_saved[uav] = True
+        copy_route(work.plan, work.saved, uav)
 
 
 @njit(cache=True, nogil=True)

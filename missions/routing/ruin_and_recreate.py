@@ -5,62 +5,23 @@ from one route, which helps where few UAVs fly many targets, and for the longest
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from missions.routing.arcs import IntArray
-from missions.routing.crossing import cross, pick
-from missions.routing.plan_state import (
-    NO_LIMIT_M,
-    Ground,
-    Plan,
-    RandomState,
-    copy_plan,
-    copy_route,
-    draw,
-    draw_below,
-    empty_plan,
-    settle,
-    values,
-)
-from missions.routing.problem import BoolArray, FloatArray
+from missions.routing.crossing import NONE, draw_move, make
+from missions.routing.insertion import recreate
+from missions.routing.plan_cost import cost_of, cost_of_routes, is_better, is_wanted, longest_of
+from missions.routing.plan_state import NO_LIMIT_M, Ground, Workspace, copy_plan, copy_route, draw, draw_below, save, settle, values
+from missions.routing.unowned import unowned
 
 MEAN_REMOVED = 10.0
 LONGEST_STRING = 10.0
 SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
 KEEP_SHARE = 0.01  # how often one more of them is let go
-BLINK_SHARE = 0.01  # how often a place is overlooked
 AROUND_LONGEST_SHARE = 0.5
-CROSSING_SHARE = 0.6  # of all rounds
-EVENNESS = 1e-3  # what the mean route weighs beside the longest
-
-
-class Workspace(NamedTuple):
-    """The current plan, the best one, and room to work in."""
-
-    plan: Plan
-    best: Plan
-    saved: Plan
-    is_saved: BoolArray  # (u,)
-    is_removed: BoolArray  # (t,)
-    waiting: IntArray  # (t,) targets to be put in
-    key: FloatArray  # (t,) their order
-    random: RandomState
-
-
-def workspace(uavs: int, targets: int, seed: int) -> Workspace:
-    return Workspace(
-        empty_plan(uavs, targets),
-        empty_plan(uavs, targets),
-        empty_plan(uavs, targets),
-        np.zeros(uavs, dtype=np.bool_),
-        np.zeros(targets, dtype=np.bool_),
-        np.zeros(targets, dtype=np.int64),
-        np.zeros(targets),
-        np.array([(seed * 2 + 1) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF], dtype=np.uint64),
-    )
+MOVES = 20  # in each round
+NEAR_SHARE = 0.9  # how often a place is looked for beside neighbours and at the ends of routes alone
 
 
 @njit(cache=True, nogil=True)
@@ -80,48 +41,61 @@ def construct(ground: Ground, work: Workspace, power: int, tries: int) -> None:
         for target in range(len(plan.uav_of)):
             work.waiting[target] = target
         work.is_saved[:] = True
-        _recreate(ground, work, len(plan.uav_of), number % 3, power, scale)
+        recreate(ground, work, len(plan.uav_of), number % 3, power, scale, False)
         for uav in range(len(plan.size)):
             settle(ground, plan, uav)
-        if number == 0 or _is_better(ground, plan, work.best):
+        if number == 0 or is_better(ground, plan, work.best):
             copy_plan(plan, work.best)
     copy_plan(work.best, work.plan)
 
 
 @njit(cache=True, nogil=True)
 def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: float, power: int) -> None:
-    """So many rounds of taking out and putting back, the temperature falling from warm to cold, in units of the cost."""
+    """So many rounds of moves, taking out and putting back, the temperature falling from warm to cold, in units of the cost."""
+    ground, work = unowned(ground), unowned(work)  # type: ignore[call-arg]
     plan = work.plan
     scale = max(1e-9, values(ground, work.best)[2])
-    missed, cost = _cost(ground, plan, power, scale)
+    missed, cost = cost_of(ground, plan, power, scale)
     best_missed, best_total_m, _ = values(ground, work.best)
     cooling = math.exp(math.log(cold / warm) / rounds) if rounds else 1.0
     temperature = warm
     for _ in range(rounds):
         temperature *= cooling
-        work.is_saved[:] = False
-        count = 0
-        if draw(work.random) < CROSSING_SHARE:
-            if not _cross(ground, work):
+        for _ in range(MOVES):
+            longest = -1
+            if ground.is_makespan and draw(work.random) < AROUND_LONGEST_SHARE:
+                longest = longest_of(ground, plan)
+            if longest >= 0 and plan.size[longest] == 0:
+                break
+            move = draw_move(ground, plan, work.random, longest)
+            if move.kind == NONE or not is_wanted(ground, plan, move, cost, temperature, power, scale, work.random):
                 continue
-        else:
-            count = _ruin(ground, work)
-            left_out = count
-            for target in range(len(plan.uav_of)):
-                if plan.uav_of[target] < 0 and not work.is_removed[target]:
-                    work.waiting[count] = target
-                    count += 1
-            for place in range(left_out):
-                work.is_removed[work.waiting[place]] = False
-            dice = draw(work.random)
-            _recreate(ground, work, count, 0 if dice < 0.6 else (1 if dice < 0.85 else 2), power, scale)
+            copy_route(plan, work.saved, move.uav)
+            copy_route(plan, work.saved, move.other_uav)
+            make(ground, plan, work.saved, move)
+            settle(ground, plan, move.uav)
+            settle(ground, plan, move.other_uav)
+            cost = cost_of_routes(ground, plan, power, scale)
+            if (ground.is_makespan or missed < best_missed or cost < best_total_m) and is_better(ground, plan, work.best):
+                copy_plan(plan, work.best)
+                best_missed, best_total_m, _ = values(ground, plan)
+        work.is_saved[:] = False
+        count = _ruin(ground, work)
+        left_out = count
+        for target in range(len(plan.uav_of)):
+            if plan.uav_of[target] < 0 and not work.is_removed[target]:
+                work.waiting[count] = target
+                count += 1
+        for place in range(left_out):
+            work.is_removed[work.waiting[place]] = False
+        dice = draw(work.random)
+        recreate(ground, work, count, 0 if dice < 0.6 else (1 if dice < 0.85 else 2), power, scale, draw(work.random) < NEAR_SHARE)
         now_missed, now_cost = np.inf, np.inf
         if _is_whole(ground, work):
-            now_missed, now_cost = _cost(ground, plan, power, scale)
+            now_missed, now_cost = cost_of(ground, plan, power, scale)
         if now_missed < missed or (now_missed == missed and now_cost < cost - temperature * math.log(1.0 - draw(work.random))):
             missed, cost = now_missed, now_cost
-            may_be_best = ground.is_makespan or missed < best_missed or cost < best_total_m
-            if may_be_best and _is_better(ground, plan, work.best):
+            if (ground.is_makespan or missed < best_missed or cost < best_total_m) and is_better(ground, plan, work.best):
                 copy_plan(plan, work.best)
                 best_missed, best_total_m, _ = values(ground, plan)
         else:
@@ -136,47 +110,6 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
 
 
 @njit(cache=True, nogil=True)
-def _is_better(ground: Ground, plan: Plan, best: Plan) -> bool:
-    missed, total_m, longest_s = values(ground, plan)
-    best_missed, best_total_m, best_longest_s = values(ground, best)
-    if missed != best_missed:
-        return missed < best_missed
-    if ground.is_makespan:
-        return longest_s < best_longest_s - 1e-9 or (longest_s <= best_longest_s and total_m < best_total_m - 1e-6)
-    return total_m < best_total_m - 1e-6
-
-
-@njit(cache=True, nogil=True)
-def _cost(ground: Ground, plan: Plan, power: int, scale: float) -> tuple[float, float]:
-    """What is left out by weight; the total [m], or a mean of the routes [s] that follows the longest the more the higher the power.
-
-    The power is that of 2 that all durations are raised to.
-    """
-    missed = 0.0
-    for target in range(len(plan.uav_of)):
-        if plan.uav_of[target] < 0:
-            missed += ground.weight[target]
-    total = 0.0
-    if not ground.is_makespan:
-        for uav in range(len(plan.size)):
-            total += plan.length_m[uav]
-        return missed, total
-    raised = 0.0
-    for uav in range(len(plan.size)):
-        duration = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
-        total += duration
-        raised += _raised(duration / scale, power)
-    return missed, scale * raised ** (1.0 / (1 << power)) + EVENNESS * total / len(plan.size)
-
-
-@njit(cache=True, nogil=True)
-def _raised(share: float, power: int) -> float:
-    for _ in range(power):
-        share *= share
-    return share
-
-
-@njit(cache=True, nogil=True)
 def _is_whole(ground: Ground, work: Workspace) -> bool:
     """Whether the changed routes, measured anew, keep their limits."""
     for uav in range(len(work.is_saved)):
@@ -187,42 +120,6 @@ def _is_whole(ground: Ground, work: Workspace) -> bool:
             for place in range(work.plan.size[uav]):
                 if not ground.usable[uav, work.plan.visit[uav, place]]:
                     return False
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _save(work: Workspace, uav: int) -> None:
-    if not work.is_saved[uav]:
-        work.is_saved[uav] = True
-        copy_route(work.plan, work.saved, uav)
-
-
-@njit(cache=True, nogil=True)
-def _longest(ground: Ground, plan: Plan) -> int:
-    """The UAV that flies longest."""
-    longest, longest_s = 0, -1.0
-    for uav in range(len(plan.size)):
-        duration_s = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
-        if duration_s > longest_s and plan.size[uav]:
-            longest, longest_s = uav, duration_s
-    return longest
-
-
-@njit(cache=True, nogil=True)
-def _cross(ground: Ground, work: Workspace) -> bool:
-    """One move between two routes or within one; whether there is anything to judge."""
-    plan = work.plan
-    longest = -1
-    if ground.is_makespan and draw(work.random) < AROUND_LONGEST_SHARE:
-        longest = _longest(ground, plan)
-        if plan.size[longest] == 0:
-            return False
-    uav, other_uav, place, other = pick(ground, plan, work.random, longest)
-    if uav < 0:
-        return False
-    _save(work, uav)
-    _save(work, other_uav)
-    cross(ground, plan, work.saved, work.random, uav, other_uav, place, other)
     return True
 
 
@@ -242,7 +139,7 @@ def _ruin(ground: Ground, work: Workspace) -> int:
     strings = int(draw(random) * most_strings + 1.0)
     seed = draw_below(random, targets)
     if ground.is_makespan and draw(random) < AROUND_LONGEST_SHARE:
-        longest = _longest(ground, plan)
+        longest = longest_of(ground, plan)
         seed = ground.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
     waiting = 0
     for number in range(ground.near.shape[1]):
@@ -273,7 +170,7 @@ def _ruin(ground: Ground, work: Workspace) -> int:
                 work.is_removed[out] = True
                 work.waiting[waiting] = out
                 waiting += 1
-        _save(work, uav)
+        save(work, uav)
         strings -= 1
     for uav in range(uavs):
         if work.is_saved[uav]:
@@ -288,99 +185,3 @@ def _ruin(ground: Ground, work: Workspace) -> int:
     for number in range(waiting):
         plan.uav_of[work.waiting[number]] = -1
     return waiting
-
-
-@njit(cache=True, nogil=True)
-def _recreate(ground: Ground, work: Workspace, waiting: int, kind: int, power: int, scale: float) -> None:
-    """Put in what waits where it costs least: the heavy first, else at random, the far first or the near first."""
-    plan = work.plan
-    for number in range(waiting):
-        target = work.waiting[number]
-        if kind == 0:
-            work.key[number] = draw(work.random)
-        elif kind == 1:
-            work.key[number] = -ground.far_m[target]
-        else:
-            work.key[number] = ground.far_m[target]
-    for number in range(1, waiting):
-        target, key = work.waiting[number], work.key[number]
-        weight = ground.weight[target]
-        place = number
-        while place > 0:
-            other = ground.weight[work.waiting[place - 1]]
-            if other > weight or (other == weight and work.key[place - 1] <= key):
-                break
-            work.waiting[place], work.key[place] = work.waiting[place - 1], work.key[place - 1]
-            place -= 1
-        work.waiting[place], work.key[place] = target, key
-    again = True
-    while again:  # a target that came later may have joined two networks
-        again = False
-        is_first = True
-        for number in range(waiting):
-            if plan.uav_of[work.waiting[number]] < 0:
-                if _insert(ground, work, work.waiting[number], power, scale):
-                    again = again or not is_first
-                else:
-                    is_first = False
-
-
-@njit(cache=True, nogil=True)
-def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: float) -> bool:
-    plan = work.plan
-    least, least_m, at_uav, at_place, at_visit = np.inf, 0.0, -1, 0, 0
-    blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
-    for index in range(ground.option_from[target], ground.option_from[target + 1]):
-        visit = ground.option[index]
-        onward_m, back_m = ground.onward_m[visit], ground.back_m[visit]
-        for uav in range(len(plan.size)):
-            if not ground.usable[uav, visit] or plan.done[uav] + ground.done[visit] > ground.most[uav]:
-                continue
-            count, route, gap_m = plan.size[uav], plan.visit[uav], plan.gap_m[uav]
-            if count == 0:
-                added_m, best_place = ground.first_m[uav, visit] + ground.end_m[uav, visit], 0
-            else:
-                added_m = ground.first_m[uav, visit] + onward_m[route[0]] - gap_m[0]
-                best_place = 0
-                last_m = back_m[route[count - 1]] + ground.end_m[uav, visit] - gap_m[count]
-                if last_m < added_m:
-                    added_m, best_place = last_m, count
-                for place in range(1, count):
-                    here_m = back_m[route[place - 1]] + onward_m[route[place]] - gap_m[place]
-                    if here_m < added_m:
-                        if blink == 0:
-                            blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
-                        else:
-                            added_m, best_place = here_m, place
-                            blink -= 1
-            length_m = plan.length_m[uav]
-            if length_m + added_m > ground.limit_m[uav] and not (length_m > NO_LIMIT_M and added_m < 0.0):
-                continue
-            price = added_m
-            if ground.is_makespan:
-                now_s = length_m / ground.speed_mps[uav] + plan.service_s[uav]
-                later_s = now_s + added_m / ground.speed_mps[uav] + ground.service_s[visit]
-                price = _raised(later_s / scale, power) - _raised(now_s / scale, power) + 1e-7 * (later_s - now_s) / scale
-            if price < least:
-                least, least_m, at_uav, at_place, at_visit = price, added_m, uav, best_place, visit
-    if at_uav < 0 or (least_m > NO_LIMIT_M):
-        return False
-    _save(work, at_uav)
-    _put(ground, plan, at_uav, at_place, at_visit, least_m)
-    return True
-
-
-@njit(cache=True, nogil=True)
-def _put(ground: Ground, plan: Plan, uav: int, place: int, visit: int, added_m: float) -> None:
-    count, route, gap_m = plan.size[uav], plan.visit[uav], plan.gap_m[uav]
-    gap_m[count + 1] = gap_m[count]
-    for at in range(count, place, -1):
-        route[at], gap_m[at] = route[at - 1], gap_m[at - 1]
-    route[place] = visit
-    gap_m[place] = ground.first_m[uav, visit] if place == 0 else ground.onward_m[route[place - 1], visit]
-    gap_m[place + 1] = ground.end_m[uav, visit] if place == count else ground.onward_m[visit, route[place + 1]]
-    plan.size[uav] = count + 1
-    plan.length_m[uav] += added_m
-    plan.service_s[uav] += ground.service_s[visit]
-    plan.done[uav] += ground.done[visit]
-    plan.uav_of[ground.target[visit]] = uav

@@ -9,9 +9,9 @@ import numpy as np
 
 from missions.routing.arcs import Arcs
 from missions.routing.bounds import lower_bound
-from missions.routing.plan_state import Ground, ground_of, routes_of, values
+from missions.routing.plan_state import Ground, Workspace, ground_of, routes_of, values, workspace
 from missions.routing.problem import BoolArray, FloatArray, Problem, Routes, merit
-from missions.routing.ruin_and_recreate import Workspace, anneal, construct, workspace
+from missions.routing.ruin_and_recreate import anneal, construct
 
 Stop = Callable[[], bool]
 
@@ -22,7 +22,7 @@ TARGET_ROUNDS_PER_STEP = 40_000  # rounds times targets, some tens of millisecon
 FIXED_STEPS = 40  # of each chain in a search without a time, a second or less in all
 MOST_ROUNDS_PER_STEP = 600
 # Temperatures at the beginning and the end, in mean arcs of the plan, of one chain and the next. Measured by `benchmarks.assignment`.
-TOTAL_TEMPERATURES = ((4.0, 0.03), (10.0, 0.05))
+TOTAL_TEMPERATURES = ((4.0, 0.05), (1.5, 0.05))
 MAKESPAN_TEMPERATURES = ((0.2, 0.001), (0.4, 0.003))
 POWERS = (3, 3, 4, 5, 6)  # of 2, one after another: the longest route comes to count more and more
 

@@ -1,0 +1,167 @@
+"""Targets put into a plan where they cost least."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from missions.routing.plan_cost import raised_to
+from missions.routing.plan_state import NO_LIMIT_M, Ground, Plan, Workspace, draw, save
+
+BLINK_SHARE = 0.01  # how often a place is overlooked
+INSERTION_NEIGHBOURS = 20  # beside which a place is looked for
+
+
+@njit(cache=True, nogil=True)
+def recreate(ground: Ground, work: Workspace, waiting: int, kind: int, power: int, scale: float, is_near: bool) -> None:
+    """Put in what waits where it costs least: the heavy first, else at random, the far first or the near first."""
+    plan = work.plan
+    for number in range(waiting):
+        target = work.waiting[number]
+        if kind == 0:
+            work.key[number] = draw(work.random)
+        elif kind == 1:
+            work.key[number] = -ground.far_m[target]
+        else:
+            work.key[number] = ground.far_m[target]
+    for number in range(1, waiting):
+        target, key = work.waiting[number], work.key[number]
+        weight = ground.weight[target]
+        place = number
+        while place > 0:
+            other = ground.weight[work.waiting[place - 1]]
+            if other > weight or (other == weight and work.key[place - 1] <= key):
+                break
+            work.waiting[place], work.key[place] = work.waiting[place - 1], work.key[place - 1]
+            place -= 1
+        work.waiting[place], work.key[place] = target, key
+    again = True
+    while again:  # a target that came later may have joined two networks
+        again = False
+        is_first = True
+        for number in range(waiting):
+            if plan.uav_of[work.waiting[number]] < 0:
+                target = work.waiting[number]
+                if (is_near and _insert(ground, work, target, power, scale, True)) or _insert(ground, work, target, power, scale, False):
+                    again = again or not is_first
+                else:
+                    is_first = False
+
+
+@njit(cache=True, nogil=True)
+def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: float, is_near: bool) -> bool:
+    """Put a target in where it costs least: beside its neighbours and at the ends of routes, or anywhere."""
+    plan = work.plan
+    least, least_m, at_uav, at_place, at_visit = np.inf, 0.0, -1, 0, 0
+    blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
+    for index in range(ground.option_from[target], ground.option_from[target + 1]):
+        visit = ground.option[index]
+        onward_m, back_m = ground.onward_m[visit], ground.back_m[visit]
+        for uav in range(len(plan.size)):
+            if not ground.usable[uav, visit] or plan.done[uav] + ground.done[visit] > ground.most[uav]:
+                continue
+            count = plan.size[uav]
+            if count == 0:
+                added_m, best_place = ground.first_m[uav, visit] + ground.end_m[uav, visit], 0
+            else:
+                added_m = ground.first_m[uav, visit] + onward_m[plan.visit[uav, 0]] - plan.gap_m[uav, 0]
+                best_place = 0
+                last_m = back_m[plan.visit[uav, count - 1]] + ground.end_m[uav, visit] - plan.gap_m[uav, count]
+                if last_m < added_m:
+                    added_m, best_place = last_m, count
+                for place in range(1, 1 if is_near else count):
+                    here_m = back_m[plan.visit[uav, place - 1]] + onward_m[plan.visit[uav, place]] - plan.gap_m[uav, place]
+                    if here_m < added_m:
+                        if blink == 0:
+                            blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
+                        else:
+                            added_m, best_place = here_m, place
+                            blink -= 1
+            if added_m >= least and not ground.is_makespan:
+                continue
+            price = _price(
+                plan.length_m[uav],
+                plan.service_s[uav],
+                added_m,
+                ground.service_s[visit],
+                ground.limit_m[uav],
+                ground.speed_mps[uav],
+                ground.is_makespan,
+                power,
+                scale,
+            )
+            if price < least:
+                least, least_m, at_uav, at_place, at_visit = price, added_m, uav, best_place, visit
+        for number in range(1, min(ground.near.shape[1], INSERTION_NEIGHBOURS + 1) if is_near else 1):
+            other = ground.near[target, number]
+            uav = plan.uav_of[other]
+            if uav < 0:
+                continue
+            for place in range(max(1, plan.place[other]), min(plan.size[uav], plan.place[other] + 2)):
+                added_m = back_m[plan.visit[uav, place - 1]] + onward_m[plan.visit[uav, place]] - plan.gap_m[uav, place]
+                if added_m >= least and not ground.is_makespan:
+                    continue
+                if not ground.usable[uav, visit] or plan.done[uav] + ground.done[visit] > ground.most[uav]:
+                    break
+                price = _price(
+                    plan.length_m[uav],
+                    plan.service_s[uav],
+                    added_m,
+                    ground.service_s[visit],
+                    ground.limit_m[uav],
+                    ground.speed_mps[uav],
+                    ground.is_makespan,
+                    power,
+                    scale,
+                )
+                if price < least:
+                    if blink == 0:
+                        blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
+                    else:
+                        least, least_m, at_uav, at_place, at_visit = price, added_m, uav, place, visit
+                        blink -= 1
+    if at_uav < 0 or (least_m > NO_LIMIT_M):
+        return False
+    save(work, at_uav)
+    _put(ground, plan, at_uav, at_place, at_visit, least_m)
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _price(
+    length_m: float,
+    work_s: float,
+    added_m: float,
+    service_s: float,
+    limit_m: float,
+    speed_mps: float,
+    is_makespan: bool,
+    power: int,
+    scale: float,
+) -> float:
+    """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
+    if length_m + added_m > limit_m and not (length_m > NO_LIMIT_M and added_m < 0.0):
+        return math.inf
+    if not is_makespan:
+        return added_m
+    now_s = length_m / speed_mps + work_s
+    later_s = now_s + added_m / speed_mps + service_s
+    return raised_to(later_s / scale, power) - raised_to(now_s / scale, power) + 1e-7 * (later_s - now_s) / scale
+
+
+@njit(cache=True, nogil=True)
+def _put(ground: Ground, plan: Plan, uav: int, place: int, visit: int, added_m: float) -> None:
+    count, route, gap_m = plan.size[uav], plan.visit[uav], plan.gap_m[uav]
+    gap_m[count + 1] = gap_m[count]
+    for at in range(count, place, -1):
+        route[at], gap_m[at] = route[at - 1], gap_m[at - 1]
+        plan.place[ground.target[route[at]]] = at
+    route[place] = visit
+    plan.place[ground.target[visit]] = place
+    gap_m[place] = ground.first_m[uav, visit] if place == 0 else ground.onward_m[route[place - 1], visit]
+    gap_m[place + 1] = ground.end_m[uav, visit] if place == count else ground.onward_m[visit, route[place + 1]]
+    plan.size[uav] = count + 1
+    plan.length_m[uav] += added_m
+    plan.service_s[uav] += ground.service_s[visit]
+    plan.done[uav] += ground.done[visit]
+    plan.uav_of[ground.target[visit]] = uav

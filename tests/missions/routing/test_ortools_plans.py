@@ -1,0 +1,24 @@
+"""The rival's plans keep the same limits as ours: a comparison with plans that nobody may fly would tell nothing."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmarks.ortools_plans import routes_by_ortools
+from missions.routing.exact import best_plan
+from missions.routing.problem import merit
+from missions.routing.reach import needed_range_m, reachable
+from tests.missions.routing.random_problems import mixed_problem
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 1_000_000), st.integers(1, 4), st.integers(1, 9))
+def test_a_plan_of_ortools_keeps_every_limit_and_is_no_better_than_the_best(seed: int, uavs: int, targets: int) -> None:
+    problem = mixed_problem(seed, uavs=uavs, targets=targets)
+    routes = routes_by_ortools(problem, reachable(problem, needed_range_m(problem)), 0.05)
+    assert routes is not None
+    assert all(problem.keeps_limits(uav, route) for uav, route in enumerate(routes))
+    flown = [problem.visits[visit].target for route in routes for visit in route]
+    assert len(flown) == len(set(flown))
+    missed, value, _ = merit(problem, routes)
+    least_missed, least, _ = merit(problem, best_plan(problem))
+    assert missed > least_missed or (missed == least_missed and value >= least * (1 - 1e-9))
