@@ -18,7 +18,7 @@ class Arcs:
     """u UAVs, v visits, t targets. An arc contains the way along the visit that it leads to; metres, NO_WAY_M where there is no way.
 
     first_m (u, v) from each start; onward_m (v, v) from the row's visit; end_m (u, v) on to where the UAV ends;
-    target (v,), service_s (v,), done (v,); limit_m (u,), speed_mps (u,), most (u,); allowed (u, v); weight (t,).
+    target (v,), service_s (v,), done (v,); limit_m (u,), speed_mps (u,), ready_s (u,), most (u,); allowed (u, v); weight (t,).
     """
 
     first_m: FloatArray
@@ -29,6 +29,7 @@ class Arcs:
     done: IntArray
     limit_m: FloatArray
     speed_mps: FloatArray
+    ready_s: FloatArray
     most: IntArray
     allowed: BoolArray
     weight: FloatArray
@@ -48,6 +49,7 @@ class Arcs:
             done=np.array([visit.done for visit in visits], dtype=np.int64),
             limit_m=np.array([min(uav.limit_m, NO_WAY_M / 2) for uav in uavs], dtype=np.float64),
             speed_mps=np.array([uav.speed_mps for uav in uavs], dtype=np.float64),
+            ready_s=np.array([uav.ready_s for uav in uavs], dtype=np.float64),
             most=np.array([uav.most for uav in uavs], dtype=np.int64),
             allowed=np.ones(shape, dtype=np.bool_) if problem.allowed is None else np.ascontiguousarray(problem.allowed, dtype=np.bool_),
             weight=np.asarray(problem.left_out_weights, dtype=np.float64),

@@ -1,6 +1,7 @@
 """Lower bounds: what no plan can do better than, if it leaves out as little as the best one does."""
 
 import random
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -31,6 +32,8 @@ def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, route
     - the longest route takes at least the mean, and at least as long as in the best plan for a few of the targets alone.
     """
     arcs = Arcs.of(problem)
+    ready_s = float(arcs.ready_s.min(initial=np.inf)) if arcs.is_makespan and len(arcs.ready_s) else 0.0
+    arcs = replace(arcs, ready_s=np.zeros(len(arcs.ready_s)))  # whatever the longest route is without it, it takes as much more
     can_be_done = np.zeros(problem.target_count, dtype=bool)
     can_be_done[arcs.target[usable.any(axis=0)]] = True
     visited = {problem.visits[visit].target for route in routes for visit in route}
@@ -39,7 +42,7 @@ def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, route
     bound = _farthest(alone, arcs.weight, can_be_done, missed)
     certain = np.flatnonzero(can_be_done & (arcs.weight > missed))
     if not len(certain):
-        return bound * (1.0 - HAIR)
+        return (bound + ready_s if bound else 0.0) * (1.0 - HAIR)
     closed = _over_others(arcs)
     ways = arcs if missed == 0 and can_be_done.all() else closed
     along_m = np.array([visit.length_m for visit in problem.visits])
@@ -47,8 +50,8 @@ def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, route
     bound = max(bound, _by_forest(ways, along_m, usable, certain, sum(lengths_m)))
     if arcs.is_makespan:
         value = max(problem.route_duration_s(uav, route) for uav, route in enumerate(routes))
-        bound = _by_subsets(closed, usable, certain, alone, bound, value, seed)
-    return bound * (1.0 - HAIR)
+        bound = _by_subsets(closed, usable, certain, alone, bound, value - ready_s, seed)
+    return (bound + ready_s) * (1.0 - HAIR)
 
 
 def _alone(arcs: Arcs, usable: BoolArray, needed_m: FloatArray) -> FloatArray:
@@ -84,6 +87,7 @@ def _over_others(arcs: Arcs) -> Arcs:
         done=arcs.done,
         limit_m=arcs.limit_m,
         speed_mps=arcs.speed_mps,
+        ready_s=arcs.ready_s,
         most=arcs.most,
         allowed=arcs.allowed,
         weight=arcs.weight,
@@ -253,6 +257,7 @@ def _longest_s(arcs: Arcs, usable: BoolArray, targets: list[int]) -> float:
         done=arcs.done[visits],
         limit_m=arcs.limit_m,
         speed_mps=arcs.speed_mps,
+        ready_s=arcs.ready_s,
         most=arcs.most,
         allowed=np.ascontiguousarray(usable[:, visits]),
         weight=np.ones(len(targets)),

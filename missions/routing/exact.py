@@ -32,6 +32,7 @@ def best_routes(arcs: Arcs) -> Routes:
         arcs.done,
         arcs.limit_m,
         arcs.speed_mps,
+        arcs.ready_s,
         arcs.most,
         arcs.allowed,
         arcs.weight,
@@ -50,6 +51,7 @@ def _best(
     done: IntArray,
     limit_m: FloatArray,
     speed_mps: FloatArray,
+    ready_s: FloatArray,
     most: IntArray,
     allowed: BoolArray,
     weight: FloatArray,
@@ -59,7 +61,7 @@ def _best(
     uavs, targets = len(first_m), len(weight)
     sets = 1 << targets
     back_m = np.ascontiguousarray(onward_m.T)  # the arcs that lead to a visit lie in a row
-    kind = _kinds(first_m, end_m, limit_m, speed_mps, most, allowed)
+    kind = _kinds(first_m, end_m, limit_m, speed_mps, ready_s, most, allowed)
     kinds = kind.max() + 1
     reach_m = np.empty((kinds, sets, len(target)))
     length_m = np.empty((kinds, sets))
@@ -74,7 +76,8 @@ def _best(
         for members in range(sets):
             if length_m[number, members] > limit_m[uav] or counts[members] > most[uav]:
                 length_m[number, members] = np.inf
-            duration_s[number, members] = length_m[number, members] / speed_mps[uav] + services_s[members]
+            duration_s[number, members] = length_m[number, members] / speed_mps[uav] + services_s[members] + ready_s[uav]
+        duration_s[number, 0] = 0.0
 
     flying = _flying(kind, targets)
     last = len(flying)
@@ -110,7 +113,13 @@ def _best(
 
 @njit(cache=True, nogil=True)
 def _kinds(
-    first_m: FloatArray, end_m: FloatArray, limit_m: FloatArray, speed_mps: FloatArray, most: IntArray, allowed: BoolArray
+    first_m: FloatArray,
+    end_m: FloatArray,
+    limit_m: FloatArray,
+    speed_mps: FloatArray,
+    ready_s: FloatArray,
+    most: IntArray,
+    allowed: BoolArray,
 ) -> IntArray:
     """UAVs that are alike in everything have the same number."""
     kind = np.empty(len(first_m), dtype=np.int64)
@@ -121,6 +130,7 @@ def _kinds(
             if (
                 limit_m[uav] == limit_m[other]
                 and speed_mps[uav] == speed_mps[other]
+                and ready_s[uav] == ready_s[other]
                 and most[uav] == most[other]
                 and np.array_equal(first_m[uav], first_m[other])
                 and np.array_equal(end_m[uav], end_m[other])

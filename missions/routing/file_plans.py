@@ -164,6 +164,7 @@ def _plain(uavs: int, targets: int) -> dict[str, NDArray[Any]]:
         "end_m": np.zeros((uavs, targets)),
         "target": np.arange(targets, dtype=np.int64),
         "service_s": np.zeros(targets),
+        "ready_s": np.zeros(uavs),
         "done": np.ones(targets, dtype=np.int64),
         "limit_m": np.full(uavs, NO_WAY_M / 2),
         "speed_mps": np.ones(uavs),

@@ -38,6 +38,7 @@ class Ground(NamedTuple):
     done: IntArray
     limit_m: FloatArray
     speed_mps: FloatArray
+    ready_s: FloatArray
     most: IntArray
     weight: FloatArray
     is_makespan: bool
@@ -55,7 +56,8 @@ class Ground(NamedTuple):
 class Plan(NamedTuple):
     """Routes and what follows from them; `size` (u,) is how many visits each has, `uav_of` (t,) is -1 for a target that is left out.
 
-    gap_m (u, t + 1) holds the arc that leads to each place of a route, and at last on to its end. With no visit all is 0.
+    gap_m (u, t + 1) holds the arc that leads to each place of a route, and at last on to its end. service_s (u,) begins with what
+    take-off and landing take, also where there is no visit; all else is 0 there.
     """
 
     visit: IntArray
@@ -99,6 +101,7 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         arcs.done,
         arcs.limit_m,
         arcs.speed_mps,
+        arcs.ready_s,
         arcs.most,
         arcs.weight,
         arcs.is_makespan,
@@ -203,7 +206,7 @@ def settle(ground: Ground, plan: Plan, uav: int) -> None:
     """Work out everything that follows from a UAV's visits."""
     count = plan.size[uav]
     visit, gap_m = plan.visit[uav], plan.gap_m[uav]
-    length_m, service_s, done = 0.0, 0.0, 0
+    length_m, service_s, done = 0.0, ground.ready_s[uav], 0
     if count:
         gap_m[0] = ground.first_m[uav, visit[0]]
         for place in range(1, count):
@@ -254,7 +257,8 @@ def values(ground: Ground, plan: Plan) -> tuple[float, float, float]:
             missed += ground.weight[target]
     for uav in range(len(plan.size)):
         total_m += plan.length_m[uav]
-        longest_s = max(longest_s, plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav])
+        if plan.size[uav]:
+            longest_s = max(longest_s, plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav])
     return missed, total_m, longest_s
 
 

@@ -84,6 +84,7 @@ class UavStart:
     end: End = End.OPEN
     speed_mps: float = 1.0  # without a speed, a second is a metre
     most_targets: int | None = None
+    ready_s: float = 0.0  # of a route with any visit, beyond flying and serving: take-off and landing
 
     @property
     def limit_m(self) -> float:
@@ -193,9 +194,11 @@ class Problem:
         return length_m + float(self.end_m[route[-1], uav])
 
     def route_duration_s(self, uav: int, route: Sequence[int]) -> float:
-        """Seconds of flying the route and of what is done at its targets."""
+        """Seconds of flying the route, of what is done at its targets, of take-off and landing; 0 for no visit."""
+        if not route:
+            return 0.0
         service_s = sum(self.visits[visit].service_s for visit in route)
-        return self.route_length_m(uav, route) / self.uavs[uav].speed_mps + service_s
+        return self.route_length_m(uav, route) / self.uavs[uav].speed_mps + service_s + self.uavs[uav].ready_s
 
     def keeps_limits(self, uav: int, route: Sequence[int]) -> bool:
         """Whether the UAV can and may fly the route."""

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from missions.flight_plan.duration import ready_s
+from missions.flight_plan.rules import FlightRules
 from missions.models import EndAction
 from missions.routing.exact import MAX_TARGETS
 from missions.routing.problem import BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit, merit
@@ -17,6 +19,7 @@ from missions.services.refusals import Grounding
 from missions.services.requests import LockRequest, PlanRequest
 from missions.services.wishes import may_do
 
+UNCOUNTED_S = 0.1  # that a finished route takes beyond what the search counted: rounding
 _ENDS = {EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
 
 
@@ -36,16 +39,28 @@ class Assignment:
     held_back: dict[int, str]
 
 
+def least_ready_s(action: EndAction, targets_agl_m: Sequence[float], rules: FlightRules) -> float:
+    return ready_s(
+        targets_agl_m, lands=action is not EndAction.HOVER, ends_at_target=action in (EndAction.HOVER, EndAction.LAND), rules=rules
+    )
+
+
 def assignment(
-    request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit], ways: Ways, grounded: dict[int, Grounding]
+    request: PlanRequest,
+    uavs: Sequence[int],
+    places: Sequence[Place],
+    visits: Sequence[Visit],
+    ways: Ways,
+    grounded: dict[int, Grounding],
+    ready: Sequence[float],
 ) -> Assignment:
-    """uavs: those that fly, by their places in the request; visits: of the places, by their numbers."""
+    """uavs: those that fly, by their places in the request; visits: of the places, by their numbers; ready [s]: of each UAV's route."""
     targets = [request.targets[place.target] for place in places]
     ends = {request.end_action(uav) for uav in uavs}
     free = Problem(
         uavs=tuple(
-            UavStart(asked.max_range_m, route_end(request, uav), asked.cruise_speed_mps, asked.most_targets)
-            for uav, asked in ((uav, request.uavs[uav]) for uav in uavs)
+            UavStart(asked.max_range_m, route_end(request, uav), asked.cruise_speed_mps, asked.most_targets, own_ready_s)
+            for uav, asked, own_ready_s in ((uav, request.uavs[uav], own_ready_s) for uav, own_ready_s in zip(uavs, ready, strict=True))
         ),
         visits=tuple(visits),
         target_count=len(places),
@@ -150,15 +165,20 @@ def _cost(problem: Problem, solution: Solution, free: Solution) -> LockCost:
 def quality_of(solution: Solution, cost: LockCost | None, objective: Objective, *, total_m: float, longest_s: float) -> dict[str, object]:
     """Bound, gap, method and the cost of the locks in the shape of the API.
 
-    total_m and longest_s are of the finished routes; the bound stays below them, whatever the drawing has rounded.
+    total_m and longest_s are of the finished routes; the bound stays below them, whatever the drawing has rounded. What the search does
+    not count (climbs over hills and tall assets) makes the longest route longer than it thought, and the gap wider: a plan is proven
+    only if its finished routes are.
     """
     is_total = objective is Objective.TOTAL
     bound = min(solution.lower_bound, total_m if is_total else longest_s)
+    gap, is_proven = solution.gap, solution.is_proven
+    if not is_total and longest_s - solution.longest_s > UNCOUNTED_S:
+        gap, is_proven = (longest_s - bound) / longest_s, False
     return {
         "lower_bound_m": math.floor(bound * 1_000) / 1_000 if is_total else None,
         "lower_bound_s": None if is_total else math.floor(bound * 10) / 10,
-        "gap": round(solution.gap, 6),
-        "is_proven": solution.is_proven,
+        "gap": round(gap, 6),
+        "is_proven": is_proven,
         "method": solution.method,
         "wish": None if cost is None else {name: value if value is None else round(value, 3) for name, value in vars(cost).items()},
     }

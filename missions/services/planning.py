@@ -11,17 +11,19 @@ from inspection.selectors import ground_revision, terrain_edition
 from inspection.selectors.graph import zones_of_edition
 from inspection.selectors.planning import Edition, PlanningGround, edition_now, planning_read
 from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
+from missions.flight_plan.duration import target_s
 from missions.flight_plan.flyable_graph import flyable_graph
+from missions.flight_plan.heights import inspection_agl_m
 from missions.routing.problem import Visit
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import Stop, never
 from missions.routing.terminals import AccessRules, Terminal, ways_between
-from missions.services.assignment import assignment, quality_of, solve_assignment
+from missions.services.assignment import assignment, least_ready_s, quality_of, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch, unheard
 from missions.services.drawing import Drawing
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
-from missions.services.refusals import Scene, asset_gone, groundings, refused_place, zone_at
+from missions.services.refusals import Scene, asset_gone, groundings, place_height_m, refused_place, zone_at
 from missions.services.requests import PlanRequest
 from missions.services.unreached import unreached_places
 
@@ -59,7 +61,9 @@ def make_plan(
     bases = [base for base in request.bases if zone_at(base.position, scene) is None]
 
     on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
-    visits, courses = visits_of_places(places)
+    agl_m = [inspection_agl_m(place_height_m(place, scene), scene.flight) for place in places]
+    takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
+    visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
         scene.zones,
@@ -69,7 +73,8 @@ def make_plan(
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
     )
-    asked = assignment(request, uavs, places, visits, ways, grounded)
+    ready = [least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
+    asked = assignment(request, uavs, places, visits, ways, grounded, ready)
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )
@@ -133,15 +138,16 @@ def _scene_on(ground: PlanningGround) -> Scene:
     return Scene(ground.graph, flyable_graph(ground.graph, flight), ground.zones, access, flight, ground.edition)
 
 
-def visits_of_places(places: Sequence[Place]) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
-    """The ways of doing each place, with the course of each: a stretch can be flown from either end."""
+def visits_of_places(places: Sequence[Place], takes_s: Sequence[float] | None = None) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:
+    """The ways of doing each place, with the course of each: a stretch can be flown from either end. takes_s as `target_s` tells."""
     visits, courses = [], []
     for number, place in enumerate(places):
+        service_s = 0.0 if takes_s is None else takes_s[number]
         length_m = path_length_m(np.array(place.course)) if place.is_stretch else 0.0
-        visits.append(Visit(number, is_reversed=False, length_m=length_m, service_s=place.task.hold_s))
+        visits.append(Visit(number, is_reversed=False, length_m=length_m, service_s=service_s))
         courses.append(place.course)
         if place.is_stretch:
-            visits.append(Visit(number, is_reversed=True, length_m=length_m, service_s=place.task.hold_s))
+            visits.append(Visit(number, is_reversed=True, length_m=length_m, service_s=service_s))
             courses.append(tuple(reversed(place.course)))
     return visits, courses
 

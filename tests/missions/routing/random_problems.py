@@ -78,6 +78,7 @@ def mixed_problem(seed: int, *, uavs: int = 2, targets: int = 4, locks: int = 0)
             end=list(End)[draw.integers(0, 3)],
             speed_mps=float(draw.uniform(8, 20)) if several else 12.0,
             most_targets=int(draw.integers(1, targets + 1)) if draw.integers(0, 4) == 0 else None,
+            ready_s=float(draw.uniform(0, 300)) if several else 40.0 * (seed % 3),
         )
         for _ in range(uavs)
     )
