@@ -20,7 +20,7 @@ LONGEST_STRING = 10.0
 SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
 KEEP_SHARE = 0.01  # how often one more of them is let go
 AROUND_LONGEST_SHARE = 0.5
-MOVES = 20  # in each round
+MOVES_FOR_TOTAL, MOVES_FOR_LONGEST = 20, 4  # in each round; for the longest route, taking out and putting back brings more
 NEAR_SHARE = 0.9  # how often a place is looked for beside neighbours and at the ends of routes alone
 
 
@@ -58,10 +58,11 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
     missed, cost = cost_of(ground, plan, power, scale)
     best_missed, best_total_m, _ = values(ground, work.best)
     cooling = math.exp(math.log(cold / warm) / rounds) if rounds else 1.0
+    moves = MOVES_FOR_LONGEST if ground.is_makespan else MOVES_FOR_TOTAL
     temperature = warm
     for _ in range(rounds):
         temperature *= cooling
-        for _ in range(MOVES):
+        for _ in range(moves):
             longest = -1
             if ground.is_makespan and draw(work.random) < AROUND_LONGEST_SHARE:
                 longest = longest_of(ground, plan)

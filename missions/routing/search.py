@@ -23,7 +23,7 @@ FIXED_STEPS = 40  # of each chain in a search without a time, a second or less i
 MOST_ROUNDS_PER_STEP = 600
 # Temperatures at the beginning and the end, in mean arcs of the plan, of one chain and the next. Measured by `benchmarks.assignment`.
 TOTAL_TEMPERATURES = ((4.0, 0.05), (1.5, 0.05))
-MAKESPAN_TEMPERATURES = ((0.2, 0.001), (0.4, 0.003))
+MAKESPAN_TEMPERATURES = ((1.0, 0.003), (0.4, 0.003))
 POWERS = (3, 3, 4, 5, 6)  # of 2, one after another: the longest route comes to count more and more
 
 
