@@ -87,7 +87,8 @@ def _route_points(
     stop_target: IntArray,
 ) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, IntArray]:
     """Columns as in RoutePoints, and the places of the targets' own points."""
-    most = 2 * (len(way_position) + len(stop_position)) + 4  # before each point there may be a climb
+    # a climb before each node, before each stop's entry, and before the end; the stops' own points; start and end
+    most = 2 * (len(way_position) + len(stop_count)) + len(stop_position) + 3
     position, agl_m = np.empty((most, 2)), np.empty(most)
     kind, asset = np.full(most, PASS, dtype=np.int64), np.full(most, NONE, dtype=np.int64)
     target = np.full(most, NONE, dtype=np.int64)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
@@ -61,6 +61,7 @@ def route(targets: list[TargetPoints], ways: list[Way], way_home: Way | None = N
 NODES = st.lists(st.tuples(st.integers(0, 4), st.sampled_from([30.0, 60.0, 75.0])), max_size=4)
 
 
+@settings(deadline=None)
 @given(
     stops=st.lists(
         st.tuples(NODES, st.lists(st.integers(0, 4), min_size=1, max_size=3), st.sampled_from([25.0, 60.0, 90.0])), min_size=1, max_size=3
@@ -130,6 +131,17 @@ def test_a_low_target_off_the_network_is_left_vertically_too() -> None:
         "pass 8 @60",
         "end 0 @60",
     ]
+
+
+def test_a_hundred_low_targets_off_the_network_are_all_there() -> None:
+    """Three points each, without a node between them: no route of as few nodes has more points."""
+    targets = [target(index, 2.0 * index + 1.0, agl_m=30.0) for index in range(100)]
+    for way_home in (None, []):
+        points = points_of(targets, [[] for _ in targets], way_home)
+        home = None if way_home is None else at(0)
+        assert list(points) == plain_route(at(0), TRANSIT_M, targets, [[] for _ in range(len(targets) + 1)], home)
+        assert len(points) == (301 if way_home is None else 302)
+        assert points[-1].kind is WaypointKind.END
 
 
 def test_a_tall_target_is_passed_high_and_inspected_from_there() -> None:
