@@ -11,6 +11,7 @@ import { createPlanning } from "./planning.js";
 import { showBoth } from "./panels/both.js";
 import { createRunningJob } from "./running_job.js";
 import { createSaving } from "./saving.js";
+import { basisOf } from "./selection.js";
 
 const wordsOf = (error) => (error instanceof ApiError ? error.message : t("Something failed on this page. Reload it; your selection is kept in this browser."));
 
@@ -19,19 +20,19 @@ export function createActions(store, history, page, drafts) {
   const selection = () => store.state.selection;
   const change = (next) => history.changeTo(settled(next));
 
-  /** Stays until the next try; with `untilChanged` until the selection is another one. */
-  function problem(title, text, actions = [], { untilChanged = false } = {}) {
-    store.update({ problem: { title, text, actions, about: untilChanged ? selection() : null } });
+  /** Stays until the next try; with `untilChanged` until something else is picked, whatever is saved meanwhile. */
+  function problem(title, text, actions = [], { untilChanged = false, level = "critical", isOfSaving = false } = {}) {
+    store.update({ problem: { title, text, actions, level, isOfSaving, about: untilChanged ? basisOf(selection()) : null } });
   }
   store.listen(["selection"], (state) => {
-    if (state.problem?.about && state.problem.about !== state.selection) store.update({ problem: null });
+    if (state.problem?.about && state.problem.about !== basisOf(state.selection)) store.update({ problem: null });
   });
 
   /** What an error says, and the way out that goes with it. */
   function failed(title, error, actions = [], how = {}) {
     if (error.isSignedOut) {
       const words = page.canPlan ? t("Your selection is kept in this browser.") : t("Sign in to go on.");
-      problem(t("You are signed out."), words, [{ label: t("Sign in"), href: signInAddress }]);
+      problem(t("You are signed out."), words, [{ label: t("Sign in"), href: signInAddress }], { ...how, untilChanged: false });
     } else problem(title, wordsOf(error), actions, how);
   }
 

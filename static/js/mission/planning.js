@@ -93,7 +93,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       aside.start(asked);
     } catch (error) {
       if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
-      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }]);
+      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }], { untilChanged: true });
     } finally {
       runningJob.drop(mission);
       running.stopping = null;

@@ -34,6 +34,9 @@ export function createSaving({ store, history, selection, change, problem, faile
   let wanted = null; // what somebody asked for while another save was under way
   let refused = null; // what was not saved: it is tried again once it is another
 
+  /** What is said of a plan stays over a save: it stands until something else is picked. */
+  const unlessOfSaving = (standing) => (standing?.about && !standing.isOfSaving ? standing : null);
+
   const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.basisOf(picked), name, plan?.basis ?? null]);
 
   function shownAs(mission, stored, plan) {
@@ -45,7 +48,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       planIsStored: Boolean(plan),
       savedBasis: picks.basisOf(stored),
       figures: plan ? { ...store.state.figures, [plan.basis]: plan.result } : store.state.figures,
-      problem: null,
+      problem: unlessOfSaving(store.state.problem),
       conflict: null,
       isAway: false,
     });
@@ -115,7 +118,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       if (!byItself) toast(t("“{name}” is saved.", { name: mission.name }));
       return;
     }
-    store.update({ saving: true, problem: null });
+    store.update({ saving: true, problem: unlessOfSaving(store.state.problem) });
     let draftId = null; // stored already, its plan not yet
     try {
       const answer = isNew ? await post("/missions", body, { headers: { "Idempotency-Key": key } }) : await patch(`/missions/${mission.id}`, body, { headers: { "If-Match": `"${mission.revision}"` } });
@@ -155,18 +158,21 @@ export function createSaving({ store, history, selection, change, problem, faile
 
   async function saveFailed(error, asCopy, lost) {
     const again = () => save({ asCopy });
+    const how = { isOfSaving: true };
     if (error.name === "AbortError") {
-      problem(t("Saved as a draft."), t("Planning was stopped before it was done."));
+      problem(t("Saved as a draft."), t("Planning was stopped before it was done."), [], how);
     } else if (error.status === 412) {
       await conflicts.meet(lost);
     } else if (error.status === 404 && store.state.mission && !asCopy) {
       conflicts.tellDeleted();
     } else if (error.isAway) {
       store.update({ isAway: true });
-      problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }]);
+      problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }], how);
       retry = setTimeout(() => save({ asCopy, byItself: true }), RETRY_S * 1000);
     } else {
-      failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])]);
+      const standing = unlessOfSaving(store.state.problem);
+      if (standing?.text === error.message) store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
+      else failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])], how);
     }
   }
 

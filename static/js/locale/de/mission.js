@@ -70,6 +70,7 @@ export default {
   "No tower and no bridge stands in {area}.": "Kein Mast und keine Brücke steht in {area}.",
   "No UAV is chosen.": "Kein UAV ist gewählt.",
   "No way along the network leads there.": "Kein Weg entlang des Netzes führt dorthin.",
+  "Neither planned nor saved.": "Weder geplant noch gespeichert.",
   "Not planned.": "Nicht geplant.",
   "Not saved: changed by another operator.": "Nicht gespeichert: von einem anderen Operator geändert.",
   "Not saved: the mission has been deleted.": "Nicht gespeichert: Die Mission wurde gelöscht.",

@@ -1,0 +1,63 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { basisOf, EMPTY, targetOf, withoutTargets, withTargets } from "../../static/js/mission/selection.js";
+import { createHistory, createStore } from "../../static/js/store.js";
+
+const spot = { replaceChildren() {}, textContent: "" };
+globalThis.document ??= { cookie: "", querySelector: () => null, getElementById: () => spot, documentElement: { lang: "en", dataset: {} } };
+globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
+globalThis.WebSocket = undefined; // jobs are asked for
+const { createActions } = await import("../../static/js/mission/actions.js");
+const { savedWords } = await import("../../static/js/mission/panels/saved_state.js");
+
+const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] });
+const heron = { id: null, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" };
+const picked = { ...withTargets(EMPTY, [1, 2, 3].map(tower)), uavs: [heron] };
+const planMade = (selection, more) => ({ objective: selection.objective, return_to_start: true, total_length_m: 4000, longest_route_m: 4000, unassigned: [], warnings: [], routes: [{ uav: "Heron", targets: [0], length_m: 4000, duration_s: 400, geometry: {}, waypoints: [] }], ...more });
+const json = (body, status = 200, headers = {}) => new Response(JSON.stringify(body), { status, headers });
+const storedMission = (selection, more) => ({ id: "m", name: "North", revision: 5, uavs: selection.uavs, targets: selection.targets.map(({ asset, kind, label }) => ({ asset, kind, label, position: [10, 50] })), objective: selection.objective, return_to_start: true, locks: [], plan: null, ...more });
+const settle = async () => { for (let turn = 0; turn < 40; turn += 1) await Promise.resolve(), await new Promise(setImmediate); };
+
+/** A page with the stored mission "m" open; serve({ method, path, body }): the answer to each request, all of which are kept in `asked`. */
+function opened(context, serve, state = {}) {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const asked = [];
+  context.mock.method(globalThis, "fetch", async (address, { method, body }) => {
+    const request = { method, path: address.replace("/api/v1", ""), body: body ? JSON.parse(body) : null };
+    asked.push(request);
+    return serve(request, asked);
+  });
+  const store = createStore({
+    selection: picked, name: "North", mission: { id: "m", name: "North", revision: 4 }, stored: { name: "North", selection: picked }, savedBasis: basisOf(picked),
+    plan: null, planIsStored: false, figures: {}, planning: null, planningBeside: null, saving: false, conflict: null, isAway: false, problem: null,
+    fleet: [], lastPlan: null, why: null, chosenRoute: null, canUndo: false, canRedo: false, ...state,
+  });
+  const history = createHistory(store, "selection");
+  const actions = createActions(store, history, { canPlan: true, userId: 1, userName: "opal" }, { dropOwn() {}, keep: () => true, read: () => null });
+  return { store, history, actions, asked, tick: (ms) => (context.mock.timers.tick(ms), settle()) };
+}
+
+const refusal = (message, more) => json({ error: { code: "invalid", message, ...more } }, 400);
+
+test("why something is not planned is said until something else is picked, whatever is saved meanwhile", async (context) => {
+  const { store, history, actions, asked, tick } = opened(context, ({ path, body }) => (path === "/plans" ? refusal("There is no base.") : json(storedMission({ ...picked, ...body }))));
+  history.changeTo({ ...picked, objective: "total" });
+  await actions.plan();
+  assert.deepEqual([store.state.problem.title, store.state.problem.text], ["Not planned.", "There is no base."]);
+  assert.equal(savedWords(store.state).words, "Not saved yet");
+  await tick(2000);
+  assert.equal(asked.at(-1).method, "PATCH");
+  assert.equal(store.state.problem.text, "There is no base.");
+  history.changeTo(withoutTargets(store.state.selection, [picked.targets[0].key]));
+  assert.equal(store.state.problem, null);
+});
+
+test("what can neither be planned nor saved for the same reason is said once", async (context) => {
+  const { store, history, actions, tick } = opened(context, () => refusal("There is no base."));
+  history.changeTo({ ...picked, objective: "total" });
+  await actions.plan();
+  await tick(2000);
+  assert.equal(store.state.problem.title, "Neither planned nor saved.");
+  assert.equal(savedWords(store.state).words, "Not saved: see below");
+});
