@@ -61,3 +61,18 @@ test("what can neither be planned nor saved for the same reason is said once", a
   assert.equal(store.state.problem.title, "Neither planned nor saved.");
   assert.equal(savedWords(store.state).words, "Not saved: see below");
 });
+
+test("a plan that is done after something else was picked says so", async (context) => {
+  let answer;
+  const { store, history, actions, asked } = opened(context, ({ path, body }) => (path === "/plans" ? new Promise((resolve) => (answer = resolve)) : json(storedMission({ ...picked, ...body }))));
+  const underWay = actions.plan();
+  history.changeTo(withoutTargets(picked, [picked.targets[0].key]));
+  answer(json(planMade(picked)));
+  await underWay;
+  assert.deepEqual([store.state.problem.title, store.state.problem.level], ["The selection has changed since.", "warning"]);
+  assert.deepEqual(store.state.plan.targets, picked.targets);
+  assert.equal(asked.filter(({ path }) => path === "/plans").length, 1); // the other way of planning it is of no use
+  store.state.problem.actions[0].act();
+  assert.deepEqual(asked.at(-1).body.targets, [{ asset: 2 }, { asset: 3 }]);
+  assert.equal(store.state.problem, null);
+});

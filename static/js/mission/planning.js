@@ -5,7 +5,7 @@ import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { isSamePlan, summaryOfPlan } from "./compare.js";
-import { otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
+import { isPlanCurrent, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -90,7 +90,8 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       const unreached = unreachedOf(made).length;
       const quality = qualityOf(result);
       say([`${sentence}. ${facts}.`, quality?.words, wishWordsOf(result), unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached.")].filter(Boolean).join(" "));
-      aside.start(asked);
+      if (picks.basisOf(selection()) === made.basis) aside.start(asked);
+      else if (!isPlanCurrent(store.state)) tellChanged();
     } catch (error) {
       if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
       else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }], { untilChanged: true });
@@ -99,6 +100,11 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       running.stopping = null;
       store.update({ planning: null });
     }
+  }
+
+  function tellChanged() {
+    const words = t("The plan is of what was picked when planning began.");
+    problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: plan }], { untilChanged: true, level: "warning" });
   }
 
   /** A large plan that was being made when the page was left: its progress comes back, or its result. */

@@ -55,6 +55,8 @@ export default {
   "Unlock": "Freigeben",
   "Unlock all": "Alle freigeben",
   "What your wish costs is not known.": "Was Ihr Wunsch kostet, ist nicht bekannt.",
+  "The plan is of what was picked when planning began.": "Der Plan gilt für das, was bei Planungsbeginn gewählt war.",
+  "The selection has changed since.": "Die Auswahl hat sich seitdem geändert.",
   "Your wish costs nothing.": "Ihr Wunsch kostet nichts.",
   "Your wish costs {figure} more{share}.": "Ihr Wunsch kostet {figure} mehr{share}.",
   "Your wish is not planned yet.": "Ihr Wunsch ist noch nicht geplant.",
