@@ -76,3 +76,59 @@ test("a plan that is done after something else was picked says so", async (conte
   assert.deepEqual(asked.at(-1).body.targets, [{ asset: 2 }, { asset: 3 }]);
   assert.equal(store.state.problem, null);
 });
+
+const large = { ...withTargets(EMPTY, Array.from({ length: 14 }, (_, number) => tower(number + 1))), uavs: [heron] };
+const stateOfLarge = { selection: large, stored: { name: "North", selection: large }, savedBasis: basisOf(large) };
+const jobDone = (id, selection) => json({ id, state: "done", result: planMade(selection) });
+
+/** A server with as many open jobs of this person as `others` says; it begins jobs "j1", "j2" and so on, and ends only those of `ends`. */
+function planner({ others = 0, ends = ["j1"], save }) {
+  let jobs = 0;
+  return ({ method, path, body }) => {
+    if (path === "/plans") return json({ job: `j${(jobs += 1)}` }, 202);
+    if (path.startsWith("/jobs?")) return json({ results: Array.from({ length: others }, () => ({})), next: null });
+    if (path.endsWith("/cancel")) return json({});
+    if (path.startsWith("/jobs/")) return ends.includes(path.slice(6)) ? jobDone(path.slice(6), large) : json({ id: path.slice(6), state: "running", progress: 0.1 });
+    return method === "PATCH" ? save(body) : json(storedMission(large));
+  };
+}
+
+const storedWithPlan = () => json(storedMission(large, { plan: planMade(large) }));
+
+test("the other way of a large plan is made once the plan is saved and nothing else runs", async (context) => {
+  const { store, actions, asked, tick } = opened(context, planner({ save: storedWithPlan }), stateOfLarge);
+  await actions.plan();
+  assert.equal(asked.filter(({ path }) => path === "/plans").length, 1);
+  await tick(2000);
+  assert.deepEqual(asked.filter(({ method, path }) => method === "PATCH" || path === "/plans").map(({ body }) => body.plan_of ?? body.objective), ["makespan", "j1", "total"]);
+  assert.ok(store.state.planningBeside);
+});
+
+test("it is not made where another plan of this person's is waiting or running", async (context) => {
+  const { store, actions, asked, tick } = opened(context, planner({ others: 1, save: storedWithPlan }), stateOfLarge);
+  await actions.plan();
+  await tick(2000);
+  assert.equal(asked.filter(({ path }) => path === "/plans").length, 1);
+  assert.equal(store.state.planningBeside, null);
+});
+
+test("it is stopped for a new plan that is asked for", async (context) => {
+  const { actions, asked, tick } = opened(context, planner({ ends: ["j1", "j3"], save: storedWithPlan }), stateOfLarge);
+  await actions.plan();
+  await tick(2000);
+  await actions.plan();
+  assert.deepEqual(asked.filter(({ path }) => path === "/plans" || path.endsWith("/cancel")).map(({ path }) => path), ["/plans", "/plans", "/jobs/j2/cancel", "/plans"]);
+});
+
+test("a save for which the server has no room is tried again when the server says", async (context) => {
+  const answers = [() => json({ error: { code: "too_many_jobs", message: "4 of your jobs are waiting." } }, 429, { "Retry-After": "10" }), storedWithPlan];
+  const { store, actions, asked, tick } = opened(context, planner({ save: () => answers.shift()() }), stateOfLarge);
+  await actions.plan();
+  await tick(2000);
+  assert.deepEqual([store.state.problem.title, store.state.problem.text], ["Not saved yet.", "4 of your jobs are waiting. Next try in 10 s."]);
+  await tick(9000);
+  assert.equal(asked.filter(({ method }) => method === "PATCH").length, 1);
+  await tick(1000);
+  assert.equal(asked.filter(({ method }) => method === "PATCH").length, 2);
+  assert.deepEqual([store.state.problem, store.state.planIsStored], [null, true]);
+});

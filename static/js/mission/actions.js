@@ -37,9 +37,9 @@ export function createActions(store, history, page, drafts) {
   }
 
   const context = { store, history, selection, change, problem, failed, page, drafts, running: { stopping: null }, runningJob: createRunningJob({ user: page.userId }) };
-  const { waitForJob, ...planning } = createPlanning(context);
+  const { waitForJob, makeRoom, ...planning } = createPlanning(context);
   let saving = null;
   const conflicts = createConflicts(context, () => saving, showBoth);
-  saving = createSaving(context, waitForJob, conflicts);
+  saving = createSaving(context, { waitForJob, makeRoom }, conflicts);
   return { failed, ...createPicking(context), ...createLocking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context) };
 }

@@ -1,6 +1,6 @@
 /** Saving what is changed, opening a stored mission, and the draft that outlives the page. */
 
-import { get, patch, post, remove } from "../api.js";
+import { ApiError, get, patch, post, remove } from "../api.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { clockText, dayText } from "../units.js";
@@ -26,8 +26,8 @@ export function changedParts(selection, stored) {
   return Object.fromEntries(changed.map((part) => [part, now[part]]));
 }
 
-/** context: see actions.js; waitForJob(job, words): of planning.js; conflicts: see conflicts.js. */
-export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, waitForJob, conflicts) {
+/** context: see actions.js; waitForJob(job, words) and makeRoom(): of planning.js; conflicts: see conflicts.js. */
+export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, { waitForJob, makeRoom }, conflicts) {
   let retry = 0;
   let rest = 0;
   let unsure = null; // { asked, body, key, isNew, asCopy } of a save whose answer never came
@@ -118,6 +118,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       if (!byItself) toast(t("“{name}” is saved.", { name: mission.name }));
       return;
     }
+    if (body.plan && !body.plan_of) makeRoom();
     store.update({ saving: true, problem: unlessOfSaving(store.state.problem) });
     let draftId = null; // stored already, its plan not yet
     try {
@@ -169,6 +170,14 @@ export function createSaving({ store, history, selection, change, problem, faile
       store.update({ isAway: true });
       problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }], how);
       retry = setTimeout(() => save({ asCopy, byItself: true }), RETRY_S * 1000);
+    } else if (error.retryAfter_s !== null && error.retryAfter_s !== undefined) {
+      const wait_s = Math.max(1, error.retryAfter_s);
+      const next = t("Next try in {seconds} s.", { seconds: wait_s });
+      failed(t("Not saved yet."), new ApiError(`${error.message} ${next}`, error), [{ label: t("Try now"), act: again }], how);
+      retry = setTimeout(() => {
+        refused = null; // where a plan is being made now, it is tried again after that
+        void save({ asCopy, byItself: true });
+      }, wait_s * 1000);
     } else {
       const standing = unlessOfSaving(store.state.problem);
       if (standing?.text === error.message) store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });

@@ -72,6 +72,8 @@ export default {
   "No way along the network leads there.": "Kein Weg entlang des Netzes führt dorthin.",
   "Neither planned nor saved.": "Weder geplant noch gespeichert.",
   "Not planned.": "Nicht geplant.",
+  "Next try in {seconds} s.": "Nächster Versuch in {seconds} s.",
+  "Not saved yet.": "Noch nicht gespeichert.",
   "Not saved: changed by another operator.": "Nicht gespeichert: von einem anderen Operator geändert.",
   "Not saved: the mission has been deleted.": "Nicht gespeichert: Die Mission wurde gelöscht.",
   "Not saved: the server cannot be reached.": "Nicht gespeichert: Der Server ist nicht erreichbar.",
