@@ -9,6 +9,7 @@ globalThis.document ??= { cookie: "", querySelector: () => null, getElementById:
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 globalThis.WebSocket = undefined; // jobs are asked for
 const { createActions } = await import("../../static/js/mission/actions.js");
+const { refusalOf } = await import("../../static/js/mission/refusals.js");
 const { savedWords } = await import("../../static/js/mission/panels/saved_state.js");
 
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] });
@@ -131,4 +132,28 @@ test("a save for which the server has no room is tried again when the server say
   await tick(1000);
   assert.equal(asked.filter(({ method }) => method === "PATCH").length, 2);
   assert.deepEqual([store.state.problem, store.state.planIsStored], [null, true]);
+});
+
+test("a refusal is said without the places of fields, with what would help instead of another try", async (context) => {
+  const locks = [{ uav: "Heron", targets: picked.targets.slice(0, 2).map(({ key }) => key), at_start: false, at_end: false }];
+  const selection = { ...picked, uavs: [{ ...heron, most_targets: 1 }], locks };
+  const words = "Heron may do 1 target at most, but 2 are locked to it.";
+  const { store, actions } = opened(context, () => refusal(`uavs.0.most_targets: ${words}`, { details: { "uavs.0.most_targets": [words] } }), { selection });
+  await actions.plan();
+  assert.equal(store.state.problem.text, words);
+  const [raise, unlock] = store.state.problem.actions;
+  assert.deepEqual([raise.label, unlock.label], ["Raise its limit to 2", "Unlock its targets"]);
+  raise.act();
+  assert.deepEqual([store.state.selection.uavs[0].most_targets, store.state.problem], [2, null]);
+  unlock.act();
+  assert.deepEqual(store.state.selection.locks, []);
+});
+
+test("a fault of a field names the UAV or the target that it is of", () => {
+  const said = (details) => refusalOf({ details }, picked)?.words;
+  assert.equal(said({ uavs: { 0: { max_range_m: ["Ensure this value is above 0."] } } }), "Heron: Ensure this value is above 0.");
+  assert.equal(said({ "targets.1.asset": ["There is no such asset."] }), "2: There is no such asset.");
+  assert.equal(said({ "uavs.0.end_action": ["Heron is to land at a base, but there is none."] }), "Heron is to land at a base, but there is none.");
+  assert.equal(said({ name: ["Too long."] }), "Too long.");
+  assert.equal(said(null), undefined);
 });

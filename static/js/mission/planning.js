@@ -94,7 +94,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       else if (!isPlanCurrent(store.state)) tellChanged();
     } catch (error) {
       if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
-      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }], { untilChanged: true });
+      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }], { untilChanged: true, asked });
     } finally {
       runningJob.drop(mission);
       running.stopping = null;

@@ -27,7 +27,7 @@ export function changedParts(selection, stored) {
 }
 
 /** context: see actions.js; waitForJob(job, words) and makeRoom(): of planning.js; conflicts: see conflicts.js. */
-export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, { waitForJob, makeRoom }, conflicts) {
+export function createSaving({ store, history, selection, change, problem, failed, wordsOf, running, page, drafts }, { waitForJob, makeRoom }, conflicts) {
   let retry = 0;
   let rest = 0;
   let unsure = null; // { asked, body, key, isNew, asCopy } of a save whose answer never came
@@ -180,7 +180,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       }, wait_s * 1000);
     } else {
       const standing = unlessOfSaving(store.state.problem);
-      if (standing?.text === error.message) store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
+      if (standing && standing.text === wordsOf(error)) store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
       else failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])], how);
     }
   }
