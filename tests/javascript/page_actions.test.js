@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { basisOf, EMPTY, targetOf, withoutTargets, withTargets } from "../../static/js/mission/selection.js";
+import { basisOf, EMPTY, targetOf, withoutTargets, withTargets, withWishes } from "../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../static/js/store.js";
 
 const spot = { replaceChildren() {}, textContent: "" };
@@ -9,6 +9,8 @@ globalThis.document ??= { cookie: "", querySelector: () => null, getElementById:
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 globalThis.WebSocket = undefined; // jobs are asked for
 const { createActions } = await import("../../static/js/mission/actions.js");
+const { isWorse } = await import("../../static/js/mission/compare.js");
+const { planOf } = await import("../../static/js/mission/planning.js");
 const { refusalOf } = await import("../../static/js/mission/refusals.js");
 const { savedWords } = await import("../../static/js/mission/panels/saved_state.js");
 
@@ -156,4 +158,24 @@ test("a fault of a field names the UAV or the target that it is of", () => {
   assert.equal(said({ "uavs.0.end_action": ["Heron is to land at a base, but there is none."] }), "Heron is to land at a base, but there is none.");
   assert.equal(said({ name: ["Too long."] }), "Too long.");
   assert.equal(said(null), undefined);
+});
+
+test("a plan made anew that is worse than the one on the page does not take its place", async (context) => {
+  const before = planMade(picked);
+  const longer = planMade(picked, { routes: [{ ...before.routes[0], duration_s: 460 }] });
+  const { store, actions } = opened(context, () => json(longer), { plan: { ...planOf(before, picked) }, planIsStored: true, figures: { [basisOf(picked)]: before } });
+  await actions.plan();
+  assert.deepEqual([store.state.plan.result, store.state.planIsStored, store.state.planning], [before, true, null]);
+});
+
+test("a plan is worse where it reaches less, then where it is longer by what is asked for; on other ground it is another plan", () => {
+  const plan = (more, selection = picked) => planOf(planMade(selection, more), selection);
+  const missed = (...targets) => ({ unassigned: targets.map((target) => ({ target })) });
+  assert.ok(isWorse(plan(missed(0, 1)), plan(missed(2))));
+  const urgent = withWishes(picked, [picked.targets[0].key], { priority: "high" });
+  assert.ok(isWorse(plan(missed(0), urgent), plan(missed(1, 2), urgent)));
+  assert.ok(!isWorse(plan(missed(1)), plan(missed(2))));
+  assert.ok(isWorse(plan({ total_length_m: 4100 }), plan({})));
+  assert.ok(!isWorse(plan({ total_length_m: 4100, ground_revision: 8 }), plan({ ground_revision: 7 })));
+  assert.ok(!isWorse(plan({ total_length_m: 4100, warnings: [{ code: "uav_out_of_service", uav: 0 }] }), plan({})));
 });

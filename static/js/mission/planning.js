@@ -4,8 +4,8 @@ import { follow, get, post } from "../api.js";
 import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
-import { isSamePlan, summaryOfPlan } from "./compare.js";
-import { isPlanCurrent, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
+import { isSamePlan, isWorse, summaryOfPlan } from "./compare.js";
+import { figuresOf, isPlanCurrent, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -84,6 +84,12 @@ export function createPlanning({ store, selection, change, problem, failed, runn
         result = { ...(await waitForJob(job, what)).result, job }; // saved by the job's number
       }
       const made = planOf(result, asked);
+      const before = store.state.plan;
+      if (before?.basis === made.basis && isWorse(made, before)) {
+        toast(t("The new plan is no better ({figures}). The one on the page stays.", { figures: figuresOf(result) }));
+        aside.want(asked);
+        return;
+      }
       if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
       store.update({ plan: made, figures: withResult(store.state.figures, made.basis, result), planIsStored: false, chosenRoute: null, why: null });
       const { sentence, facts } = sentenceOf(made);

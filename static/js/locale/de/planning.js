@@ -60,6 +60,7 @@ export default {
   "Unlock its targets": "Seine Ziele freigeben",
   "Unlock all": "Alle freigeben",
   "What your wish costs is not known.": "Was Ihr Wunsch kostet, ist nicht bekannt.",
+  "The new plan is no better ({figures}). The one on the page stays.": "Der neue Plan ist nicht besser ({figures}). Der auf der Seite bleibt.",
   "The plan is of what was picked when planning began.": "Der Plan gilt für das, was bei Planungsbeginn gewählt war.",
   "The selection has changed since.": "Die Auswahl hat sich seitdem geändert.",
   "Your wish costs nothing.": "Ihr Wunsch kostet nichts.",
