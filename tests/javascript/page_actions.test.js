@@ -9,6 +9,7 @@ globalThis.document ??= { cookie: "", querySelector: () => null, getElementById:
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 globalThis.WebSocket = undefined; // jobs are asked for
 const { createActions } = await import("../../static/js/mission/actions.js");
+const { howFarWords } = await import("../../static/js/mission/panels/foot.js");
 const { isWorse } = await import("../../static/js/mission/compare.js");
 const { planOf } = await import("../../static/js/mission/planning.js");
 const { refusalOf } = await import("../../static/js/mission/refusals.js");
@@ -178,4 +179,16 @@ test("a plan is worse where it reaches less, then where it is longer by what is 
   assert.ok(isWorse(plan({ total_length_m: 4100 }), plan({})));
   assert.ok(!isWorse(plan({ total_length_m: 4100, ground_revision: 8 }), plan({ ground_revision: 7 })));
   assert.ok(!isWorse(plan({ total_length_m: 4100, warnings: [{ code: "uav_out_of_service", uav: 0 }] }), plan({})));
+});
+
+test("a plan that no planner has taken yet is waiting, not at 0 %", async (context) => {
+  const states = [{ state: "queued", progress: 0 }, { state: "running", progress: 0.4 }];
+  const { store, actions, tick } = opened(context, (request) => (request.path === "/jobs/j1" && states.length ? json({ id: "j1", message: "Planning 14 targets", ...states.shift() }) : planner({ save: storedWithPlan })(request)), stateOfLarge);
+  void actions.plan();
+  await tick(0);
+  assert.deepEqual([howFarWords(store.state.planning), store.state.planning.share], ["waiting", null]);
+  await tick(1000);
+  assert.equal(howFarWords(store.state.planning).replace("\u00a0", " "), "40 %");
+  await tick(1000);
+  assert.equal(store.state.planning, null);
 });

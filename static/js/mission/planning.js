@@ -31,7 +31,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
   async function waitForJob(jobId, what) {
     const job = await followLive(jobId, {
       signal: running.stopping?.signal,
-      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.progress, best: at.best ?? store.state.planning?.best ?? null, job: jobId } }),
+      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.state === "queued" ? null : at.progress, isQueued: at.state === "queued", best: at.best ?? store.state.planning?.best ?? null, job: jobId } }),
     });
     if (job.state === "cancelled" && !job.result) throw new DOMException("stopped", "AbortError");
     return job;
