@@ -34,7 +34,7 @@ def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     except JobCancelled:
         confirm_cancelled(job=job)
     except InvalidRequest as error:
-        fail_job(job=job, code="invalid", message=str(error))
+        fail_job(job=job, code="invalid", message=next(iter(error.faults.values())))
     except NoGraph:
         fail_job(job=job, code="no_graph", message=NO_GRAPH)
     except GraphOutdated as error:

@@ -15,7 +15,7 @@ from missions.services.best_so_far import OnPlanProgress
 from missions.services.missions import drop_plan, lock_mission, request_of_mission
 from missions.services.planning import make_plan
 from missions.services.requests import PlanRequest, request_from_json
-from missions.services.wishes import with_bases
+from missions.services.wishes import has_sensor, with_bases
 from workspace.models import Job, User
 from workspace.services import JobCancelled, finish_job, record_change
 
@@ -50,10 +50,17 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
         replace(target, task=stored.task) if target.task is None else target  # the mission holds what the planner took for none
         for target, stored in zip(asked.targets, wanted.targets, strict=True)
     )
-    if replace(asked, targets=targets) != wanted:
+    if _that_counts(replace(asked, targets=targets)) != _that_counts(wanted):
         return False
     store_plan(mission=mission, actor=actor, revision=revision, plan=job.result)
     return True
+
+
+def _that_counts(request: PlanRequest) -> PlanRequest:
+    """The request with those sensors alone that a target needs: a UAV of the fleet may have got others since the mission was stored."""
+    needed = [target.sensor for target in request.targets if target.sensor]
+    uavs = (replace(uav, sensors=tuple(sensor for sensor in needed if has_sensor(uav, sensor))) for uav in request.uavs)
+    return replace(request, uavs=tuple(uavs))
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:

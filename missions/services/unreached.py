@@ -1,18 +1,21 @@
 """Why a target is left out after the routes are found: the solver's reason, and the wish, the distance or the zones behind it."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from missions.routing.problem import End, Problem, Reason, Unassigned
+from missions.routing.problem import BoolArray, End, Problem, Reason, Unassigned
+from missions.routing.reach import needed_range_m, reachable
 from missions.routing.terminals import Ways, is_near_network
 from missions.services.assignment import Assignment
 from missions.services.places import Place
-from missions.services.refusals import LeftOut, Scene
-from missions.services.requests import PlanRequest, TargetRequest
+from missions.services.refusals import LeftOut, Scene, groundings
+from missions.services.requests import PlanRequest, TargetRequest, UavRequest
 from missions.services.wishes import has_sensor, may_do
 
 LOCKED = " It is locked to others: the run is left out as a whole."
+MOST_NAMED = 3  # UAVs that a reason names
 
 
 def unreached_places(
@@ -20,6 +23,7 @@ def unreached_places(
 ) -> list[LeftOut]:
     """The solver's reasons in full; ways and visits as it had them."""
     visits_of = asked.problem.visits_of_target()
+    crew: _Crew | None = None
     in_runs = {target for lock in asked.problem.locks if len(lock.targets) > 1 for target in lock.targets}
     found = []
     for item in unassigned:
@@ -27,9 +31,13 @@ def unreached_places(
         if item.target in asked.held_back:
             found.append(LeftOut(place.target, Reason.NOT_ALLOWED.value, asked.held_back[item.target]))
             continue
-        reason, message = _why(item, request.targets[place.target], request, asked, visits, ways) or _way_barred(
-            place, item, visits, ways, scene
-        )
+        if item.reason is Reason.MOST_TARGETS:
+            crew = crew or _crew_of(request, asked.problem, scene)
+            reason, message = item.reason.value, _all_have_enough(request.targets[place.target], crew, visits)
+        else:
+            reason, message = _why(item, request.targets[place.target], request, asked, visits, ways) or _way_barred(
+                place, item, visits, ways, scene
+            )
         found.append(LeftOut(place.target, reason, message + (LOCKED if item.target in in_runs else "")))
     return found
 
@@ -40,8 +48,6 @@ def _why(
     """Where a wish is what keeps the target from its route, that wish."""
     if item.reason is Reason.NOT_ALLOWED:
         return item.reason.value, _nobody_may(target, request)
-    if item.reason is Reason.MOST_TARGETS:
-        return item.reason.value, _all_have_enough(target, item)
     if item.reason is Reason.NO_PATH and _is_cut_off_from_bases(asked.problem, visits, ways):
         return item.reason.value, "There is no way from it to a base that lies outside every no-fly zone."
     return None
@@ -69,10 +75,34 @@ def _nobody_may(target: TargetRequest, request: PlanRequest) -> str:
     return f"No UAV of the plan has the sensor {target.sensor}."
 
 
-def _all_have_enough(target: TargetRequest, item: Unassigned) -> str:
+@dataclass(frozen=True, eq=False)
+class _Crew:
+    """The UAVs that fly, and which of the visits each could do alone, (u, v)."""
+
+    uavs: tuple[UavRequest, ...]
+    within: BoolArray
+
+
+def _crew_of(request: PlanRequest, problem: Problem, scene: Scene) -> _Crew:
+    grounded = groundings(request.uavs, scene)
+    flying = tuple(uav for number, uav in enumerate(request.uavs) if number not in grounded)
+    return _Crew(flying, reachable(problem, needed_range_m(problem)))
+
+
+def _all_have_enough(target: TargetRequest, crew: _Crew, visits: Sequence[int]) -> str:
+    """Each UAV that could do it alone has its most: which they are, where they are few."""
     if target.uav:
         return f"It is tied to {target.uav}, which has as many targets as it may have."
-    return f"Each UAV with the sensor {target.sensor} that can do it has as many targets as it may have." if target.sensor else item.message
+    able = crew.within[:, list(visits)].any(axis=1)
+    if len(crew.uavs) != len(able) or able.sum() > MOST_NAMED:  # a UAV may have been put out of service meanwhile
+        fitting = f"Each UAV with the sensor {target.sensor}" if target.sensor else "Each UAV"
+        return f"{fitting} that has the range for it has as many targets as it may have."
+    full = [uav for uav, is_able in zip(crew.uavs, able, strict=True) if is_able]
+    far = any(may_do(uav, target) for uav, is_able in zip(crew.uavs, able, strict=True) if not is_able)
+    rest = ", and no other UAV has the range for it." if far else "."
+    if len(full) == 1:
+        return f"{full[0].name} has as many targets as it may have ({full[0].most_targets}){rest}"
+    return f"{', '.join(uav.name for uav in full[:-1])} and {full[-1].name} have as many targets as they may have{rest}"
 
 
 def _way_barred(place: Place, item: Unassigned, visits: Sequence[int], ways: Ways, scene: Scene) -> tuple[str, str]:

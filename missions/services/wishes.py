@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from django.utils.translation import gettext as _
+from django.utils.translation import ngettext
 
 from inspection.geodesy import LonLat
 from missions.fleet_selectors import bases_of_organisation
@@ -20,8 +21,8 @@ def with_bases(request: PlanRequest, organisation: Organisation) -> PlanRequest:
         return replace(request, bases=())
     bases = stored_bases(organisation)
     if not bases:
-        fault = _("There is no base to land at. Add one to the fleet, or choose another end.")
-        raise InvalidRequest({f"uavs.{uav}.end_action": fault for uav in landing})
+        fault = _("%(uav)s is to land at a base, but there is none. Add one to the fleet, or choose another end.")
+        raise InvalidRequest({f"uavs.{uav}.end_action": fault % {"uav": request.uavs[uav].name} for uav in landing})
     return replace(request, bases=bases)
 
 
@@ -109,5 +110,9 @@ def _count_faults(request: PlanRequest) -> Iterator[tuple[str, str]]:
     for number, uav in enumerate(request.uavs):
         locked = sum(len(lock.targets) for lock in request.locks if lock.uav == uav.name)
         if uav.most_targets is not None and locked > uav.most_targets:
-            values = {"most": uav.most_targets, "locked": locked}
-            yield f"uavs.{number}.most_targets", _("It may do %(most)s targets, but %(locked)s are locked to it.") % values
+            fault = ngettext(
+                "%(uav)s may do %(most)s target at most, but %(locked)s are locked to it.",
+                "%(uav)s may do %(most)s targets at most, but %(locked)s are locked to it.",
+                uav.most_targets,
+            )
+            yield f"uavs.{number}.most_targets", fault % {"uav": uav.name, "most": uav.most_targets, "locked": locked}

@@ -5,12 +5,13 @@ import { t } from "./text.js";
 const ROOT = "/api/v1";
 
 export class ApiError extends Error {
-  constructor(message, { status = 0, code = "", details = null } = {}) {
+  constructor(message, { status = 0, code = "", details = null, retryAfter_s = null } = {}) {
     super(message);
     this.name = "ApiError";
     this.status = status;
     this.code = code;
     this.details = details;
+    this.retryAfter_s = retryAfter_s; // where the server says when it may be asked again
   }
 
   get isAway() {
@@ -72,7 +73,8 @@ async function problemOf(response) {
   };
   if (isSignedOut(status, error.code, error.message)) return new ApiError(SIGNED_OUT, { status: 401, code: "not_authenticated" });
   const message = detail || error.message || words[status] || t("The server answered with {status}.", { status });
-  return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null });
+  const wait = response.headers.get("Retry-After");
+  return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null, retryAfter_s: /^\d+$/.test(wait ?? "") ? Number(wait) : null });
 }
 
 /** request("POST", "/plans", { body }) → { data, status, etag }; 304 comes without data. Throws ApiError; an abort passes as AbortError. */

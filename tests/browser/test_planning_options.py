@@ -189,3 +189,20 @@ def test_a_large_plan_is_seen_while_it_is_made_comes_back_after_a_reload_and_can
     page.get_by_role("button", name="Cancel").click()
     expect(page.get_by_text("Planning stopped. Nothing was changed.")).to_be_visible()
     expect(page.locator("#plan-facts")).to_contain_text("60 targets")
+
+
+def test_a_plan_of_what_was_picked_before_says_so_and_still_does_once_the_change_is_saved(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal")
+    opens_mission(page, "Changed on the way", targets=40)
+    page.get_by_role("button", name="Plan P").click()
+    stop = page.get_by_role("button", name="Stop, keep the best")
+    expect(stop).to_be_visible()
+    page.get_by_role("list", name="Targets", exact=True).get_by_role("button", name=re.compile("^Remove ")).first.click()
+    expect(page.get_by_text("1 target removed.")).to_be_visible()
+    stop.click()
+    told = page.get_by_text("The selection has changed since.")
+    expect(told).to_be_visible()
+    expect(page.locator("#save-state")).to_contain_text(re.compile(r"^Saved \d"))
+    expect(told).to_be_visible()
+    expect(page.locator("#plan-facts")).to_contain_text("for the selection before")
+    expect(page.locator("#plan-quality")).to_be_hidden()

@@ -38,6 +38,14 @@ test("nothing is said of a plan whose bound is not known, or that nobody flies",
   assert.equal(qualityOf(result({ routes: [{ geometry: null }] })), null);
 });
 
+test("where targets are left out, a proof is of plans that reach as many, and a bound that a search leaves is not told", () => {
+  const missed = (reason) => ({ unassigned: [{ target: 1, reason, message: "" }] });
+  assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "makespan", ...missed("beyond_range") })).words, "Proven soonest of plans that reach as many targets.");
+  assert.equal(qualityOf(result({ is_proven: true, gap: 0, wish: {}, ...missed("most_targets") })).words, "Proven shortest with what is locked, of plans that reach as many targets.");
+  assert.equal(qualityOf(result({ gap: 0.8, ...missed("beyond_range") })), null);
+  assert.equal(plain(qualityOf(result({ gap: 0.2, ...missed("inside_zone") })).words), "At most 25.0 % above what is possible.");
+});
+
 test("what a wish costs is said with its share of the free plan", () => {
   const wish = { cost_m: 2300, cost_s: 120, free_total_m: 57_500, free_longest_s: 3000, left_out: 0 };
   assert.equal(plain(wishWordsOf({ objective: "total", wish })), "Your wish costs 2.3 km more (+4.0 %).");
@@ -49,7 +57,8 @@ test("what a wish costs is said with its share of the free plan", () => {
 });
 
 test("the best so far comes with its bound and gap", () => {
-  assert.equal(plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 1 })), "51.5 km so far, at most 3.0 % above what is possible (50.0 km), 1 target is not reached");
+  assert.equal(plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 0 })), "51.5 km so far, at most 3.0 % above what is possible (50.0 km)");
+  assert.equal(plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 1 })), "51.5 km so far, 1 target is not reached");
   assert.equal(plain(bestWordsOf({ unit: "s", value: 3000, bound: null, left_out: 0 })), "50 min so far");
   assert.equal(bestWordsOf(null), "");
 });

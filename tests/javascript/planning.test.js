@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { counterpart, isSamePlan, movesBetween, profileOfSummary, summaryOfPlan } from "../../static/js/mission/compare.js";
 import { canFly, choicesOf, isAskedFor, standingUavs } from "../../static/js/mission/fleet.js";
 import { partsOf } from "../../static/js/mission/panels/why_route.js";
-import { reasonWords } from "../../static/js/mission/panels/why_target.js";
+import { fullUavs, reasonWords } from "../../static/js/mission/panels/why_target.js";
 import { moreOrLess } from "../../static/js/mission/panels/routes.js";
 import { withResult } from "../../static/js/mission/planning.js";
 import { bandOf, flightOf, groundOf, heightAt, readingAt, spanOf, thinned } from "../../static/js/mission/profile.js";
@@ -131,6 +131,18 @@ test("the parts of a route are those that can be seen, and a zone has its name",
   const said = { straight_m: 20_000, on_lines_m: 5, round_zones_m: 1300, zones: [{ name: "Alum Creek reserve" }] };
   assert.deepEqual(partsOf(said).map(({ name, words }) => [name, words]), [["straight", "Straight from target to target"], ["zones", "Round Alum Creek reserve"]]);
   assert.equal(partsOf({ ...said, round_zones_m: null }).length, 1);
+});
+
+test("a UAV that has as many targets as it may is named where it could fly to one more", () => {
+  const uavs = ["Alpha", "Bravo", "Charlie"].map((name, number) => ({ name, is_in_mission: true, is_enough: number < 2, most_targets: number ? null : 1 }));
+  const said = { reason: "not_with_the_others", zones: [], stretches: [], uavs };
+  const plan = { result: { routes: [{ uav: "Alpha", targets: [4, 4] }, { uav: "Bravo", targets: [1] }, { uav: "Charlie", targets: [] }] } };
+  const full = fullUavs(said, plan);
+  assert.deepEqual(full.map(({ name }) => name), ["Alpha"]);
+  assert.equal(reasonWords(said, full), "Alpha could fly there, but has as many targets as it may have. No other UAV has the range left after its other targets.");
+  const alone = { ...said, uavs: [uavs[0], uavs[2]] };
+  assert.equal(reasonWords(alone, fullUavs(alone, plan)), "Alpha could fly there, but has as many targets as it may have.");
+  assert.match(reasonWords(said, []), /none has the range left/);
 });
 
 test("each reason is said with its figures", () => {

@@ -23,7 +23,7 @@ function opened(context, answers, { meet = async () => {} } = {}) {
   const history = createHistory(store, "selection");
   const saving = createSaving(
     { store, history, selection: () => store.state.selection, change: (value) => history.changeTo(value), problem() {}, failed() {}, running: {}, page: { canPlan: true }, drafts: { dropOwn() {}, keep: () => true } },
-    () => {},
+    { waitForJob() {}, makeRoom() {} },
     { meet },
   );
   return { store, history, saving, asked };

@@ -12,8 +12,9 @@ from django.db import connection
 from django.test import Client
 
 from missions import tasks
-from tests.missions.api import mission_body, plan_body, post
-from tests.missions.worlds import World, world, zone_around
+from missions.models import MissionUav
+from tests.missions.api import mission_body, patch, plan_body, post
+from tests.missions.worlds import UAV_AT, World, world, zone_around
 from tests.workspace.people import client_of, somebody
 from workspace import waiting
 from workspace.models import Job, JobState, Role
@@ -57,16 +58,16 @@ def sent_to(do: Callable[[str], object]) -> Any:
         threads[-1].start()
 
     threads: list[threading.Thread] = []
-    patch = mock.patch("workspace.tasks.current_app.send_task", send)
-    patch.threads = threads  # type: ignore[attr-defined]
-    return patch
+    sending = mock.patch("workspace.tasks.current_app.send_task", send)
+    sending.threads = threads  # type: ignore[attr-defined]
+    return sending
 
 
 def wait_with(client: Client, here: World, do: Callable[[str], object], wait: str, **headers: str) -> Any:
-    patch = sent_to(do)
-    with patch:
+    sending = sent_to(do)
+    with sending:
         response = post(client, "plans", body(here), prefer=wait, **headers)
-    for thread in patch.threads:
+    for thread in sending.threads:
         thread.join()
     return response
 
@@ -139,6 +140,22 @@ def test_who_has_enough_large_plans_is_told_before_any_work(here: World, client:
         assert post(client_of(somebody(Role.OPERATOR)), "plans", body(here)).status_code == 202
         cancel_job(job=Job.objects.filter(created_by__isnull=False).last())
         assert post(client, "plans", body(here)).status_code == 202
+
+
+def test_a_plan_that_is_made_is_stored_however_many_others_are_open(here: World, client: Client, settings: Any) -> None:
+    settings.MOST_OPEN_PLANS = 2
+    heron = post(client, "uavs", {"name": "Heron", "position": list(UAV_AT)}).json()
+    asked = body(here) | {"uavs": [{"id": heron["id"]}]}
+    made = post(client, "missions", mission_body(*asked["targets"], uavs=asked["uavs"])).json()
+    MissionUav.objects.update(sensors=["LiDAR"])  # that it had when the mission was stored; no target asks for one
+    with mock.patch("workspace.tasks.current_app.send_task"):
+        done = post(client, "plans", asked).json()["job"]
+        tasks.solve_plan(done)
+        assert [post(client, "plans", asked).status_code for _ in range(2)] == [202, 202]
+        stored = patch(client, f"missions/{made['id']}", {"plan": True, "plan_of": done})
+        assert (stored.status_code, stored.json()["state"]) == (200, "planned")
+        again = patch(client, f"missions/{made['id']}", {"plan": True})
+        assert (again.status_code, int(again["Retry-After"]) > 0) == (429, True)
 
 
 def test_of_requests_at_the_same_moment_none_gets_past_the_limit(here: World, settings: Any) -> None:

@@ -90,6 +90,19 @@ def test_who_is_tied_to_a_uav_that_has_enough_is_told_so(here: World) -> None:
     assert (reason, message) == ("most_targets", "It is tied to West, which has as many targets as it may have.")
 
 
+def test_who_has_enough_is_named_and_that_the_others_lack_the_range(here: World) -> None:
+    short = replace(EAST, name="Charlie", max_range_m=50.0)
+    plan = make_plan(request=request(*towers(here, 0, 1), uavs=(replace(WEST, name="Alpha", most_targets=1), short)))
+    ((reason, message),) = reasons(plan).values()
+    assert (reason, message) == ("most_targets", "Alpha has as many targets as it may have (1), and no other UAV has the range for it.")
+
+
+def test_two_that_have_enough_are_both_named(here: World) -> None:
+    plan = make_plan(request=request(*towers(here, 0, 1, 5), uavs=(replace(WEST, most_targets=1), replace(EAST, most_targets=1))))
+    ((_, message),) = reasons(plan).values()
+    assert message == "West and East have as many targets as they may have."
+
+
 # --- bases ------------------------------------------------------------------------------------------------------------------------
 
 LANDING = uav(end_action=EndAction.BASE)

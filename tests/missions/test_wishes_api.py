@@ -145,6 +145,25 @@ def test_new_uavs_keep_the_locks_where_they_still_fit(here: World, client: Clien
     assert faults(patch(client, f"missions/{made['id']}", {"uavs": [tern | {"name": "Kite"}]})) == ["targets.1.uav", "locks.0.uav"]
 
 
+@pytest.mark.parametrize(
+    ("most", "locked", "words"),
+    [
+        (1, [0, 1], "Tern may do 1 target at most, but 2 are locked to it."),
+        (2, [0, 1, 2], "Tern may do 2 targets at most, but 3 are locked to it."),
+    ],
+)
+def test_a_limit_below_what_is_locked_names_the_uav(here: World, client: Client, most: int, locked: list[int], words: str) -> None:
+    wishes = {"uavs": [TERN | {"most_targets": most}], "locks": [{"uav": "Tern", "targets": locked}]}
+    error = post(client, "plans", plan_body(*here.towers[:3]) | wishes).json()["error"]
+    assert error["details"] == {"uavs.0.most_targets": [words]}
+
+
+def test_where_there_is_no_base_the_uav_is_named(here: World, client: Client) -> None:
+    error = post(client, "plans", plan_body(here.towers[0], uavs=[TERN | {"end_action": "base"}])).json()["error"]
+    (words,) = error["details"]["uavs.0.end_action"]
+    assert words.startswith("Tern is to land at a base, but there is none.")
+
+
 def test_locks_are_changed_alone_and_drop_the_plan(here: World, client: Client) -> None:
     made = post(client, "missions", wishful(here, name="North", plan=True)).json()
     changed = patch(client, f"missions/{made['id']}", {"locks": []}).json()

@@ -78,6 +78,7 @@ function dragBoxes(map, canvas, on) {
   map.boxZoom.disable();
   let start = null;
   let frame = null;
+  let isDrawn = false; // the click that ends a box picks nothing
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
@@ -86,6 +87,7 @@ function dragBoxes(map, canvas, on) {
   canvas.addEventListener(
     "pointerdown",
     (event) => {
+      isDrawn = false;
       if (event.button !== 0 || (on.tool() !== "box" && !event.shiftKey)) return;
       event.stopPropagation();
       event.preventDefault();
@@ -112,6 +114,7 @@ function dragBoxes(map, canvas, on) {
     frame.remove();
     map.dragPan.enable();
     if (event.type === "pointerup" && Math.hypot(to[0] - from[0], to[1] - from[1]) > 6) {
+      isDrawn = true;
       const corners = [map.unproject(from), map.unproject(to)];
       const longitudes = corners.map((corner) => corner.lng);
       const latitudes = corners.map((corner) => corner.lat);
@@ -120,4 +123,12 @@ function dragBoxes(map, canvas, on) {
   };
   canvas.addEventListener("pointerup", end);
   canvas.addEventListener("pointercancel", end);
+  canvas.addEventListener(
+    "click",
+    (event) => {
+      if (isDrawn) event.stopImmediatePropagation();
+      isDrawn = false;
+    },
+    true,
+  );
 }

@@ -10,7 +10,7 @@ export function drawLassos(map, canvas, on) {
   let points = null; // on the screen
   let drawing = null;
   let line = null;
-  let isDropped = false; // the click that ends a dropped drawing picks nothing
+  let isDrawn = false; // the click that ends a drawing, or drops it, picks nothing
 
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -30,11 +30,11 @@ export function drawLassos(map, canvas, on) {
   canvas.addEventListener(
     "pointerdown",
     (event) => {
+      isDrawn = false;
       if (event.button !== 0 || on.tool() !== "lasso" || event.shiftKey || !event.isPrimary) return;
       event.stopPropagation();
       event.preventDefault();
       map.dragPan.disable();
-      isDropped = false;
       points = [placeOf(event)];
       line = svg("polygon", {});
       drawing = svg("svg", { class: "lasso-frame", "aria-hidden": "true" }, line);
@@ -54,15 +54,16 @@ export function drawLassos(map, canvas, on) {
   canvas.addEventListener("pointerup", () => {
     const drawn = stop();
     if (!drawn || !isWide(drawn)) return;
+    isDrawn = true;
     on.lasso(drawn.map((point) => map.unproject(point)).map(({ lng, lat }) => [lng, lat]));
   });
   canvas.addEventListener("pointercancel", stop);
-  addEventListener("keydown", (event) => event.key === "Escape" && stop() && (isDropped = true), true);
+  addEventListener("keydown", (event) => event.key === "Escape" && stop() && (isDrawn = true), true);
   canvas.addEventListener(
     "click",
     (event) => {
-      if (isDropped) event.stopImmediatePropagation();
-      isDropped = false;
+      if (isDrawn) event.stopImmediatePropagation();
+      isDrawn = false;
     },
     true,
   );

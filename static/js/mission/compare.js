@@ -1,6 +1,6 @@
 /** Two plans of one mission against each other: what each UAV flies more or less, and which targets changed hands. */
 
-import { keyOf } from "./selection.js";
+import { keyOf, wishesOf } from "./selection.js";
 import { profileOf } from "./span_strip.js";
 
 /** A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer. */
@@ -34,6 +34,30 @@ const isSameUav = (a, b) => (a.uav_id !== null && b.uav_id !== null ? a.uav_id =
 export function isSamePlan(a, b) {
   const essence = ({ routes }) => JSON.stringify(routes.map(({ uav, length_m, stops }) => [uav, Math.round(length_m), stopsOf(stops).map(keyOf)]));
   return essence(a) === essence(b);
+}
+
+const PRIORITIES = ["high", "normal", "low"];
+const AS_GOOD = 0.05; // metres or seconds, as they are rounded in a plan
+
+/** Whether a plan does less of what was asked than another of the same selection on the same ground: less reached, then longer. */
+export function isWorse(plan, than) {
+  const [mine, theirs] = [plan, than].map(meritOf);
+  const first = mine.findIndex((value, index) => Math.abs(value - theirs[index]) > AS_GOOD);
+  return isOnSameGround(plan.result, than.result) && first !== -1 && mine[first] > theirs[first];
+}
+
+/** Less is better, in this order; as the planner counts. */
+function meritOf({ result, targets }) {
+  const missed = PRIORITIES.map((priority) => result.unassigned.filter(({ target }) => wishesOf(targets[target] ?? {}).priority === priority).length);
+  const [total, longest] = [result.total_length_m, Math.max(0, ...result.routes.map((route) => route.duration_s))];
+  return [...missed, ...(result.objective === "total" ? [total, longest] : [longest, total])];
+}
+
+/** Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may have moved. */
+function isOnSameGround(a, b) {
+  const ground = ({ graph_version, ground_revision, warnings }) => JSON.stringify([graph_version, ground_revision, (warnings ?? []).map(({ code, uav }) => [code, uav])]);
+  const landsAtBase = ({ routes }) => routes.some(({ end_action }) => end_action === "base");
+  return ground(a) === ground(b) && !landsAtBase(a) && !landsAtBase(b);
 }
 
 /** A stretch has several waypoints of one target: the first of them is the stop. */

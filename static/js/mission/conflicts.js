@@ -47,7 +47,7 @@ export function createConflicts({ store, history, selection, change, problem, fa
       const { data } = await get(`/missions/${store.state.mission.id}`);
       await take(data, lost);
     } catch (error) {
-      failed(t("Not saved: changed by another operator."), error, [{ label: t("Try again"), act: () => saving().save() }, { label: t("Keep mine as a copy"), act: () => saving().keepMineAsCopy() }]);
+      failed(t("Not saved: changed by another operator."), error, [{ label: t("Try again"), act: () => saving().save() }, { label: t("Keep mine as a copy"), act: () => saving().keepMineAsCopy() }], { isOfSaving: true });
     }
   }
 
@@ -108,7 +108,7 @@ export function createConflicts({ store, history, selection, change, problem, fa
     const ways = [{ label: t("Keep mine as a copy"), act: () => saving().keepMineAsCopy() }];
     if (page.canPlan) ways.unshift({ label: t("Bring it back"), act: bringBack });
     const kept = isUnsaved(store.state) ? t("Your selection is kept in this browser.") : t("Its targets and routes are still on this page.");
-    problem(isUnsaved(store.state) ? t("Not saved: the mission has been deleted.") : t("The mission has been deleted."), kept, page.canPlan ? ways : []);
+    problem(isUnsaved(store.state) ? t("Not saved: the mission has been deleted.") : t("The mission has been deleted."), kept, page.canPlan ? ways : [], { isOfSaving: true });
   }
 
   async function bringBack() {

@@ -87,21 +87,30 @@ export function sentenceOf(plan) {
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
 
-/** How good a plan is: { isProven, words, detail }; null where that is not known, or nobody flies. */
-export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, wish, routes }) {
+const LEFT_TO_THE_SEARCH = ["beyond_range", "most_targets"]; // others no plan reaches
+
+/** How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
+ *
+ * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
+ * out, a figure would be taken for more than it is.
+ */
+export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, wish, routes, unassigned = [] }) {
   const isTotal = objective === "total";
   const bound = isTotal ? lower_bound_m : lower_bound_s;
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
   const above = gap / (1 - gap); // `gap` is a share of this plan
-  if (is_proven) return { isProven: true, words: provenWords(isTotal, Boolean(wish)), detail: "" };
+  if (is_proven) return { isProven: true, words: provenWords(isTotal, Boolean(wish), unassigned.length > 0), detail: "" };
+  if (unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
   const figure = bound === null || bound === undefined ? "" : isTotal ? t("No plan can fly less than {length}.", { length: lengthText(bound) }) : t("No plan can be done in less than {time}.", { time: durationText(bound) });
   const share = shareText(above);
   const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
   return { isProven: false, words, detail: figure };
 }
 
-function provenWords(isTotal, isLocked) {
+function provenWords(isTotal, isLocked, leavesOut) {
+  if (leavesOut && isLocked) return isTotal ? t("Proven shortest with what is locked, of plans that reach as many targets.") : t("Proven soonest with what is locked, of plans that reach as many targets.");
+  if (leavesOut) return isTotal ? t("Proven shortest of plans that reach as many targets.") : t("Proven soonest of plans that reach as many targets.");
   if (isLocked) return isTotal ? t("Proven shortest with what is locked.") : t("Proven soonest with what is locked.");
   return isTotal ? t("Proven shortest.") : t("Proven soonest.");
 }
@@ -126,7 +135,7 @@ export function bestWordsOf(best) {
   const { unit, value, bound, left_out } = best;
   const textOf = unit === "m" ? lengthText : durationText;
   const figure = textOf(value);
-  const words = bound > 0 ? t("{figure} so far, at most {share} above what is possible ({least})", { figure, share: shareText(Math.max(0, value / bound - 1)), least: textOf(bound) }) : t("{figure} so far", { figure });
+  const words = bound > 0 && !left_out ? t("{figure} so far, at most {share} above what is possible ({least})", { figure, share: shareText(Math.max(0, value / bound - 1)), least: textOf(bound) }) : t("{figure} so far", { figure });
   return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")].filter(Boolean).join(", ");
 }
 

@@ -9,6 +9,10 @@ const SENTENCES = [
   [/^(.+) stands inside (.+) and cannot take off\.$/, (name, zone) => t("{name} stands inside {zone} and cannot take off.", { name, zone: zoneOf(zone) })],
   [/^(.+) is retired and flies no more\.$/, (name) => t("{name} is retired and flies no more.", { name })],
   [/^(.+) is in maintenance and does not fly\.$/, (name) => t("{name} is in maintenance and does not fly.", { name })],
+  [/^(.+) has as many targets as it may have \((\d+)\), and no other UAV has the range for it\.$/, (name, count) => t("{name} has as many targets as it may have ({count}), and no other UAV has the range for it.", { name, count })],
+  [/^(.+) has as many targets as it may have \((\d+)\)\.$/, (name, count) => t("{name} has as many targets as it may have ({count}).", { name, count })],
+  [/^(.+) and (.+) have as many targets as they may have, and no other UAV has the range for it\.$/, (names, last) => t("{names} and {last} have as many targets as they may have, and no other UAV has the range for it.", { names, last })],
+  [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 

@@ -4,8 +4,8 @@ import { follow, get, post } from "../api.js";
 import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
-import { isSamePlan, summaryOfPlan } from "./compare.js";
-import { otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
+import { isSamePlan, isWorse, summaryOfPlan } from "./compare.js";
+import { figuresOf, isPlanCurrent, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -31,7 +31,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
   async function waitForJob(jobId, what) {
     const job = await followLive(jobId, {
       signal: running.stopping?.signal,
-      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.progress, best: at.best ?? store.state.planning?.best ?? null, job: jobId } }),
+      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.state === "queued" ? null : at.progress, isQueued: at.state === "queued", best: at.best ?? store.state.planning?.best ?? null, job: jobId } }),
     });
     if (job.state === "cancelled" && !job.result) throw new DOMException("stopped", "AbortError");
     return job;
@@ -84,21 +84,33 @@ export function createPlanning({ store, selection, change, problem, failed, runn
         result = { ...(await waitForJob(job, what)).result, job }; // saved by the job's number
       }
       const made = planOf(result, asked);
+      const before = store.state.plan;
+      if (before?.basis === made.basis && isWorse(made, before)) {
+        toast(t("The new plan is no better ({figures}). The one on the page stays.", { figures: figuresOf(result) }));
+        aside.want(asked);
+        return;
+      }
       if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
       store.update({ plan: made, figures: withResult(store.state.figures, made.basis, result), planIsStored: false, chosenRoute: null, why: null });
       const { sentence, facts } = sentenceOf(made);
       const unreached = unreachedOf(made).length;
       const quality = qualityOf(result);
       say([`${sentence}. ${facts}.`, quality?.words, wishWordsOf(result), unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached.")].filter(Boolean).join(" "));
-      aside.start(asked);
+      if (picks.basisOf(selection()) === made.basis) aside.want(asked);
+      else if (!isPlanCurrent(store.state)) tellChanged();
     } catch (error) {
       if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
-      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }]);
+      else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }], { untilChanged: true, asked });
     } finally {
       runningJob.drop(mission);
       running.stopping = null;
       store.update({ planning: null });
     }
+  }
+
+  function tellChanged() {
+    const words = t("The plan is of what was picked when planning began.");
+    problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: plan }], { untilChanged: true, level: "warning" });
   }
 
   /** A large plan that was being made when the page was left: its progress comes back, or its result. */
@@ -119,8 +131,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
 
   /** Drops the search with what it has found. */
   function cancel() {
-    const job = store.state.planning?.job;
-    if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+    cancelJob(store.state.planning?.job);
     running.stopping?.abort();
   }
 
@@ -152,7 +163,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     }
     aside.keepOnlyFor(state.selection);
     const isShownAsStored = state.planIsStored && state.plan?.basis === basis;
-    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE) aside.start(state.selection);
+    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE) aside.want(state.selection);
   });
 
   let shown = null; // the plan on the page in short
@@ -173,19 +184,58 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     change({ ...selection(), targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])) });
   }
 
-  return { plan, stop, cancel, resume, replaceByStretches, waitForJob };
+  return { plan, stop, cancel, resume, replaceByStretches, waitForJob, makeRoom: aside.giveWay };
 }
 
-/** The same by the other objective, planned behind the page: its figures stand in the choice, and one click shows it. */
+function cancelJob(job) {
+  if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+}
+
+/**
+ * The same by the other objective, planned behind the page: its figures stand in the choice, and one click shows it.
+ *
+ * A large one waits until the plan on the page is saved and nothing else of this person's runs, and gives way to what is asked for.
+ */
 function planBeside(store) {
+  let wanted = null; // the selection of a large plan, until its other one is begun
+  let running = null; // the same while it is made
   let stopping = null;
   let job = null;
 
   function stop() {
+    wanted = running = null;
     stopping?.abort();
-    if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+    cancelJob(job);
     [stopping, job] = [null, null];
     store.update({ planningBeside: null });
+  }
+
+  /** To a save that the server has to plan for; the large one is made after it. */
+  function giveWay() {
+    if (!running || running.targets.length <= MOST_PLANNED_AT_ONCE) return;
+    const later = running;
+    stop();
+    wanted = later;
+  }
+
+  function want(asked) {
+    if (asked.targets.length <= MOST_PLANNED_AT_ONCE) void start(asked);
+    else {
+      wanted = asked;
+      beginWanted(store.state);
+    }
+  }
+
+  function beginWanted({ saving, planning, planIsStored, selection }) {
+    if (!wanted || saving || planning || !planIsStored) return;
+    const asked = wanted;
+    wanted = null;
+    if (picks.basisOf(selection) === picks.basisOf(asked)) void start(asked);
+  }
+  store.listen(["saving", "planning", "planIsStored"], beginWanted);
+
+  async function isAlone(signal) {
+    return (await get("/jobs?open=true&mine=true&limit=1", { signal })).data.results.length === 0;
   }
 
   async function start(asked) {
@@ -194,10 +244,14 @@ function planBeside(store) {
     if (store.state.figures[basis] || store.state.planningBeside === basis) return;
     const own = new AbortController();
     stopping = own;
+    running = asked;
     store.update({ planningBeside: basis });
     try {
-      const answer = await post("/plans", picks.requestOf(other), { signal: own.signal });
-      if (answer.status === 202) job = answer.data.job;
+      if (asked.targets.length > MOST_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
+      const answer = await post("/plans", picks.requestOf(other)); // not cut short: a job that nobody knows of could not be stopped
+      const begun = answer.status === 202 ? answer.data.job : null;
+      if (own.signal.aborted) return void cancelJob(begun);
+      job = begun;
       const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
       const result = made && job ? { ...made, job } : made;
       if (result) store.update({ figures: withResult(store.state.figures, basis, result) });
@@ -205,15 +259,16 @@ function planBeside(store) {
       if (error.name !== "AbortError") say(t("The other way of planning has no figures: {reason}", { reason: error.message }));
     } finally {
       if (stopping === own) {
-        [stopping, job] = [null, null];
+        [stopping, job, running] = [null, null, null];
         store.update({ planningBeside: null });
       }
     }
   }
 
   return {
-    start,
+    want,
     stop,
+    giveWay,
     keepOnlyFor(selection) {
       const { planningBeside } = store.state;
       const wanted = ["total", "makespan"].map((objective) => picks.basisOf({ ...selection, objective }));

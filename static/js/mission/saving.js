@@ -1,6 +1,6 @@
 /** Saving what is changed, opening a stored mission, and the draft that outlives the page. */
 
-import { get, patch, post, remove } from "../api.js";
+import { ApiError, get, patch, post, remove } from "../api.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { clockText, dayText } from "../units.js";
@@ -26,13 +26,16 @@ export function changedParts(selection, stored) {
   return Object.fromEntries(changed.map((part) => [part, now[part]]));
 }
 
-/** context: see actions.js; waitForJob(job, words): of planning.js; conflicts: see conflicts.js. */
-export function createSaving({ store, history, selection, change, problem, failed, running, page, drafts }, waitForJob, conflicts) {
+/** context: see actions.js; waitForJob(job, words) and makeRoom(): of planning.js; conflicts: see conflicts.js. */
+export function createSaving({ store, history, selection, change, problem, failed, wordsOf, running, page, drafts }, { waitForJob, makeRoom }, conflicts) {
   let retry = 0;
   let rest = 0;
   let unsure = null; // { asked, body, key, isNew, asCopy } of a save whose answer never came
   let wanted = null; // what somebody asked for while another save was under way
   let refused = null; // what was not saved: it is tried again once it is another
+
+  /** What is said of a plan stays over a save: it stands until something else is picked. */
+  const unlessOfSaving = (standing) => (standing?.about && !standing.isOfSaving ? standing : null);
 
   const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.basisOf(picked), name, plan?.basis ?? null]);
 
@@ -45,7 +48,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       planIsStored: Boolean(plan),
       savedBasis: picks.basisOf(stored),
       figures: plan ? { ...store.state.figures, [plan.basis]: plan.result } : store.state.figures,
-      problem: null,
+      problem: unlessOfSaving(store.state.problem),
       conflict: null,
       isAway: false,
     });
@@ -115,7 +118,8 @@ export function createSaving({ store, history, selection, change, problem, faile
       if (!byItself) toast(t("“{name}” is saved.", { name: mission.name }));
       return;
     }
-    store.update({ saving: true, problem: null });
+    if (body.plan && !body.plan_of) makeRoom();
+    store.update({ saving: true, problem: unlessOfSaving(store.state.problem) });
     let draftId = null; // stored already, its plan not yet
     try {
       const answer = isNew ? await post("/missions", body, { headers: { "Idempotency-Key": key } }) : await patch(`/missions/${mission.id}`, body, { headers: { "If-Match": `"${mission.revision}"` } });
@@ -155,18 +159,29 @@ export function createSaving({ store, history, selection, change, problem, faile
 
   async function saveFailed(error, asCopy, lost) {
     const again = () => save({ asCopy });
+    const how = { isOfSaving: true };
     if (error.name === "AbortError") {
-      problem(t("Saved as a draft."), t("Planning was stopped before it was done."));
+      problem(t("Saved as a draft."), t("Planning was stopped before it was done."), [], how);
     } else if (error.status === 412) {
       await conflicts.meet(lost);
     } else if (error.status === 404 && store.state.mission && !asCopy) {
       conflicts.tellDeleted();
     } else if (error.isAway) {
       store.update({ isAway: true });
-      problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }]);
+      problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }], how);
       retry = setTimeout(() => save({ asCopy, byItself: true }), RETRY_S * 1000);
+    } else if (error.retryAfter_s !== null && error.retryAfter_s !== undefined) {
+      const wait_s = Math.max(1, error.retryAfter_s);
+      const next = t("Next try in {seconds} s.", { seconds: wait_s });
+      failed(t("Not saved yet."), new ApiError(`${error.message} ${next}`, error), [{ label: t("Try now"), act: again }], how);
+      retry = setTimeout(() => {
+        refused = null; // where a plan is being made now, it is tried again after that
+        void save({ asCopy, byItself: true });
+      }, wait_s * 1000);
     } else {
-      failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])]);
+      const standing = unlessOfSaving(store.state.problem);
+      if (standing && standing.text === wordsOf(error)) store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
+      else failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])], how);
     }
   }
 

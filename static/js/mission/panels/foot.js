@@ -5,6 +5,16 @@ import { t } from "../../text.js";
 import { percentText } from "../../units.js";
 import { bestWordsOf, isUnsaved } from "../plan_view.js";
 
+const isShareKnown = ({ share }) => share !== null && share !== undefined;
+
+/** "51.2 km so far · 40 %"; of a job that no planner has taken yet: "waiting". */
+export function howFarWords(planning) {
+  if (planning.isQueued) return t("waiting");
+  const { best, job, found, what, share } = planning;
+  const words = bestWordsOf(best) || (job && found !== what ? found : "");
+  return [words, isShareKnown(planning) ? percentText(share * 100) : ""].filter(Boolean).join(" · ");
+}
+
 export function mountFoot(store, actions) {
   const [plan, stop, save, cancel] = ["plan", "stop", "save", "cancel-planning"].map((id) => document.getElementById(id));
   if (!plan) return;
@@ -33,10 +43,9 @@ export function mountFoot(store, actions) {
   store.listen(["planning"], ({ planning }) => {
     byId("job").hidden = planning === null;
     if (!planning) return;
-    const known = planning.share !== null && planning.share !== undefined;
+    const known = isShareKnown(planning);
     byId("job-what").textContent = planning.what;
-    const found = bestWordsOf(planning.best) || (planning.job && planning.found !== planning.what ? planning.found : "");
-    byId("job-how-far").textContent = [found, known ? percentText(planning.share * 100) : ""].filter(Boolean).join(" · ");
+    byId("job-how-far").textContent = howFarWords(planning);
     const bar = byId("job-progress");
     if (known) bar.setAttribute("aria-valuenow", String(Math.round(planning.share * 100)));
     else bar.removeAttribute("aria-valuenow");

@@ -108,7 +108,9 @@ function way({ label, act, href }) {
 function noticesOf(state, actions, { canPlan, showPlace, askWhy }) {
   const notices = [];
   if (state.problem) {
-    notices.push(notice("critical", state.isAway ? "cloud-off" : "circle-alert", state.problem.title, state.problem.text, state.problem.actions));
+    const { level, title, text, actions: ways } = state.problem;
+    const image = level === "warning" ? "triangle-alert" : state.isAway ? "cloud-off" : "circle-alert";
+    notices.push(notice(level, image, title, text, ways));
   } else if (state.isAway) {
     const words = canPlan ? t("You can go on: what you change is kept in this browser and saved when the server is back.") : t("What you see may be out of date.");
     notices.push(notice("warning", "cloud-off", t("The server cannot be reached."), words));

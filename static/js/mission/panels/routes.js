@@ -142,9 +142,9 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
 
   /** How good the plan is, what locking costs, and the way back. */
   function drawQuality(state) {
-    const quality = qualityOf(state.plan.result);
-    const locked = state.selection.locks?.length ?? 0;
     const isCurrent = isPlanCurrent(state);
+    const quality = isCurrent ? qualityOf(state.plan.result) : null;
+    const locked = state.selection.locks?.length ?? 0;
     const wish = isCurrent ? wishWordsOf(state.plan.result) : locked ? t("Your wish is not planned yet.") : "";
     const acts = canPlan && locked > 0 && [
       !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),

@@ -15,7 +15,7 @@ export function savedWords(state) {
   if (!isUnsaved(state)) return isAway ? { words: t("No connection. Saved {time}.", { time: clockText(mission.updated_at) }), image: "cloud-off", isBad: true } : { words: t("Saved {time}", { time: clockText(mission.updated_at) }), image: "check", at: mission.updated_at };
   if (conflict) return { words: t("Not saved: {whose} save came in between", { whose: conflict.whose }), image: "triangle-alert", isBad: true };
   if (isAway) return { words: t("Not saved: the server cannot be reached"), image: "cloud-off", isBad: true };
-  if (problem) return { words: t("Not saved: see below"), image: "circle-alert", isBad: true };
+  if (problem?.isOfSaving) return { words: t("Not saved: see below"), image: "circle-alert", isBad: true };
   return { words: t("Not saved yet"), image: "circle-dashed" };
 }
 

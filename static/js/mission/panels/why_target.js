@@ -1,17 +1,33 @@
 /** Why no route visits a target: the reason, the figures behind it, and one change or more that would help. */
 
 import { h } from "../../dom.js";
-import { t } from "../../text.js";
+import { t, tn } from "../../text.js";
 import { heightText, lengthText } from "../../units.js";
 import { inWords } from "../plan_words.js";
 
 /** said: see TargetExplanationSerializer; entry: of the plan's unassigned. */
 export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {
   const target = plan.targets[said.target];
-  return [h("p", { class: "why-sentence" }, reasonWords(said) || inWords(entry.message)), facts(said), canPlan && changes(said, { target, store, actions })].filter(Boolean);
+  const full = fullUavs(said, plan);
+  return [h("p", { class: "why-sentence" }, reasonWords(said, full) || inWords(entry.message)), facts(said), canPlan && changes(said, { target, full, store, actions })].filter(Boolean);
 }
 
-export function reasonWords(said) {
+/** UAVs of the mission that could fly there but for having as many targets as they may. */
+export function fullUavs(said, plan) {
+  const done = (uav) => new Set(plan.result.routes.find((route) => route.uav === uav.name)?.targets).size;
+  return said.uavs.filter((uav) => uav.is_in_mission && uav.is_enough && uav.most_targets !== null && uav.most_targets !== undefined && done(uav) >= uav.most_targets);
+}
+
+function sharedWords(said, full) {
+  const able = (said.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
+  if (!full.length) return t("One UAV alone could fly there, but none has the range left after its other targets.");
+  const names = full.map(({ name }) => name).join(", ");
+  const words = tn(full.length, "{names} could fly there, but has as many targets as it may have.", "{names} could fly there, but have as many targets as they may have.", { names });
+  return full.length === able.length ? words : `${words} ${t("No other UAV has the range left after its other targets.")}`;
+}
+
+/** full: see fullUavs. */
+export function reasonWords(said, full = []) {
   const zones = said.zones.map(({ name }) => name).join(", ");
   const lengths = { reach: lengthText(said.access_limit_m), distance: lengthText(said.network_m) };
   const words = {
@@ -23,7 +39,7 @@ export function reasonWords(said) {
     beyond_range: () => t("It is out of range of every UAV of this mission."),
     not_allowed: () => t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
     most_targets: () => t("Every UAV that could fly it has as many targets as it may."),
-    not_with_the_others: () => t("One UAV alone could fly there, but none has the range left after its other targets."),
+    not_with_the_others: () => sharedWords(said, full),
   };
   return words[said.reason]?.() ?? "";
 }
@@ -31,21 +47,29 @@ export function reasonWords(said) {
 function facts(said) {
   const needs = said.uavs.filter(({ is_in_mission }) => is_in_mission);
   if (!needs.length) return null;
-  const row = ({ name, needed_m, max_range_m, is_grounded }) => {
-    const has = max_range_m === null ? t("not limited") : lengthText(max_range_m);
+  const row = ({ name, needed_m, max_range_m, most_targets, is_grounded }) => {
+    const limit = most_targets ? tn(most_targets, "at most {count} target", "at most {count} targets") : "";
+    const has = [max_range_m === null ? t("not limited") : lengthText(max_range_m), limit].filter(Boolean).join(", ");
     const needed = is_grounded ? t("cannot take off") : needed_m === null ? t("no way") : lengthText(needed_m);
     return h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, needed), h("td", {}, has));
   };
   return h("table", { class: "why-table" }, h("thead", {}, h("tr", {}, [t("UAV"), t("needs"), t("has")].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, needs.map(row)));
 }
 
-function changes(said, { target, store, actions }) {
+function changes(said, { target, full, store, actions }) {
   const act = (words, label, run) => h("li", {}, h("span", {}, words), " ", h("button", { type: "button", class: "text-button", onclick: run }, label));
   const list = [];
   if (said.stretches.length) list.push(act(t("The parts outside can be flown."), t("Take the parts outside"), () => actions.replaceByStretches(target, said.stretches)));
+  for (const { name, most_targets } of full) {
+    const raise = () => {
+      actions.changeUav(store.state.selection.uavs.findIndex((uav) => uav.name === name), { most_targets: most_targets + 1 });
+      actions.plan();
+    };
+    list.push(act(tn(most_targets, "{name} may do {count} target at most.", "{name} may do {count} targets at most.", { name }), t("Let {name} do one more", { name }), raise));
+  }
   const spare = said.uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
   if (spare) list.push(act(t("{name} could fly there: it needs {needed}.", { name: spare.name, needed: lengthText(spare.needed_m) }), t("Take {name} along", { name: spare.name }), () => (actions.addUavOfFleet(spare.uav_id), actions.plan())));
-  const nearest = said.uavs.filter((uav) => uav.is_in_mission && uav.needed_m !== null && !uav.is_enough).sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
+  const nearest = said.uavs.filter((uav) => uav.is_in_mission && uav.is_allowed && uav.needed_m !== null && uav.max_range_m !== null && !uav.is_enough).sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
   if (nearest) list.push(h("li", {}, t("{name} would need {missing} more range, or a start that is nearer: drag its square on the map.", { name: nearest.name, missing: lengthText(nearest.needed_m - nearest.max_range_m) })));
   if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
   list.push(act(t("The plan goes without it."), t("Remove it"), () => (store.update({ why: null }), actions.removeTargets([target.key]))));
