@@ -155,10 +155,10 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     dialog.get_by_role("button", name="Change").click()
     kite = page.get_by_role("listitem").filter(has=page.get_by_role("button", name="Change Kite in this mission"))
     expect(kite).to_contain_text("at most 2 targets")
-    expect(kite).to_contain_text("lands at the nearest base")
+    expect(kite).to_contain_text("lands at the base")
     page.get_by_role("button", name="Plan again").click()
     expect(route(page, "Kite")).to_contain_text(re.compile(r"\d\skm"))
-    expect(strip(page, "Kite")).to_have_attribute("aria-label", re.compile("lands at the nearest base"))
+    expect(strip(page, "Kite")).to_have_attribute("aria-label", re.compile("lands at the base "))
     expect(page.locator("#save-state")).to_contain_text("Saved")
     address = re.search("/missions/[0-9a-f-]+", page.url)
     assert address
