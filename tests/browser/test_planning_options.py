@@ -155,7 +155,7 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     dialog.get_by_role("button", name="Change").click()
     kite = page.get_by_role("listitem").filter(has=page.get_by_role("button", name="Change Kite in this mission"))
     expect(kite).to_contain_text("at most 2 targets")
-    expect(kite).to_contain_text("lands at the base")
+    expect(kite).to_contain_text("lands at the nearest base")
     page.get_by_role("button", name="Plan again").click()
     expect(route(page, "Kite")).to_contain_text(re.compile(r"\d\skm"))
     expect(strip(page, "Kite")).to_have_attribute("aria-label", re.compile("lands at the base "))
