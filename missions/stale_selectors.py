@@ -1,11 +1,11 @@
 """What has changed since a mission was planned and what it means for it: which zone, which leg, which target, which base."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from django.contrib.gis.db.models import PointField
-from django.db.models import Exists, Func, OuterRef
+from django.db.models import Exists, OuterRef
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset
@@ -31,10 +31,20 @@ class StaleCause:
 
 def landing_routes_without_base() -> Exists:
     """For missions: whether one of their routes lands where a base was and none is any more."""
-    end = Func("geometry", function="ST_EndPoint", output_field=PointField(srid=4326))
-    bases = Base.objects.filter(organisation=OuterRef("mission__organisation"), location=OuterRef("end"))
-    landing = Route.objects.filter(mission=OuterRef("pk")).exclude(base_name="").exclude(geometry=None)
-    return Exists(landing.annotate(end=end).filter(~Exists(bases)))
+    bases = Base.objects.filter(organisation=OuterRef("mission__organisation"), location=OuterRef("lands_at"))
+    return Exists(Route.objects.filter(~Exists(bases), mission=OuterRef("pk"), lands_at__isnull=False))
+
+
+def bases_landed_at(missions: Sequence[Mission], organisation_id: int) -> frozenset[tuple[float, ...]]:
+    """Where the organisation's bases are, (lon, lat), if any route of its missions lands at one; else nothing is asked."""
+    if not any(route.lands_at is not None for mission in missions for route in mission.routes.all()):
+        return frozenset()
+    return frozenset(location.coords for location in Base.objects.filter(organisation=organisation_id).values_list("location", flat=True))
+
+
+def has_lost_base(mission: Mission, bases: frozenset[tuple[float, ...]]) -> bool:
+    """The same of one mission, whose routes are loaded."""
+    return any(route.lands_at is not None and route.lands_at.coords not in bases for route in mission.routes.all())
 
 
 def is_stale(mission: Mission, revision: int, *, has_lost_base: bool) -> bool:
@@ -120,19 +130,19 @@ def route_letter(sequence: int) -> str:
 
 
 def _bases(mission: Mission) -> list[StaleCause]:
-    landing = [route for route in mission.routes.all() if route.base_name and route.geometry is not None]
+    landing = [route for route in mission.routes.all() if route.lands_at is not None]
     if mission.state == MissionState.DRAFT or not landing:
         return []
-    bases = {base.location.coords for base in Base.objects.filter(organisation=mission.organisation_id)}
+    bases = bases_landed_at([mission], mission.organisation_id)
     return [
         StaleCause(
             "base",
             _("%(uav)s is to land at %(base)s, which is no longer there.") % {"uav": route.mission_uav.name, "base": route.base_name},
             route.mission_uav.sequence,
-            position=tuple(route.geometry.coords[-1]),
+            position=route.lands_at.coords,
         )
         for route in landing
-        if route.geometry.coords[-1] not in bases
+        if route.lands_at.coords not in bases
     ]
 
 

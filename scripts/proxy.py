@@ -115,6 +115,7 @@ def _proxied(location: str, name: str, headers: str, scheme: str, *, compression
             proxy_set_header X-Forwarded-Proto {scheme};
             proxy_connect_timeout 5s;
             proxy_read_timeout 120s;
+            proxy_next_upstream error;
             proxy_buffers 16 32k;
             proxy_buffer_size 32k;
             proxy_hide_header X-Content-Type-Options;

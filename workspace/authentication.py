@@ -58,8 +58,8 @@ class Holder(NamedTuple):
 
 def holder_of(authorization: str) -> Holder | None:
     """Who asks with this header, whose use is noted; None where BearerTokenAuthentication has to look itself."""
-    scheme, _, token = authorization.partition(" ")
-    rows = _rows_of(_HOLDER, token.strip().encode("latin-1", "replace")) if scheme.lower() == "bearer" else []
+    scheme, *rest = authorization.encode("latin-1", "replace").strip().split(b" ", 1)
+    rows = _rows_of(_HOLDER, b"".join(rest).strip()) if scheme.lower() == b"bearer" else []
     if not rows:
         return None
     token_key, last_used_at, holder, role = rows[0]

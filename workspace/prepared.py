@@ -6,7 +6,8 @@ transactions it goes to the server with libpq's own call, which costs half of a 
 """
 
 from collections.abc import Sequence
-from itertools import count
+from functools import lru_cache
+from hashlib import sha256
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -15,8 +16,6 @@ from django.db import InterfaceError, OperationalError, connection
 from psycopg import pq
 from psycopg.adapt import PyFormat, Transformer
 
-_names: dict[str, bytes] = {}  # of statements, in every connection the same
-_numbers = count()
 _known: WeakKeyDictionary[psycopg.Connection[Any], set[bytes]] = WeakKeyDictionary()  # which of them a connection's server has
 
 
@@ -46,14 +45,17 @@ def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
 
 
 def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
-    name = _names.get(statement) or _names.setdefault(statement, b"spanwise_%d" % next(_numbers))
+    name = _name(statement)
     transformer = Transformer(server)
     values = transformer.dump_sequence(parameters, [PyFormat.TEXT] * len(parameters))
     known = _known.setdefault(server, set())
     result = None
     if name in known:
         result = server.pgconn.exec_prepared(name, values)
-        if result.error_field(pq.DiagnosticField.SQLSTATE) == _NOT_PREPARED:  # somebody made the server forget: DEALLOCATE ALL
+        state = result.error_field(pq.DiagnosticField.SQLSTATE)
+        if state == _TYPES_CHANGED:  # a migration beside us
+            _checked(server.pgconn.exec_(b"DEALLOCATE " + name), server)
+        if state in (_NOT_PREPARED, _TYPES_CHANGED):
             result = None
     if result is None:
         _checked(server.pgconn.prepare(name, _numbered(statement).encode()), server)
@@ -63,7 +65,14 @@ def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: S
     return transformer.load_rows(0, result.ntuples, tuple)
 
 
-_NOT_PREPARED = psycopg.errors.InvalidSqlStatementName.sqlstate.encode()
+_NOT_PREPARED = psycopg.errors.InvalidSqlStatementName.sqlstate.encode()  # somebody made the server forget: DEALLOCATE ALL
+_TYPES_CHANGED = psycopg.errors.FeatureNotSupported.sqlstate.encode()  # "cached plan must not change result type"
+
+
+@lru_cache(maxsize=64)
+def _name(statement: str) -> bytes:
+    """The same for a statement in every process, and another one for every other statement."""
+    return b"spanwise_" + sha256(statement.encode()).hexdigest()[:16].encode()
 
 
 def _numbered(statement: str) -> str:

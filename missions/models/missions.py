@@ -148,6 +148,7 @@ class Route(models.Model):
     length_m = models.FloatField()
     duration_s = models.FloatField()
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
+    lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
 
     class Meta:

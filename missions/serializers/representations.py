@@ -7,7 +7,7 @@ from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
 from missions.selectors import open_plan_of_mission
 from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
-from missions.stale_selectors import cause_json, is_stale, stale_causes, stale_reason
+from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
 
 
 def mission_json(mission: Mission) -> dict[str, Any]:
@@ -38,8 +38,11 @@ def mission_json(mission: Mission) -> dict[str, Any]:
     }
 
 
-def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any]) -> dict[str, Any]:
-    """A line of the list, as loaded by list_selectors.mission_rows; `revision` is the ground's now, `drawing` what stands round it."""
+def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]]) -> dict[str, Any]:
+    """A line of the list, as loaded by list_selectors.mission_rows.
+
+    `revision` is the ground's now, `drawing` what stands round it, `bases` as stale_selectors.bases_landed_at has them.
+    """
     return {
         "id": str(mission.pk),
         "name": mission.name,
@@ -55,7 +58,7 @@ def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any]) ->
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,
         "duration_s": mission.duration_s,
-        "is_stale": is_stale(mission, revision, has_lost_base=mission.has_lost_base),
+        "is_stale": is_stale(mission, revision, has_lost_base=has_lost_base(mission, bases)),
         "sketch": sketch(mission),
         "places": drawing["places"],
         "lines": drawing["lines"],

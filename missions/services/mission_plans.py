@@ -137,6 +137,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             length_m=route["length_m"],
             duration_s=route["duration_s"],
             base_name=route.get("base") or "",
+            lands_at=Point(*route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,
             geometry=LineString(route["geometry"]["coordinates"], srid=4326) if route["geometry"] else None,
         )
         for mission_uav, route in zip(mission.mission_uavs.all(), plan["routes"], strict=True)

@@ -22,8 +22,7 @@ from workspace.permissions import PLANNERS
 from workspace.throttling import ScopedRate
 
 LARGEST_BODY = 64 * 1024
-_ORDINARY_ACCEPT = frozenset({"", "*/*", "application/json"})
-_NOT_ORDINARY = ("HTTP_IDEMPOTENCY_KEY", "HTTP_PREFER", "QUERY_STRING")
+_ORDINARY_ACCEPT = frozenset({"*/*", "application/json"})
 _BEGIN_ANEW = (APIException, services.InvalidRequest, NoGraph, services.GraphOutdated, *DATABASE_AWAY)
 
 
@@ -56,6 +55,8 @@ def _is_ordinary(request: HttpRequest) -> bool:
         and told.get("CONTENT_TYPE") == "application/json"
         and length.isdecimal()
         and int(length) <= LARGEST_BODY
-        and told.get("HTTP_ACCEPT", "") in _ORDINARY_ACCEPT
-        and not any(told.get(name) for name in _NOT_ORDINARY)
+        and told.get("HTTP_ACCEPT", "*/*") in _ORDINARY_ACCEPT
+        and "HTTP_IDEMPOTENCY_KEY" not in told
+        and "HTTP_PREFER" not in told
+        and not told.get("QUERY_STRING")
     )

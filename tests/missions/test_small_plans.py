@@ -131,8 +131,16 @@ def test_a_session_goes_the_long_way_with_its_csrf_token(here: World) -> None:
 
 def test_a_key_and_a_preference_are_for_the_view(here: World) -> None:
     client = program_of(somebody(Role.OPERATOR))
-    for headers in ({"Idempotency-Key": "k1"}, {"Prefer": "wait=5"}, {"Accept": "text/html"}):
+    for headers in ({"Idempotency-Key": "k1"}, {"Idempotency-Key": ""}, {"Prefer": "wait=5"}, {"Accept": "text/html"}, {"Accept": ""}):
         assert not both_ways(client, plan_body(here.towers[2]), headers=headers)[2]
+
+
+@pytest.mark.parametrize("after", ["\xa0", "\x85", "\x1c", "\x1f", "x"])
+def test_a_token_with_anything_after_it_is_another_one_and_blanks_are_nothing(here: World, after: str) -> None:
+    token = create_api_token(user=somebody(Role.OPERATOR), name="load", expires_at=timezone.now() + timedelta(days=1))
+    assert refused(Client(headers={"Authorization": f"Bearer {token}{after}"}), here) == 401
+    padded = Client(headers={"Authorization": f"  bearer   {token}  "})
+    assert both_ways(padded, plan_body(here.towers[2]))[0].status_code == 200
 
 
 def test_the_use_of_a_token_is_noted(here: World) -> None:

@@ -66,6 +66,20 @@ def test_a_server_that_forgot_its_statements_is_told_them_again() -> None:
     assert prepared_rows(BACKEND) == before
 
 
+def test_a_statement_whose_types_have_changed_is_prepared_anew() -> None:
+    with connection.cursor() as cursor:
+        cursor.execute("CREATE TABLE changing (value integer)")
+        cursor.execute("INSERT INTO changing VALUES (7)")
+    try:
+        assert prepared_rows("SELECT value FROM changing") == [(7,)]
+        with connection.cursor() as cursor:
+            cursor.execute("ALTER TABLE changing ALTER value TYPE text")
+        assert prepared_rows("SELECT value FROM changing") == [("7",)]
+    finally:
+        with connection.cursor() as cursor:
+            cursor.execute("DROP TABLE changing")
+
+
 @pytest.mark.parametrize(
     ("statement", "parameters", "error"),
     [("SELECT nothing FROM nowhere", [], ProgrammingError), ("SELECT %s::bigint", ["seven"], DataError)],
