@@ -23,7 +23,7 @@ from missions.routing.problem import End, Objective, Problem, Solution, UavStart
 from missions.routing.rehearsal import rehearse
 from missions.routing.solver import solve
 
-TSPLIB = Path("/work/shared/data/tsplib")
+TSPLIB = Path(__file__).resolve().parents[2] / "shared" / "data" / "tsplib"
 OPTIMAL_TOUR = {"eil51": 426, "berlin52": 7_542, "eil76": 538, "rat99": 1_211, "kroA100": 21_282}
 BEST_LONGEST_OF_EIL51 = {3: 159.57, 5: 118.13, 10: 112.07}  # commonly reported; see the README of the instances
 WITHIN = 1.01
