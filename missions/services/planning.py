@@ -85,7 +85,7 @@ def make_plan(
     edition = scene.edition
     while True:
         ground_before = terrain_edition() if edition != scene.edition else None
-        drawing = Drawing(request, scene, places, visits, courses, ways, bases, edition)
+        drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases, edition)
         flown = drawing.routes(uavs, solution.routes)
         routes = [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
         now = _look_at_zones_again(routes, scene)
