@@ -7,10 +7,8 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
-from inspection.selectors import ground_heights_m
-from inspection.selectors.planning import Edition, has_terrain_at
 from missions.flight_plan.duration import duration_s
-from missions.flight_plan.heights import pass_agl_m, with_heights
+from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.models import EndAction
 from missions.routing.problem import Routes, Visit
@@ -35,7 +33,6 @@ class Drawing:
         courses: Sequence[tuple[LonLat, ...]],
         ways: Ways,
         bases: Sequence[BaseRequest],
-        edition: Edition,
     ) -> None:
         self.request = request
         self.scene = scene
@@ -45,16 +42,18 @@ class Drawing:
         self.courses = courses
         self.ways = ways
         self.bases = bases
-        self.ground = ground_heights_m if has_terrain_at(edition) else None
 
-    def routes(self, uavs: Sequence[int], orders: Routes) -> Mapping[int, PlannedRoute]:
-        """What each UAV that has visits flies, by its number in the request; uavs are the numbers of those that fly."""
+    def routes(self, uavs: Sequence[int], orders: Routes, ground: GroundHeights | None) -> Mapping[int, PlannedRoute]:
+        """What each UAV that has visits flies, by its number in the request; uavs are the numbers of those that fly.
+
+        ground: the terrain model's heights; None: there is none.
+        """
         flying = [(start, uav, order) for start, (uav, order) in enumerate(zip(uavs, orders, strict=True)) if order]
         ways = [self.ways.of_route(start, order, route_end(self.request, uav)) for start, uav, order in flying]
         passed = self._passed(ways)
-        return {uav: self._route(uav, order, nodes) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
+        return {uav: self._route(uav, order, nodes, ground) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
 
-    def _route(self, uav: int, order: Sequence[int], passed: PassedNodes) -> PlannedRoute:
+    def _route(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> PlannedRoute:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)
         base = self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None
@@ -66,7 +65,7 @@ class Drawing:
             home=asked.position if action is EndAction.RETURN else None if base is None else base.position,
         )
         points, length_m = with_short_legs(points, flight.longest_leg_m)
-        waypoints, is_flat = with_heights(points, self.ground, flight)
+        waypoints, is_flat = with_heights(points, ground, flight)
         return PlannedRoute(
             targets=tuple(self.places[self.visits[visit].target].target for visit in order),
             waypoints=waypoints,
