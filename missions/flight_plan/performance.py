@@ -103,11 +103,11 @@ class Performance:
 
 
 # What the API and a UAV type hold; the rest is the same for all.
-_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
+PERFORMANCE_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
 
 
 def performance_to_json(performance: Performance) -> dict[str, Any]:
-    return {key: getattr(performance, key) for key in _KEYS}
+    return {key: getattr(performance, key) for key in PERFORMANCE_KEYS}
 
 
 def performance_from_json(value: Any) -> Performance:
@@ -118,7 +118,7 @@ def performance_from_json(value: Any) -> Performance:
         raise InvalidPerformance("performance", "must be an object")
     read: dict[str, Any] = {}
     for key, entry in value.items():
-        if key not in _KEYS:
+        if key not in PERFORMANCE_KEYS:
             raise InvalidPerformance(key, "is not known")
         if entry is None:
             continue

@@ -20,7 +20,7 @@ FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
 _KIND_NAMES = [kind.value for kind in KINDS]
 NO_QUALITY: dict[str, Any] = {
-    "lower_bound_m": None, "lower_bound_s": None, "gap": None, "is_proven": False, "method": "", "wish": None,
+    "lower_bound_m": None, "lower_bound_s": None, "lower_bound_wh": None, "gap": None, "is_proven": False, "method": "", "wish": None,
 }  # fmt: skip
 
 
