@@ -81,8 +81,9 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
             else:
                 added_m = ground.first_m[uav, visit] + onward_m[plan.visit[uav, 0]] - plan.gap_m[uav, 0]
                 best_place = 0
-                if ground.is_limited and not _fits(ground, plan, uav, visit, 0):
-                    added_m = math.inf
+            if ground.is_limited and not _fits(ground, plan, uav, visit, 0):
+                added_m = math.inf
+            if count:
                 last_m = back_m[plan.visit[uav, count - 1]] + ground.end_m[uav, visit] - plan.gap_m[uav, count]
                 if last_m < added_m and not (ground.is_limited and not _fits(ground, plan, uav, visit, count)):
                     added_m, best_place = last_m, count
@@ -94,9 +95,7 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
                         else:
                             added_m, best_place = here_m, place
                             blink -= 1
-            if added_m >= least and not ground.is_makespan:
-                continue
-            if added_m == math.inf:
+            if added_m == math.inf or (added_m >= least and not ground.is_makespan):
                 continue
             price = _price(ground, work, uav, visit, added_m, power, scale)
             if price < least:
