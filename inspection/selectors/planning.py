@@ -10,15 +10,17 @@ from django.db import DEFAULT_DB_ALIAS
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.snapshot_file import LAYOUT
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind
-from inspection.selectors.graph import graph_of_row, zones_of_edition
+from inspection.selectors.graph import SnapshotRow, graph_for, zones_of_edition
 from inspection.selectors.terrain import has_terrain
 from workspace.prepared import prepared_rows
 
 _GROUND = "(SELECT revision, changed_at FROM inspection_ground ORDER BY id LIMIT 1)"
 _EDITION = f"SELECT revision, changed_at FROM {_GROUND} AS ground"  # noqa: S608 - no value of anybody's
-_SNAPSHOT = "(SELECT version, ground_revision, arrays_sha256 FROM inspection_graphsnapshot ORDER BY version DESC LIMIT 1)"
+_SNAPSHOT = f"""(SELECT version, ground_revision, arrays_sha256 FROM inspection_graphsnapshot WHERE rules @> '{{"layout": {LAYOUT}}}'
+    ORDER BY version DESC LIMIT 1)"""  # noqa: S608 - no value of anybody's
 _POINT_COLUMNS = ("id", "kind", "subtype", "height_m", "max_voltage_v")
 _ON_LINE = {"line_id", "place_on_line", "places_on_line"}
 # What the name of a whole tower or bridge is made of; in the model's own order, in which `from_db` takes the values.
@@ -68,7 +70,8 @@ class PointAsset(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PlanningGround:
-    """The newest graph, the zones in force, and the edition of the ground that they were read with: they are at least as new as it."""
+    """The newest network cleared of the zones in force, these zones, and the edition of the ground that they were read with: they are
+    at least as new as it."""
 
     graph: InspectionGraph
     zones: ZoneIndex
@@ -78,13 +81,14 @@ class PlanningGround:
 class PlanningRead(NamedTuple):
     """What one statement has told."""
 
-    snapshot: tuple[int, int, str] | None
+    snapshot: SnapshotRow | None
     edition: Edition
     points: Mapping[int, PointAsset]
 
     def ground(self) -> PlanningGround:
-        """Costs nothing more until the graph or the ground change. Raises NoGraph."""
-        return PlanningGround(graph_of_row(self.snapshot), zones_of_edition(self.edition), self.edition)
+        """Costs nothing more until the network or the ground change. Raises NoGraph."""
+        zones = zones_of_edition(self.edition)
+        return PlanningGround(graph_for(self.snapshot, zones), zones, self.edition)
 
 
 def planning_read(points: Sequence[int] = ()) -> PlanningRead:
