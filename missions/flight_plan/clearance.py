@@ -22,6 +22,7 @@ Limits = tuple[float | None, str, float | None, str]  # lower [m] and from where
 TAKE_OFF = -1  # number of the leg up to the first waypoint
 EQUATOR_RADIUS_M, ECCENTRICITY_SQUARED = 6_378_137.0, 0.006694380  # WGS84
 FEWEST_DEGREE_M = 110_574.0  # in a degree of latitude, on the equator
+STRETCHED_EXCESS = 1.5  # a leg a degree of latitude from the others is off by less than that up to 70 degrees
 
 
 class RouteMeetsZone(Exception):
@@ -269,8 +270,8 @@ def _meetings(
         for leg in legs[meets].tolist():
             yield zone, leg, 0.0
         if lateral_m > 0 and not meets.all():
-            apart_m = _metres_apart(own, drawn[~meets])
-            for leg, distance_m in zip(legs[~meets].tolist(), apart_m.tolist(), strict=True):
+            beside, apart_m = _beside(own, drawn[~meets], lateral_m)
+            for leg, distance_m in zip(legs[~meets][beside].tolist(), apart_m.tolist(), strict=True):
                 if distance_m < lateral_m:
                     yield zone, leg, distance_m
 
@@ -284,16 +285,20 @@ def _drawn(start: FloatArray, end: FloatArray) -> Geometries:
     return drawn
 
 
-def _metres_apart(polygon: BaseGeometry, legs: Geometries) -> FloatArray:
-    """Between a polygon and each leg; found in a plane stretched for the legs' latitude, and measured at the place."""
-    middle = float(np.median(shapely.get_coordinates(legs)[:, 1]))
-    stretch = np.array([math.cos(math.radians(middle)), 1.0])
+def _beside(polygon: BaseGeometry, legs: Geometries, lateral_m: float) -> tuple[NDArray[np.intp], FloatArray]:
+    """Places of the legs that may be nearer to a polygon than the clearance, and the metres between.
+
+    What is nearest is found in a plane stretched for the latitude where the legs are, and measured at its place.
+    """
+    middle = math.radians(float(np.median(shapely.get_coordinates(legs)[:, 1])))
+    stretch = np.array([math.cos(middle), 1.0])
     flat_legs = shapely.transform(legs, lambda places: places * stretch)
-    between = shapely.shortest_line(shapely.transform(polygon, lambda places: places * stretch), flat_legs)
-    ends = shapely.get_coordinates(between).reshape(-1, 2, 2) / stretch
+    flat = shapely.transform(polygon, lambda places: places * stretch)
+    shapely.prepare(flat)
+    beside = np.flatnonzero(shapely.dwithin(flat, flat_legs, STRETCHED_EXCESS * lateral_m / FEWEST_DEGREE_M))
+    ends = shapely.get_coordinates(shapely.shortest_line(flat, flat_legs[beside])).reshape(-1, 2, 2) / stretch
     latitude = np.radians(ends[:, :, 1].mean(axis=1))
     flattening = 1.0 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2
     east_m = np.radians(ends[:, 1, 0] - ends[:, 0, 0]) * EQUATOR_RADIUS_M / np.sqrt(flattening) * np.cos(latitude)
     north_m = np.radians(ends[:, 1, 1] - ends[:, 0, 1]) * EQUATOR_RADIUS_M * (1.0 - ECCENTRICITY_SQUARED) / flattening**1.5
-    apart: FloatArray = np.hypot(east_m, north_m)
-    return apart
+    return beside, np.hypot(east_m, north_m)
