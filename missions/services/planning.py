@@ -8,8 +8,10 @@ from django.conf import settings
 
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, has_terrain_at, planning_read, terrain_at
+from missions.flight_plan.separation import Separation, separation_json
 from missions.routing.solver import Stop, never
 from missions.services.assignment import quality_of
+from missions.services.apart import routes_apart
 from missions.services.attempts import Attempt, attempt
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import zones_met
@@ -41,6 +43,7 @@ class Finished:
 
     found: Attempt
     routes: Sequence[PlannedRoute]
+    separation: Separation
     has_terrain: bool
     met: frozenset[int]
     worth: Worth
@@ -101,9 +104,10 @@ class _Planner:
         )  # fmt: skip
         self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
         has_terrain = has_terrain_at(ground.edition)
-        routes = found.routes(self.request, ground_heights_m if has_terrain else None)
+        alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+        routes, separation = routes_apart(self.request, alone, choice.table)
         met = zones_met(routes, self.request.departs_at, choice.table)
-        return Finished(found, routes, has_terrain, met, worth_of(self.request, found, routes))
+        return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes))
 
 
 def make_plan(
@@ -144,7 +148,7 @@ def make_plan(
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
-        separation={},
+        separation=separation_json(plan.separation),
         quality=quality_of(
             plan.found.solution,
             plan.found.lock_cost,
