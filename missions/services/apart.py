@@ -44,7 +44,7 @@ def routes_apart(
 
 
 def _timed(request: PlanRequest, number: int, route: PlannedRoute) -> TimedRoute:
-    assert route.waypoints is not None and route.timing is not None  # noqa: S101, PT018 - only routes that are flown
+    assert route.waypoints is not None and route.timing is not None  # noqa: S101 - only routes that are flown
     lands_s = None if route.end_action is EndAction.HOVER else route.timing.total_s
     return timed_route(request.uavs[number].name, route.waypoints, route.timing.arrival_s, lands_s=lands_s)
 
