@@ -97,7 +97,7 @@ class _Planner:
         raise GraphOutdated
 
     def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        scene = scene_on(ground, ground.zones(chosen))
+        scene = scene_on(ground, chosen)
         found = attempt(
             self.request, self.places, self.gone, scene,
             stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share,

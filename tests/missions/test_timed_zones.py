@@ -107,3 +107,23 @@ def test_two_uavs_from_one_place_are_kept_apart() -> None:
     late = max(plan["routes"], key=lambda route: route["departs_s"])
     assert late["arrival_s"][0] > late["departs_s"] >= plan["separation"]["time_s"]
     assert plan["separation"]["unresolved"] == []
+
+
+def test_under_a_zone_that_begins_above_the_flight_a_uav_takes_off_and_targets_are_inspected() -> None:
+    here = world()
+    for centre in ((10.0, 55.9999), (10.020, 56.0)):
+        zone = zone_around(centre, 0.0005)
+        NoFlyZone.objects.filter(pk=zone.pk).update(lower_limit_m=300.0, lower_reference="AGL")
+    zone_around((0.0, 0.0), 0.0001)
+    plan = make_plan(request=request(here.towers[5], uavs=(uav((10.0, 55.9999)),)))
+    assert plan["unassigned"] == plan["warnings"] == []
+
+
+def test_a_zone_that_ends_below_the_flight_bars_take_off_and_is_flown_over() -> None:
+    here = world()
+    zone = zone_around(AT_THE_LINE, 0.0005)
+    NoFlyZone.objects.filter(pk=zone.pk).update(upper_limit_m=25.0, upper_reference="AGL")
+    zone_around((0.0, 0.0), 0.0001)
+    assert crosses(make_plan(request=request(here.towers[5])), zone)
+    grounded = make_plan(request=request(here.towers[5], uavs=(uav(AT_THE_LINE),)))
+    assert [warning["code"] for warning in grounded["warnings"]] == ["uav_inside_zone"]
