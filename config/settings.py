@@ -11,6 +11,7 @@ import dj_database_url
 from config.mail import mail_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from inspection.graph.rules import LinkingRules
+from inspection.zones.rules import ZoneRules
 from missions.flight_plan.rules import FlightRules
 from missions.routing.rules import RoutingRules
 
@@ -316,6 +317,10 @@ FLIGHT_RULES = FlightRules(
     transit_agl_m=_float("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
     max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
     cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
+)
+ZONE_RULES = ZoneRules(
+    time_margin_s=_float("SPANWISE_ZONE_TIME_MARGIN_S", ZoneRules.time_margin_s),
+    height_margin_m=_float("SPANWISE_ZONE_HEIGHT_MARGIN_M", ZoneRules.height_margin_m),
 )
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)

@@ -177,6 +177,7 @@ def quality_of(solution: Solution, cost: LockCost | None, objective: Objective, 
     return {
         "lower_bound_m": math.floor(bound * 1_000) / 1_000 if is_total else None,
         "lower_bound_s": None if is_total else math.floor(bound * 10) / 10,
+        "lower_bound_wh": None,
         "gap": round(gap, 6),
         "is_proven": is_proven,
         "method": solution.method,

@@ -7,10 +7,8 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
-from inspection.selectors import ground_heights_m
-from inspection.selectors.planning import Edition, has_terrain_at
 from missions.flight_plan.duration import duration_s
-from missions.flight_plan.heights import inspection_agl_m, pass_agl_m, with_heights
+from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.models import EndAction
 from missions.routing.problem import Routes, Visit
@@ -18,41 +16,44 @@ from missions.routing.terminals import Ways
 from missions.services.assignment import route_end
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
-from missions.services.refusals import Scene, place_height_m
+from missions.services.refusals import Scene
 from missions.services.requests import BaseRequest, PlanRequest
 
 
 class Drawing:
-    """Turns the visits of UAVs into their waypoints."""
+    """Turns the visits of UAVs into their waypoints. agl_m: the height above ground at which each place is inspected."""
 
     def __init__(
         self,
         request: PlanRequest,
         scene: Scene,
         places: Sequence[Place],
+        agl_m: Sequence[float],
         visits: Sequence[Visit],
         courses: Sequence[tuple[LonLat, ...]],
         ways: Ways,
         bases: Sequence[BaseRequest],
-        edition: Edition,
     ) -> None:
         self.request = request
         self.scene = scene
         self.places = places
+        self.agl_m = agl_m
         self.visits = visits
         self.courses = courses
         self.ways = ways
         self.bases = bases
-        self.ground = ground_heights_m if has_terrain_at(edition) else None
 
-    def routes(self, uavs: Sequence[int], orders: Routes) -> Mapping[int, PlannedRoute]:
-        """What each UAV that has visits flies, by its number in the request; uavs are the numbers of those that fly."""
+    def routes(self, uavs: Sequence[int], orders: Routes, ground: GroundHeights | None) -> Mapping[int, PlannedRoute]:
+        """What each UAV that has visits flies, by its number in the request; uavs are the numbers of those that fly.
+
+        ground: the terrain model's heights; None: there is none.
+        """
         flying = [(start, uav, order) for start, (uav, order) in enumerate(zip(uavs, orders, strict=True)) if order]
         ways = [self.ways.of_route(start, order, route_end(self.request, uav)) for start, uav, order in flying]
         passed = self._passed(ways)
-        return {uav: self._route(uav, order, nodes) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
+        return {uav: self._route(uav, order, nodes, ground) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
 
-    def _route(self, uav: int, order: Sequence[int], passed: PassedNodes) -> PlannedRoute:
+    def _route(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> PlannedRoute:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)
         base = self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None
@@ -61,10 +62,10 @@ class Drawing:
             transit_agl_m=flight.transit_agl_m,
             targets=[self._target(visit) for visit in order],
             ways=passed,
-            home=self._home(action, uav, base),
+            home=asked.position if action is EndAction.RETURN else None if base is None else base.position,
         )
         points, length_m = with_short_legs(points, flight.longest_leg_m)
-        waypoints, is_flat = with_heights(points, self.ground, flight)
+        waypoints, is_flat = with_heights(points, ground, flight)
         return PlannedRoute(
             targets=tuple(self.places[self.visits[visit].target].target for visit in order),
             waypoints=waypoints,
@@ -82,16 +83,9 @@ class Drawing:
             is_flat=is_flat,
         )
 
-    def _home(self, action: EndAction, uav: int, base: BaseRequest | None) -> LonLat | None:
-        """Where a route leads on to from its last visit."""
-        if action is EndAction.RETURN:
-            return self.request.uavs[uav].position
-        return None if base is None else base.position
-
     def _target(self, visit: int) -> TargetPoints:
         place = self.places[self.visits[visit].target]
-        agl_m = inspection_agl_m(place_height_m(place, self.scene), self.scene.flight)
-        return TargetPoints(place.target, self.courses[visit], agl_m, place.task, place.asset)
+        return TargetPoints(place.target, self.courses[visit], self.agl_m[self.visits[visit].target], place.task, place.asset)
 
     def _passed(self, ways: Sequence[Sequence[tuple[int, int]]]) -> list[PassedNodes]:
         """What is passed on the ways of each route, looked up for all of them at once."""

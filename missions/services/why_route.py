@@ -19,9 +19,10 @@ from missions.flight_plan.flyable_graph import flyable_graph
 from missions.models import EndAction
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene, visits_of_places
+from missions.services.planning import current_scene
 from missions.services.refusals import Scene, zone_at
 from missions.services.requests import InvalidRequest, PlanRequest
+from missions.services.visits import visits_of_places
 
 MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
 BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route

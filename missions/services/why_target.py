@@ -19,9 +19,10 @@ from missions.routing.reach import needed_range_m
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene, visits_of_places
+from missions.services.planning import current_scene
 from missions.services.refusals import Scene, groundings, place_height_m, zone_at
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest
+from missions.services.visits import visits_of_places
 from missions.services.wishes import may_do, stored_bases
 from workspace.models import Organisation
 

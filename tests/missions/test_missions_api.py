@@ -13,6 +13,7 @@ from django.test import Client
 from inspection.services import mark_ground_changed
 from inspection.services.supports import number_supports
 from missions import tasks
+from missions.flight_plan.performance import Performance, performance_to_json
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
@@ -370,5 +371,6 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
             "end_action": "hover",
             "most_targets": None,
             "sensors": [],
+            **performance_to_json(Performance()),
         }
     ]
