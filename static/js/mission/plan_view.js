@@ -19,11 +19,14 @@ const REASONS = {
 };
 
 export const OBJECTIVES = [
-  { value: "makespan", words: t("Even routes"), meaning: t("The longest route as short as possible") },
+  { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },
   { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
+  { value: "time", words: t("Least flying time"), meaning: t("All UAVs together as few minutes in the air as possible") },
+  { value: "energy", words: t("Least energy"), meaning: t("All UAVs together with as little of their batteries as possible") },
 ];
 
-export const otherObjective = (objective) => (objective === "total" ? "makespan" : "total");
+/** The one to set beside another: the soonest end, beside which the fewest metres. */
+export const otherObjective = (objective) => (objective === "makespan" ? "total" : "makespan");
 
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
 export function routesOf(plan) {
@@ -64,7 +67,7 @@ export function longestDuration_s(result) {
   return Math.max(0, ...result.routes.map((route) => route.duration_s));
 }
 
-/** "Even routes 56 min, 79.5 km": what an objective gives, where it has been planned. */
+/** "56 min, 79.5 km": what an objective gives, where it has been planned. */
 export function figuresOf(result) {
   return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
 }
