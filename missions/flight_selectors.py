@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
+from uuid import UUID
 
 import numpy as np
 from django.conf import settings
@@ -12,7 +13,6 @@ from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F,
 
 from missions.flight_plan.separation import TimedRoute
 from missions.models import EndAction, Mission, MissionState, Route, Waypoint
-from workspace.models import Organisation
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 _SECOND = Value(timedelta(seconds=1))
@@ -28,16 +28,17 @@ class OtherFlights:
     untimed: tuple[tuple[str, str], ...] = ()
 
 
-def flights_at_the_same_time(organisation: Organisation, from_s: float, to_s: float, *, but: Mission | None = None) -> OtherFlights:
+def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *, but: UUID | str | None = None) -> OtherFlights:
     """Routes of approved, dispatched and active missions that are in the air at any time of a window, in seconds since the epoch.
 
-    Their own seconds count from from_s. A UAV that hovers at its end is taken to do so until the longest flight is over.
+    `but` is a mission that does not count. Their own seconds count from from_s.
+    A UAV that hovers at its end is taken to do so until the longest flight is over.
     """
     window_from, window_to = (datetime.fromtimestamp(moment_s, UTC) for moment_s in (from_s, to_s))
     longest = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
-    missions = Mission.objects.filter(organisation=organisation, deleted_at=None, state__in=FLYING_STATES, departs_at__lt=window_to)
+    missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at__lt=window_to)
     routes = (
-        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but.pk), geometry__isnull=False)
+        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), geometry__isnull=False)
         .alias(ends_at=_ENDS_AT)
         .filter(Q(ends_at__gt=window_from) | Q(mission__departs_at__gt=window_from - longest))
         .select_related("mission", "mission_uav")
