@@ -65,7 +65,7 @@ class InspectionGraph:
         for field in fields(self):
             array = getattr(self, field.name)
             if isinstance(array, np.ndarray) and array.flags.writeable:
-                object.__setattr__(self, field.name, _read_only(array))
+                object.__setattr__(self, field.name, read_only(array))
 
     @property
     def node_count(self) -> int:
@@ -76,7 +76,8 @@ class InspectionGraph:
         return len(self.edge)
 
 
-def _read_only(array: NDArray[np.generic]) -> NDArray[np.generic]:
+def read_only(array: NDArray[np.generic]) -> NDArray[np.generic]:
+    """The same values in one contiguous piece that nobody writes to."""
     view = np.ascontiguousarray(array).view()
     view.setflags(write=False)
     return view

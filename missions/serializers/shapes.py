@@ -247,6 +247,15 @@ class StaleCauseSerializer(serializers.Serializer):
         child=serializers.CharField(allow_blank=True), allow_null=True, help_text="between which targets; empty for a flight's start or end"
     )
     position = PositionField(allow_null=True)
+    agl_m = serializers.ListField(
+        child=serializers.FloatField(), allow_null=True, help_text="where a zone is met: lowest and highest planned height above ground"
+    )
+    to = serializers.DateTimeField(allow_null=True)
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        return super().get_fields() | {
+            "from": serializers.DateTimeField(allow_null=True, help_text="when a zone is met; null: at any time")
+        }
 
 
 class MissionSerializer(serializers.Serializer):

@@ -7,9 +7,9 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
-from missions.flight_plan.duration import duration_s
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
+from missions.flight_plan.timing import timing
 from missions.models import EndAction
 from missions.routing.problem import Routes, Visit
 from missions.routing.terminals import Ways
@@ -53,6 +53,13 @@ class Drawing:
         passed = self._passed(ways)
         return {uav: self._route(uav, order, nodes, ground) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
 
+    def weight(self, start: int, uav: int, order: Sequence[int]) -> float:
+        """What a route's ways cost for each metre, stretches included; `start` is the UAV's number in the ways."""
+        source, sink = np.array(self.ways.of_route(start, order, route_end(self.request, uav))).T
+        along_m = sum(self.visits[visit].length_m for visit in order)
+        length_m = float(self.ways.travel.length_m[source, sink].sum()) + along_m
+        return (float(self.ways.travel.cost[source, sink].sum()) + along_m) / length_m if length_m else 1.0
+
     def _route(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> PlannedRoute:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)
@@ -66,21 +73,25 @@ class Drawing:
         )
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
+        lands = action is not EndAction.HOVER
+        clock = timing(
+            waypoints,
+            cruise_speed_mps=asked.cruise_speed_mps,
+            performance=asked.performance,
+            conditions=self.request.conditions,
+            lands=lands,
+            rules=flight,
+        )
         return PlannedRoute(
             targets=tuple(self.places[self.visits[visit].target].target for visit in order),
             waypoints=waypoints,
             line=line_of(waypoints.points),
             length_m=length_m,
-            duration_s=duration_s(
-                waypoints,
-                length_m=length_m,
-                cruise_speed_mps=asked.cruise_speed_mps,
-                lands=action is not EndAction.HOVER,
-                rules=flight,
-            ),
+            duration_s=clock.total_s,
             end_action=action,
             base=None if base is None else base.name,
             is_flat=is_flat,
+            timing=clock,
         )
 
     def _target(self, visit: int) -> TargetPoints:

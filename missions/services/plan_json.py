@@ -100,8 +100,8 @@ def plan_to_json(
 
 def total_energy_wh(routes: Sequence[PlannedRoute]) -> float | None:
     """Of the routes whose energy is counted; None if that is none of them."""
-    counted = [route.timing.used_wh for route in routes if route.timing is not None and route.timing.used_wh is not None]
-    return round(sum(float(used_wh[-1]) for used_wh in counted), 2) if counted else None
+    counted = [route.timing.total_wh for route in routes if route.timing is not None and route.timing.total_wh is not None]
+    return round(sum(counted), 2) if counted else None
 
 
 def timing_to_json(route: PlannedRoute, column: Callable[[FloatArray, int], Any]) -> dict[str, Any]:
@@ -115,7 +115,7 @@ def timing_to_json(route: PlannedRoute, column: Callable[[FloatArray, int], Any]
     return {
         "departs_s": round(route.departs_s, 1),
         "energy_wh": None if timing.total_wh is None else round(timing.total_wh, 2),
-        "battery_percent": None if timing.battery_percent is None else round(timing.battery_percent, 1),
+        "battery_percent": None if timing.end_percent is None else round(timing.end_percent, 1),
         "arrival_s": column(timing.arrival_s + route.departs_s, 1),
         "used_wh": None if timing.used_wh is None else column(timing.used_wh, 2),
         "battery_left_percent": None if timing.battery_left_percent is None else column(timing.battery_left_percent, 1),

@@ -19,9 +19,9 @@ from missions.flight_plan.flyable_graph import flyable_graph
 from missions.models import EndAction
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene
 from missions.services.refusals import Scene, zone_at
 from missions.services.requests import InvalidRequest, PlanRequest
+from missions.services.scenes import current_scene
 from missions.services.visits import visits_of_places
 
 MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
@@ -47,9 +47,9 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
     """routes: for each UAV of the request its targets in order. Raises InvalidRequest or NoGraph."""
     if not routes[uav]:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
-    scene = current_scene()
+    scene = current_scene(request)
     wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
-    field = _field(request, wanted, scene, scene.graph, scene.zones)
+    field = _field(request, wanted, scene, scene.graph, scene.leg_zones)
     order = _best_order(request, field, uav, routes[uav])
     legs_m = _legs_m(request, field, uav, order)
     along_m = sum(field.along_m[visit] for visit in order)

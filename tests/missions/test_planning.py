@@ -7,14 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
-from django.contrib.gis.geos import Point
+from django.contrib.gis.geos import LineString, Point
 
 from inspection.geodesy import LonLat, path_length_m
+from inspection.models import NoFlyZone
 from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import EndAction, Uav
 from missions.routing.problem import Objective, Task, TaskKind
-from missions.services import BaseRequest, GraphOutdated, InvalidRequest, TargetRequest, make_plan
+from missions.services import BaseRequest, InvalidRequest, TargetRequest, make_plan
+from missions.services.best_so_far import PlanProgress
 from tests.inspection import ground
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, island, power_line, rebuild, request, uav, world, zone_around
 
@@ -315,13 +317,25 @@ def test_with_terrain_data_all_three_heights_agree(tmp_path: Path) -> None:
         assert waypoint["altitude_relative_m"] == pytest.approx(amsl_m - take_off_m, abs=0.05)
 
 
-def test_a_zone_that_the_graph_does_not_know_yet_stops_the_plan() -> None:
+def test_a_zone_is_kept_clear_of_from_the_moment_it_is_saved() -> None:
     here = world()
-    zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
-    with pytest.raises(GraphOutdated, match="Fire brigade"):
-        make_plan(request=request(here.towers[5]))
-    rebuild()
-    assert make_plan(request=request(here.towers[5]))["routes"][0]["targets"] == [0]
+    zone = zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
+    plan = make_plan(request=request(here.towers[5]))
+    assert plan["routes"][0]["targets"] == [0]
+    assert not LineString(plan["routes"][0]["geometry"]["coordinates"]).intersects(zone.geometry)
+
+
+def test_a_zone_saved_while_a_plan_is_made_is_kept_clear_of() -> None:
+    here = world()
+    zones: list[NoFlyZone] = []
+
+    def save_a_zone(progress: PlanProgress) -> None:
+        if progress.message.startswith("Working out heights") and not zones:
+            zones.append(zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False))
+
+    plan = make_plan(request=request(here.towers[5]), on_progress=save_a_zone)
+    assert zones
+    assert not LineString(plan["routes"][0]["geometry"]["coordinates"]).intersects(zones[0].geometry)
 
 
 def test_without_a_graph_there_is_no_plan() -> None:

@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from missions.flight_plan.conditions import (
@@ -53,6 +53,7 @@ def test_density_without_a_known_height_is_that_of_sea_level() -> None:
     assert Conditions().air_density(None) == Conditions().air_density(0.0)
 
 
+@settings(deadline=None)
 @given(st.floats(-400, 4000), st.floats(1, 1000), st.floats(-40, 45))
 def test_air_is_thinner_higher_up_and_where_it_is_warmer(amsl_m: float, rise_m: float, temperature_c: float) -> None:
     here = Conditions(temperature_c=temperature_c).air_density(amsl_m)
@@ -60,6 +61,7 @@ def test_air_is_thinner_higher_up_and_where_it_is_warmer(amsl_m: float, rise_m: 
     assert Conditions(temperature_c=temperature_c + 5).air_density(amsl_m) < here
 
 
+@settings(deadline=None)
 @given(
     st.lists(st.floats(0, 500), max_size=10, unique=True),
     st.data(),

@@ -1,0 +1,44 @@
+"""The last look before a plan leaves: its finished routes against the zones of now, at the height and time of every leg."""
+
+from collections.abc import Sequence
+from datetime import datetime
+
+import numpy as np
+
+from inspection.zones.reach import ZoneTable
+from missions.flight_plan.clearance import FlownRoute, breaches
+from missions.flight_plan.zone_facts import zones_near
+from missions.models import EndAction
+from missions.services.plan_json import PlannedRoute
+from missions.zone_selectors import zone_margins
+
+
+def zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | None, table: ZoneTable) -> frozenset[int]:
+    """Primary keys of the zones that a route meets; without a departure at any time."""
+    flown = [flown_route(route, departs_at) for route in routes if route.waypoints is not None]
+    if not flown or not len(table):
+        return frozenset()
+    margins = zone_margins()
+    window = None
+    if departs_at is not None:
+        window = departs_at.timestamp(), max(route.ends_s for route in flown if route.ends_s is not None)
+    near, facts = zones_near(table, np.concatenate([route.position for route in flown]), margins, window)
+    return frozenset(int(near.ids[breach.zone]) for route in flown for breach in breaches(route, facts, margins))
+
+
+def flown_route(route: PlannedRoute, departs_at: datetime | None) -> FlownRoute:
+    """As the last look takes it; the route is one that is flown."""
+    assert route.waypoints is not None and route.timing is not None  # noqa: S101 - only routes that are flown
+    points, lands = route.waypoints.points, route.end_action is not EndAction.HOVER
+    if departs_at is None:
+        return FlownRoute(points.position, points.agl_m, route.waypoints.amsl_m, lands=lands)
+    start_s = departs_at.timestamp() + route.departs_s
+    return FlownRoute(
+        points.position,
+        points.agl_m,
+        route.waypoints.amsl_m,
+        arrival_s=start_s + route.timing.arrival_s,
+        departs_s=start_s,
+        ends_s=start_s + route.duration_s,
+        lands=lands,
+    )
