@@ -37,7 +37,7 @@ const store = createStore({
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, why: null, along: null,
-  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null,
+  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [],
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
