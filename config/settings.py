@@ -13,7 +13,7 @@ from config.private_servers import broker_url, private_database_url, private_red
 from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.rules import LinkingRules
 from inspection.zones.rules import ZoneRules
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
@@ -328,6 +328,11 @@ FLOWN_HEIGHTS = FlownHeights(
     clearance_m=FLIGHT_RULES.clearance_m,
     tolerance_m=FLIGHT_RULES.terrain_tolerance_m,
     margin_m=ZONE_RULES.height_margin_m,
+)
+SEPARATION_RULES = SeparationRules(
+    lateral_m=_float("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),
+    vertical_m=_float("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
+    time_s=_float("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
 )
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)

@@ -71,7 +71,7 @@ def attempt(
     visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
-        scene.zones,
+        scene.leg_zones,
         starts=[Terminal(request.uavs[uav].position) for uav in uavs],
         entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],

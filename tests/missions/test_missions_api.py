@@ -177,6 +177,7 @@ def test_missions_of_another_organisation_do_not_exist(here: World, client: Clie
     answers = [
         stranger.get(f"/api/v1/{path}"), patch(stranger, path, {"name": "Taken"}), stranger.delete(f"/api/v1/{path}"),
         post(stranger, f"{path}/plan"), post(stranger, f"{path}/restore"), stranger.get(f"/api/v1/{path}/history"),
+        stranger.get(f"/api/v1/{path}/legal-windows"),
     ]  # fmt: skip
     assert {answer.status_code for answer in answers} == {404}
     assert stranger.get("/api/v1/missions").json()["results"] == []

@@ -7,6 +7,7 @@ import pytest
 from django.contrib.gis.geos import LineString
 
 from inspection.models import NoFlyZone
+from missions.routing.problem import Objective
 from missions.services import make_plan
 from tests.missions.worlds import request, uav, world, zone_around
 
@@ -88,3 +89,41 @@ def test_each_waypoint_has_its_arrival_and_the_battery_left() -> None:
     assert len(route["arrival_s"]) == len(route["waypoints"])
     assert route["arrival_s"] == sorted(route["arrival_s"])
     assert route["used_wh"] is None
+
+
+def test_a_plan_that_goes_round_a_zone_of_its_time_tells_how_far_it_is_from_the_plan_without_it() -> None:
+    here = world()
+    timed_zone(MONDAY_NOON - timedelta(hours=1), MONDAY_NOON + timedelta(hours=1))
+    round_it = make_plan(request=request(here.towers[5], departs_at=MONDAY_NOON))
+    assert not round_it["is_proven"]
+    assert round_it["gap"] is None or 0.0 < round_it["gap"] < 1.0
+
+
+def test_two_uavs_from_one_place_are_kept_apart() -> None:
+    here = world()
+    both = (uav((10.0, 55.9999), name="Tern"), uav((10.0, 55.9999), name="Gull"))
+    plan = make_plan(request=request(here.towers[5], here.towers[4], uavs=both, objective=Objective.MAKESPAN, departs_at=MONDAY_NOON))
+    assert sorted(route["departs_s"] > 0 for route in plan["routes"]) == [False, True]
+    late = max(plan["routes"], key=lambda route: route["departs_s"])
+    assert late["arrival_s"][0] > late["departs_s"] >= plan["separation"]["time_s"]
+    assert plan["separation"]["unresolved"] == []
+
+
+def test_under_a_zone_that_begins_above_the_flight_a_uav_takes_off_and_targets_are_inspected() -> None:
+    here = world()
+    for centre in ((10.0, 55.9999), (10.020, 56.0)):
+        zone = zone_around(centre, 0.0005)
+        NoFlyZone.objects.filter(pk=zone.pk).update(lower_limit_m=300.0, lower_reference="AGL")
+    zone_around((0.0, 0.0), 0.0001)
+    plan = make_plan(request=request(here.towers[5], uavs=(uav((10.0, 55.9999)),)))
+    assert plan["unassigned"] == plan["warnings"] == []
+
+
+def test_a_zone_that_ends_below_the_flight_bars_take_off_and_is_flown_over() -> None:
+    here = world()
+    zone = zone_around(AT_THE_LINE, 0.0005)
+    NoFlyZone.objects.filter(pk=zone.pk).update(upper_limit_m=25.0, upper_reference="AGL")
+    zone_around((0.0, 0.0), 0.0001)
+    assert crosses(make_plan(request=request(here.towers[5])), zone)
+    grounded = make_plan(request=request(here.towers[5], uavs=(uav(AT_THE_LINE),)))
+    assert [warning["code"] for warning in grounded["warnings"]] == ["uav_inside_zone"]
