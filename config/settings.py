@@ -319,11 +319,6 @@ FLIGHT_RULES = FlightRules(
     max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
     cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
 )
-SEPARATION_RULES = SeparationRules(
-    lateral_m=_float("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),
-    vertical_m=_float("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
-    time_s=_float("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
-)
 ZONE_RULES = ZoneRules(
     time_margin_s=_float("SPANWISE_ZONE_TIME_MARGIN_S", ZoneRules.time_margin_s),
     height_margin_m=_float("SPANWISE_ZONE_HEIGHT_MARGIN_M", ZoneRules.height_margin_m),
@@ -333,6 +328,11 @@ FLOWN_HEIGHTS = FlownHeights(
     clearance_m=FLIGHT_RULES.clearance_m,
     tolerance_m=FLIGHT_RULES.terrain_tolerance_m,
     margin_m=ZONE_RULES.height_margin_m,
+)
+SEPARATION_RULES = SeparationRules(
+    lateral_m=_float("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),
+    vertical_m=_float("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
+    time_s=_float("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
 )
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)

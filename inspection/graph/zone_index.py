@@ -78,10 +78,10 @@ class ZoneIndex:
         return digest.hexdigest()
 
     def where(self, chosen: ArrayLike) -> "ZoneIndex":
-        """The index of some of the zones, as a mask or as places."""
+        """The index of some of the zones, chosen by a mask (z,) or by their places, in the order that they have here."""
         chosen = np.asarray(chosen)
         mask = np.zeros(len(self), dtype=bool)
-        mask[chosen] = True
+        mask[chosen if chosen.dtype == bool else chosen.astype(np.int64)] = True
         if mask.all():
             return self
         return ZoneIndex(

@@ -231,7 +231,8 @@ def _times(route: FlownRoute) -> tuple[FloatArray, FloatArray]:
     departs_s = np.nan if route.departs_s is None else route.departs_s
     ends_s = np.nan if route.ends_s is None else route.ends_s
     moments = np.concatenate([[departs_s], route.arrival_s, [ends_s]])
-    return np.where(np.isnan(moments[:-1]), -np.inf, moments[:-1]), np.where(np.isnan(moments[1:]), np.inf, moments[1:])
+    start_s, end_s = np.where(np.isnan(moments[:-1]), -np.inf, moments[:-1]), np.where(np.isnan(moments[1:]), np.inf, moments[1:])
+    return np.minimum(start_s, end_s), np.maximum(start_s, end_s)
 
 
 def _near_rows(line: FloatArray, polygons: Geometries, lateral_m: float) -> NDArray[np.intp]:

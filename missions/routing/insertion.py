@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from missions.routing.plan_cost import raised_to
-from missions.routing.plan_state import NO_LIMIT_M, Ground, Plan, Workspace, draw, save
+from missions.routing.plan_state import NO_LIMIT_M, Ground, Plan, RandomState, Workspace, draw, duration_s, save
 
 BLINK_SHARE = 0.01  # how often a place is overlooked
 INSERTION_NEIGHBOURS = 20  # beside which a place is looked for
@@ -53,7 +53,7 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
     """Put a target in where it costs least: beside its neighbours and at the ends of routes, or anywhere."""
     plan = work.plan
     least, least_m, at_uav, at_place, at_visit = np.inf, 0.0, -1, 0, 0
-    blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
+    blink = _next_blink(work.random)
     for index in range(ground.option_from[target], ground.option_from[target + 1]):
         visit = ground.option[index]
         onward_m, back_m = ground.onward_m[visit], ground.back_m[visit]
@@ -73,23 +73,13 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
                     here_m = back_m[plan.visit[uav, place - 1]] + onward_m[plan.visit[uav, place]] - plan.gap_m[uav, place]
                     if here_m < added_m:
                         if blink == 0:
-                            blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
+                            blink = _next_blink(work.random)
                         else:
                             added_m, best_place = here_m, place
                             blink -= 1
             if added_m >= least and not ground.is_makespan:
                 continue
-            price = _price(
-                plan.length_m[uav],
-                plan.service_s[uav],
-                added_m,
-                ground.service_s[visit],
-                ground.limit_m[uav],
-                ground.speed_mps[uav],
-                ground.is_makespan,
-                power,
-                scale,
-            )
+            price = _price(ground, plan, uav, visit, added_m, power, scale)
             if price < least:
                 least, least_m, at_uav, at_place, at_visit = price, added_m, uav, best_place, visit
         for number in range(1, min(ground.near.shape[1], INSERTION_NEIGHBOURS + 1) if is_near else 1):
@@ -103,20 +93,10 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
                     continue
                 if not ground.usable[uav, visit] or plan.done[uav] + ground.done[visit] > ground.most[uav]:
                     break
-                price = _price(
-                    plan.length_m[uav],
-                    plan.service_s[uav],
-                    added_m,
-                    ground.service_s[visit],
-                    ground.limit_m[uav],
-                    ground.speed_mps[uav],
-                    ground.is_makespan,
-                    power,
-                    scale,
-                )
+                price = _price(ground, plan, uav, visit, added_m, power, scale)
                 if price < least:
                     if blink == 0:
-                        blink = int(-math.log(1.0 - draw(work.random)) / BLINK_SHARE)
+                        blink = _next_blink(work.random)
                     else:
                         least, least_m, at_uav, at_place, at_visit = price, added_m, uav, place, visit
                         blink -= 1
@@ -128,7 +108,21 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
 
 
 @njit(cache=True, nogil=True)
-def _price(
+def _next_blink(random: RandomState) -> int:
+    """How many places are looked at before one is overlooked."""
+    return int(-math.log(1.0 - draw(random)) / BLINK_SHARE)
+
+
+@njit(cache=True, nogil=True, inline="always")  # a plan handed on costs more than the price
+def _price(ground: Ground, plan: Plan, uav: int, visit: int, added_m: float, power: int, scale: float) -> float:
+    """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
+    length_m, service_s = plan.length_m[uav], plan.service_s[uav]
+    limit_m, speed_mps, added_s = ground.limit_m[uav], ground.speed_mps[uav], ground.service_s[visit]
+    return _price_of(length_m, service_s, added_m, added_s, limit_m, speed_mps, ground.is_makespan, power, scale)
+
+
+@njit(cache=True, nogil=True)
+def _price_of(
     length_m: float,
     work_s: float,
     added_m: float,
@@ -139,12 +133,11 @@ def _price(
     power: int,
     scale: float,
 ) -> float:
-    """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
     if length_m + added_m > limit_m and not (length_m > NO_LIMIT_M and added_m < 0.0):
         return math.inf
     if not is_makespan:
         return added_m
-    now_s = length_m / speed_mps + work_s
+    now_s = duration_s(length_m, speed_mps, work_s)
     later_s = now_s + added_m / speed_mps + service_s
     return raised_to(later_s / scale, power) - raised_to(now_s / scale, power) + 1e-7 * (later_s - now_s) / scale
 

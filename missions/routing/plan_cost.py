@@ -5,7 +5,7 @@ import math
 from numba import njit
 
 from missions.routing.crossing import Move, added_m, measured
-from missions.routing.plan_state import Ground, Plan, RandomState, draw, values
+from missions.routing.plan_state import Ground, Plan, RandomState, draw, duration_s, values
 
 HAIR_M = 1e-4  # by which a move stays within the limits: its metres are sums and differences
 EVENNESS = 1e-3  # what the mean route weighs beside the longest
@@ -44,10 +44,10 @@ def cost_of_routes(ground: Ground, plan: Plan, power: int, scale: float) -> floa
         return total
     raised = 0.0
     for uav in range(len(plan.size)):
-        duration = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
+        duration = duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav])
         total += duration
         raised += raised_to(duration / scale, power)
-    return float(scale * raised ** (1.0 / (1 << power)) + EVENNESS * total / len(plan.size))
+    return _mean_s(len(plan.size), raised, total, power, scale)
 
 
 @njit(cache=True, nogil=True)
@@ -69,14 +69,20 @@ def is_wanted(
     raised, total_s = 0.0, 0.0
     for number in range(len(plan.size)):
         if number == uav:
-            duration_s = new.length_m / ground.speed_mps[uav] + new.service_s
+            own_s = duration_s(new.length_m, ground.speed_mps[uav], new.service_s)
         elif number == other_uav:
-            duration_s = new.other_length_m / ground.speed_mps[other_uav] + new.other_service_s
+            own_s = duration_s(new.other_length_m, ground.speed_mps[other_uav], new.other_service_s)
         else:
-            duration_s = plan.length_m[number] / ground.speed_mps[number] + plan.service_s[number]
-        total_s += duration_s
-        raised += raised_to(duration_s / scale, power)
-    return bool(scale * raised ** (1.0 / (1 << power)) + EVENNESS * total_s / len(plan.size) < most_cost)
+            own_s = duration_s(plan.length_m[number], ground.speed_mps[number], plan.service_s[number])
+        total_s += own_s
+        raised += raised_to(own_s / scale, power)
+    return _mean_s(len(plan.size), raised, total_s, power, scale) < most_cost
+
+
+@njit(cache=True, nogil=True)
+def _mean_s(uavs: int, raised: float, total_s: float, power: int, scale: float) -> float:
+    """From the sums of the durations, raised and not: what follows the longest the more the higher the power."""
+    return float(scale * raised ** (1.0 / (1 << power)) + EVENNESS * total_s / uavs)
 
 
 @njit(cache=True, nogil=True)
@@ -91,7 +97,7 @@ def longest_of(ground: Ground, plan: Plan) -> int:
     """The UAV that flies longest."""
     longest, longest_s = 0, -1.0
     for uav in range(len(plan.size)):
-        duration_s = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
-        if duration_s > longest_s and plan.size[uav]:
-            longest, longest_s = uav, duration_s
+        own_s = duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav])
+        if own_s > longest_s and plan.size[uav]:
+            longest, longest_s = uav, own_s
     return longest

@@ -223,6 +223,12 @@ def settle(ground: Ground, plan: Plan, uav: int) -> None:
 
 
 @njit(cache=True, nogil=True)
+def duration_s(length_m: float, speed_mps: float, service_s: float) -> float:
+    """Seconds of a route; service_s has take-off and landing in it."""
+    return length_m / speed_mps + service_s
+
+
+@njit(cache=True, nogil=True)
 def copy_plan(source: Plan, copy: Plan) -> None:
     for uav in range(len(source.size)):
         copy_route(source, copy, uav)
@@ -258,7 +264,7 @@ def values(ground: Ground, plan: Plan) -> tuple[float, float, float]:
     for uav in range(len(plan.size)):
         total_m += plan.length_m[uav]
         if plan.size[uav]:
-            longest_s = max(longest_s, plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav])
+            longest_s = max(longest_s, duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav]))
     return missed, total_m, longest_s
 
 

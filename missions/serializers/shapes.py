@@ -48,6 +48,9 @@ class RouteSerializer(serializers.Serializer):
         child=serializers.FloatField(), allow_null=True, help_text="for each waypoint, since take-off; null without a battery"
     )
     battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="for each waypoint")
+    by_hand = serializers.ListField(
+        child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or flies at another height"
+    )
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
     locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
@@ -247,6 +250,15 @@ class StaleCauseSerializer(serializers.Serializer):
         child=serializers.CharField(allow_blank=True), allow_null=True, help_text="between which targets; empty for a flight's start or end"
     )
     position = PositionField(allow_null=True)
+    agl_m = serializers.ListField(
+        child=serializers.FloatField(), allow_null=True, help_text="where a zone is met: lowest and highest planned height above ground"
+    )
+    to = serializers.DateTimeField(allow_null=True)
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        return super().get_fields() | {
+            "from": serializers.DateTimeField(allow_null=True, help_text="when a zone is met; null: at any time")
+        }
 
 
 class MissionSerializer(serializers.Serializer):

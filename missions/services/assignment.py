@@ -12,7 +12,7 @@ from missions.models import EndAction
 from missions.routing.exact import MAX_TARGETS
 from missions.routing.problem import BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit, merit
 from missions.routing.progress import OnProgress, Progress
-from missions.routing.solver import Stop, solve
+from missions.routing.solver import PROVEN_GAP, Stop, solve
 from missions.routing.terminals import Ways
 from missions.services.places import Place
 from missions.services.refusals import Grounding
@@ -162,23 +162,41 @@ def _cost(problem: Problem, solution: Solution, free: Solution) -> LockCost:
     )
 
 
-def quality_of(solution: Solution, cost: LockCost | None, objective: Objective, *, total_m: float, longest_s: float) -> dict[str, object]:
+def quality_of(
+    solution: Solution,
+    cost: LockCost | None,
+    objective: Objective,
+    *,
+    total_m: float,
+    longest_s: float,
+    share_of_freest: float | None = 1.0,
+) -> dict[str, object]:
     """Bound, gap, method and the cost of the locks in the shape of the API.
 
     total_m and longest_s are of the finished routes; the bound stays below them, whatever the drawing has rounded. What the search does
     not count (climbs over hills and tall assets) makes the longest route longer than it thought, and the gap wider: a plan is proven
     only if its finished routes are.
+
+    Where zones are in force for a part of the flight, `solution` is that on the fewest zones, and share_of_freest what it is worth
+    beside this plan: as far as it is better, this plan is not proven. None: it leaves out other targets, and tells nothing.
     """
     is_total = objective is Objective.TOTAL
-    bound = min(solution.lower_bound, total_m if is_total else longest_s)
-    gap, is_proven = solution.gap, solution.is_proven
-    if not is_total and longest_s - solution.longest_s > UNCOUNTED_S:
+    value = total_m if is_total else longest_s
+    bound: float | None = min(solution.lower_bound, value)
+    gap: float | None = solution.gap
+    is_proven = solution.is_proven
+    if share_of_freest is None:
+        bound, gap, is_proven = None, None, False
+    elif share_of_freest < 1.0 - PROVEN_GAP:
+        bound = value * share_of_freest * (1.0 - solution.gap)
+        gap, is_proven = 1.0 - share_of_freest * (1.0 - solution.gap), False
+    elif not is_total and longest_s - solution.longest_s > UNCOUNTED_S:
         gap, is_proven = (longest_s - bound) / longest_s, False
     return {
-        "lower_bound_m": math.floor(bound * 1_000) / 1_000 if is_total else None,
-        "lower_bound_s": None if is_total else math.floor(bound * 10) / 10,
+        "lower_bound_m": None if bound is None or not is_total else math.floor(bound * 1_000) / 1_000,
+        "lower_bound_s": None if bound is None or is_total else math.floor(bound * 10) / 10,
         "lower_bound_wh": None,
-        "gap": round(gap, 6),
+        "gap": None if gap is None else round(gap, 6),
         "is_proven": is_proven,
         "method": solution.method,
         "wish": None if cost is None else {name: value if value is None else round(value, 3) for name, value in vars(cost).items()},

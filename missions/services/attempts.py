@@ -37,6 +37,14 @@ class Attempt:
         flown = self.drawing.routes(self.uavs, self.solution.routes, ground)
         return [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
 
+    def weights(self, request: PlanRequest) -> list[float]:
+        """What the ways of each UAV's route cost for each metre: 1 along infrastructure, more away from it."""
+        weights = [1.0] * len(request.uavs)
+        for start, (uav, order) in enumerate(zip(self.uavs, self.solution.routes, strict=True)):
+            if order:
+                weights[uav] = self.drawing.weight(start, uav, order)
+        return weights
+
 
 def attempt(
     request: PlanRequest,
@@ -63,7 +71,7 @@ def attempt(
     visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
-        scene.zones,
+        scene.leg_zones,
         starts=[Terminal(request.uavs[uav].position) for uav in uavs],
         entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],

@@ -53,6 +53,13 @@ class Drawing:
         passed = self._passed(ways)
         return {uav: self._route(uav, order, nodes, ground) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
 
+    def weight(self, start: int, uav: int, order: Sequence[int]) -> float:
+        """What a route's ways cost for each metre, stretches included; `start` is the UAV's number in the ways."""
+        source, sink = np.array(self.ways.of_route(start, order, route_end(self.request, uav))).T
+        along_m = sum(self.visits[visit].length_m for visit in order)
+        length_m = float(self.ways.travel.length_m[source, sink].sum()) + along_m
+        return (float(self.ways.travel.cost[source, sink].sum()) + along_m) / length_m if length_m else 1.0
+
     def _route(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> PlannedRoute:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)

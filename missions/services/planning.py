@@ -7,12 +7,15 @@ from typing import Any
 from django.conf import settings
 
 from inspection.selectors import ground_heights_m
-from inspection.selectors.planning import PlanningGround, has_terrain_at, planning_read, terrain_at
+from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
+from missions.flight_plan.separation import Separation, separation_json
+from missions.flight_selectors import OtherFlights, flights_at_the_same_time
 from missions.routing.solver import Stop, never
+from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
-from missions.services.last_look import zones_met
+from missions.services.last_look import keys_of_zones_met
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -41,6 +44,7 @@ class Finished:
 
     found: Attempt
     routes: Sequence[PlannedRoute]
+    separation: Separation
     has_terrain: bool
     met: frozenset[int]
     worth: Worth
@@ -57,9 +61,10 @@ class _Planner:
     on_progress: OnPlanProgress
     seed: int
     search_s: float
+    others: OtherFlights
 
-    def best_on(self, ground: PlanningGround) -> tuple[Finished, Worth | None]:
-        """The best plan that meets no zone of this ground, and the worth of a plan that could not be bettered, if it is not this one's.
+    def best_on(self, ground: PlanningGround) -> tuple[Finished, Finished]:
+        """The best plan that meets no zone of this ground, and the plan on the fewest zones, which might; often the same.
 
         First all zones that can be in force at some time of the flight are kept clear of. If some of them are so for a part of it only,
         plans that keep clear of fewer are tried: whatever such a plan really meets is added, until it meets nothing or is no better.
@@ -68,18 +73,18 @@ class _Planner:
         share = 0.5 if choice.changes else 1.0
         best = self._clean(ground, choice, choice.widest, share)
         if not choice.changes:
-            return best, None
-        chosen, bound = choice.narrowest, None
+            return best, best
+        chosen, freest = choice.narrowest, None
         for _ in range(MOST_TRIES):
             tried = self._finished(ground, choice, chosen, share / MOST_TRIES)
-            bound = bound or tried.worth
+            freest = freest or tried
             if not tried.worth < best.worth:
                 break
             if not tried.met:
                 best = tried
                 break
             chosen = choice.with_zones(chosen, tried.met)
-        return best, bound
+        return best, freest or best
 
     def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
         """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""
@@ -94,16 +99,17 @@ class _Planner:
         raise GraphOutdated
 
     def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        scene = scene_on(ground, ground.zones(chosen))
+        scene = scene_on(ground, chosen)
         found = attempt(
             self.request, self.places, self.gone, scene,
             stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share,
         )  # fmt: skip
         self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
         has_terrain = has_terrain_at(ground.edition)
-        routes = found.routes(self.request, ground_heights_m if has_terrain else None)
-        met = zones_met(routes, self.request.departs_at, choice.table)
-        return Finished(found, routes, has_terrain, met, worth_of(self.request, found, routes))
+        alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+        routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
+        met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
+        return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes))
 
 
 def make_plan(
@@ -122,17 +128,17 @@ def make_plan(
     on_progress(PlanProgress(0.0, "Looking up the targets"))
     read = planning_read(whole_assets(request.targets))
     places, gone = places_of(request.targets, read.points)
-    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s)
+    others = _others_in_the_air(request)
+    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s, others)
     ground = read.ground()
     for _ in range(MOST_GROUNDS):
         terrain = terrain_at(ground.edition)  # before any height is read
-        plan, bound = planner.best_on(ground)
-        now = planning_read().ground()
-        if now.edition == ground.edition:
+        plan, freest = planner.best_on(ground)
+        if edition_now() == ground.edition:
             break
         # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.
-        ground = now
-        if terrain_at(now.edition) == terrain and not zones_met(plan.routes, request.departs_at, now.table):
+        now = ground = planning_read().ground()
+        if terrain_at(now.edition) == terrain and not keys_of_zones_met(plan.routes, request.departs_at, now.table):
             break
     else:
         raise GraphOutdated
@@ -144,13 +150,29 @@ def make_plan(
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
-        separation={},
-        quality=quality_of(
-            plan.found.solution,
-            plan.found.lock_cost,
-            request.objective,
-            total_m=sum(route.length_m for route in plan.routes),
-            longest_s=max(route.duration_s for route in plan.routes),
-        ),
+        separation=separation_json(plan.separation, others.untimed),
+        quality=_quality(request, plan, freest),
         as_text=as_text,
+    )
+
+
+def _others_in_the_air(request: PlanRequest) -> OtherFlights:
+    """A plan for any time cannot be kept apart from flights of a certain one; it gets a departure before it is flown."""
+    if request.departs_at is None or request.organisation is None:
+        return OtherFlights()
+    from_s = request.departs_at.timestamp()
+    to_s = from_s + settings.FLIGHT_RULES.longest_flight_s
+    return flights_at_the_same_time(request.organisation, from_s, to_s, but=request.mission)
+
+
+def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str, object]:
+    """How good the plan is beside all others, those that fly through a zone while it is not in force included."""
+    share = freest.worth.value / plan.worth.value if plan.worth.value and freest.worth.left_out == plan.worth.left_out else None
+    return quality_of(
+        freest.found.solution,
+        plan.found.lock_cost,
+        request.objective,
+        total_m=sum(route.length_m for route in plan.routes),
+        longest_s=max(route.duration_s for route in plan.routes),
+        share_of_freest=1.0 if plan is freest else share,
     )

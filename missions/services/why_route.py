@@ -49,7 +49,7 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
     scene = current_scene(request)
     wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
-    field = _field(request, wanted, scene, scene.graph, scene.zones)
+    field = _field(request, wanted, scene, scene.graph, scene.leg_zones)
     order = _best_order(request, field, uav, routes[uav])
     legs_m = _legs_m(request, field, uav, order)
     along_m = sum(field.along_m[visit] for visit in order)

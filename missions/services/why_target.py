@@ -161,7 +161,7 @@ def _needs(fleet: PlanRequest, place: Place, scene: Scene) -> tuple[Ways, np.nda
     visits, courses = visits_of_places([place])
     ways = ways_between(
         scene.graph,
-        scene.zones,
+        scene.leg_zones,
         starts=[Terminal(uav.position) for uav in fleet.uavs],
         entries=[Terminal(course[0], place.asset) for course in courses],
         exits=[Terminal(course[-1], place.asset) for course in courses],

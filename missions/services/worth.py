@@ -11,7 +11,10 @@ from missions.services.requests import PlanRequest
 
 @dataclass(frozen=True, order=True)
 class Worth:
-    """Less is better: targets left out, the high priorities first; then what the objective counts, in its own unit."""
+    """Less is better: targets left out, the high priorities first; then what the objective counts, in its own unit.
+
+    Ways away from infrastructure count as they do in the choice of ways: a short cut across country is not the better plan.
+    """
 
     left_out: tuple[int, ...]
     value: float
@@ -20,11 +23,13 @@ class Worth:
 def worth_of(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute]) -> Worth:
     left_out = [request.targets[item.target].priority for item in found.left_out]
     by_priority = tuple(sum(priority is level for priority in left_out) for level in sorted(Priority, reverse=True))
-    return Worth(by_priority, value_of(request.objective, routes))
+    values = [_value(request.objective, route) * weight for route, weight in zip(routes, found.weights(request), strict=True)]
+    return Worth(by_priority, max(values, default=0.0) if request.objective is Objective.MAKESPAN else sum(values))
 
 
-def value_of(objective: Objective, routes: Sequence[PlannedRoute]) -> float:
-    """Metres, seconds or watt-hours of finished routes."""
+def _value(objective: Objective, route: PlannedRoute) -> float:
+    if objective is Objective.TOTAL:
+        return route.length_m
     if objective is Objective.MAKESPAN:
-        return max((route.departs_s + route.duration_s for route in routes), default=0.0)
-    return sum(route.length_m for route in routes)
+        return route.departs_s + route.duration_s
+    return route.duration_s

@@ -12,6 +12,7 @@ import { standingUavs } from "./fleet.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map_panel.js";
 import { mountFinder } from "./panels/finder.js";
+import { mountFlightOptions } from "./panels/flight_options.js";
 import { mountFoot } from "./panels/foot.js";
 import { mountHeader } from "./panels/header.js";
 import { mountOptions } from "./panels/options.js";
@@ -36,7 +37,7 @@ const store = createStore({
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, why: null, along: null,
-  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null,
+  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [],
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -51,8 +52,10 @@ mountHeader(store, actions, page.canPlan, { showPlace: (position) => map.goTo({ 
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
 uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
-if (page.canPlan) mountOptions(store, actions, page.canPlan);
-else mountOptionsRead(store);
+if (page.canPlan) {
+  mountOptions(store, actions, page.canPlan);
+  mountFlightOptions(store, actions);
+} else mountOptionsRead(store);
 mountFoot(store, actions);
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });

@@ -13,8 +13,8 @@ const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at
 
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
 export function planOf(result, selection) {
-  const { targets, uavs } = selection;
-  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs };
+  const { targets, uavs, charging_w = null } = selection;
+  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs, charging_w };
 }
 
 /** Results by what they were made for; the oldest go. */

@@ -11,9 +11,10 @@ import { routeExplanation } from "./why_route.js";
 import { targetExplanation } from "./why_target.js";
 
 /** What the server is asked: the plan as it was made, whatever has been picked since. */
-function questionOf({ result, targets, uavs }) {
+function questionOf({ result, targets, uavs, charging_w }) {
+  const { objective, return_to_start, departs_at, conditions } = result;
   return {
-    ...requestOf({ targets, uavs, objective: result.objective, return_to_start: result.return_to_start }),
+    ...requestOf({ targets, uavs, objective, return_to_start, departs_at, conditions, charging_w }),
     routes: result.routes.map((route) => route.targets),
   };
 }
@@ -47,7 +48,9 @@ export function mountWhy(store, actions, { canPlan }) {
     const { why } = store.state;
     try {
       const said = await asked;
-      if (store.state.why === why) put(title, ...show(said));
+      if (store.state.why !== why) return;
+      put(title, ...show(said));
+      store.update({ litZones: (said.zones ?? []).map(({ id }) => id) });
     } catch (error) {
       if (store.state.why === why) put(title, h("p", { role: "alert" }, error.message), h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")));
     }
@@ -56,6 +59,7 @@ export function mountWhy(store, actions, { canPlan }) {
   function draw(state) {
     const { why, plan } = state;
     const wasHidden = panel.hidden;
+    if (store.state.litZones.length) store.update({ litZones: [] });
     panel.hidden = !why || !plan;
     byId("dock").classList.toggle("with-why", !panel.hidden);
     if (panel.hidden) {
