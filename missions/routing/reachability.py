@@ -83,15 +83,19 @@ def reach(
     whole_graph: InspectionGraph,
     graph: InspectionGraph,
     zones: ZoneIndex,
+    leg_zones: ZoneIndex,
     flights: Sequence[Flight],
     bases: Sequence[LonLat],
     rules: AccessRules,
 ) -> Reach:
-    """whole_graph is the network cleared of the zones, graph the part of it that can be flown over; bases are outside zones."""
+    """whole_graph is the network cleared of the zones, graph the part of it that can be flown over; bases are outside zones.
+
+    leg_zones are those of the zones that reach the heights between targets.
+    """
     on_whole = _nodes_of(network.position, network.node_asset, whole_graph.position, whole_graph.node_asset)
     on_graph = _nodes_of(network.position, network.node_asset, graph.position, graph.node_asset)
     verdict, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
-    found = _reach_of_nodes(graph, zones, flights, bases, rules)
+    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules)
     is_on = on_graph >= 0
     verdict[is_on] = found.verdict[on_graph[is_on]]
     flight, missing_m = np.full(network.node_count, -1, dtype=np.int16), np.zeros(network.node_count)

@@ -63,7 +63,7 @@ def zone_index(*boxes):
 def judged(ground, flights, *, zones=None, bases=()):
     zones = zone_index() if zones is None else zones
     whole = cleared(ground, zones, LINKING, HEIGHTS).graph
-    return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, flights, bases, RULES)
+    return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, flights, bases, RULES)
 
 
 def verdicts(found):
