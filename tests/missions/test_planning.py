@@ -315,13 +315,26 @@ def test_with_terrain_data_all_three_heights_agree(tmp_path: Path) -> None:
         assert waypoint["altitude_relative_m"] == pytest.approx(amsl_m - take_off_m, abs=0.05)
 
 
-def test_a_zone_that_the_graph_does_not_know_yet_stops_the_plan() -> None:
+def test_a_saved_zone_is_in_force_before_the_graph_is_built_anew() -> None:
     here = world()
+    before = make_plan(request=request(here.towers[5]))
     zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
+    after = make_plan(request=request(here.towers[5]))
+    assert after["routes"][0]["targets"] == [0]
+    assert after["graph_version"] == before["graph_version"]
+    assert after["ground_revision"] > before["ground_revision"]
+    assert_clear_of_zones(after)
+
+
+def test_a_zone_that_is_saved_during_the_planning_stops_the_plan() -> None:
+    here = world()
+
+    def save_a_zone(told: PlanProgress) -> None:
+        if told.share == 0.95:
+            zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
+
     with pytest.raises(GraphOutdated, match="Fire brigade"):
-        make_plan(request=request(here.towers[5]))
-    rebuild()
-    assert make_plan(request=request(here.towers[5]))["routes"][0]["targets"] == [0]
+        make_plan(request=request(here.towers[5]), on_progress=save_a_zone)
 
 
 def test_without_a_graph_there_is_no_plan() -> None:
