@@ -3,10 +3,19 @@
 import numpy as np
 
 from inspection.geodesy import LonLat
+from inspection.graph.rehearsal import graph_to_rehearse_on
+from inspection.graph.zone_index import ZoneIndex
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.costs import Finish, flight_costs
+from missions.flight_plan.performance import Performance
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
-from missions.flight_plan.rules import SeparationRules
+from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.flight_plan.separation import TimedRoute, keep_apart
-from missions.routing.problem import Task, TaskKind
+from missions.flight_plan.timing import timing
+from missions.flight_plan.waypoints import RoutePoints, Waypoints
+from missions.flight_plan.ways_taken import FlightClass
+from missions.routing.problem import End, Task, TaskKind
+from missions.routing.terminals import AccessRules, Terminal, ways_between
 
 
 def rehearse() -> None:
