@@ -26,6 +26,8 @@ def rehearse() -> None:
     points = with_short_legs(points, 900.0)[0]
     line_of(points)
     _rehearse_time_and_energy(points)
+    hovering = TimedRoute("", np.array([[9.0, 47.0], [9.1, 47.0]]), np.full(2, 60.0), np.array([0.0, 600.0]), np.zeros(2), take_off_m=60.0)
+    keep_apart([hovering, hovering], rules=SeparationRules())
 
 
 def _rehearse_time_and_energy(points: RoutePoints) -> None:
@@ -55,5 +57,3 @@ def _rehearse_time_and_energy(points: RoutePoints) -> None:
         conditions=conditions,
         rules=rules,
     )
-    hovering = TimedRoute("", np.array([[9.0, 47.0], [9.1, 47.0]]), np.full(2, 60.0), np.array([0.0, 600.0]), np.zeros(2), take_off_m=60.0)
-    keep_apart([hovering, hovering], rules=SeparationRules())
