@@ -15,7 +15,7 @@ from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
-from missions.services.last_look import zones_met
+from missions.services.last_look import keys_of_zones_met
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -108,7 +108,7 @@ class _Planner:
         has_terrain = has_terrain_at(ground.edition)
         alone = found.routes(self.request, ground_heights_m if has_terrain else None)
         routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
-        met = zones_met(routes, self.request.departs_at, choice.table)
+        met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes))
 
 
@@ -138,7 +138,7 @@ def make_plan(
             break
         # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.
         now = ground = planning_read().ground()
-        if terrain_at(now.edition) == terrain and not zones_met(plan.routes, request.departs_at, now.table):
+        if terrain_at(now.edition) == terrain and not keys_of_zones_met(plan.routes, request.departs_at, now.table):
             break
     else:
         raise GraphOutdated
