@@ -29,7 +29,7 @@ from missions.flight_plan.rules import FlightRules
 FloatArray = NDArray[np.float64]
 
 NO_HEADWAY = 1e9  # seconds and joules of a step against too strong a wind: sums of it stay numbers, and a way with it is no way
-MOST_BYTES = 100 * 2**20  # of sums kept for one graph; a graph of 200,000 nodes takes some 20 MB for each wind and kind of UAV
+MOST_BYTES = 100 * 2**20  # of sums kept for one graph; of 200,000 nodes they take 10 MB for each wind and kind of UAV
 
 
 @dataclass(frozen=True)
