@@ -19,7 +19,7 @@ from missions.services.scenes import scene_on
 from missions.services.zone_choice import zone_choice
 
 Box = tuple[float, float, float, float]
-ENDS = {EndAction.HOVER: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
+ENDS = {EndAction.HOVER: End.OPEN, EndAction.LAND: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
 CODES = {
     Verdict.PARTLY: "partly_reachable",
     Verdict.BEYOND_RANGE: "beyond_range",
