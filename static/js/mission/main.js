@@ -36,7 +36,7 @@ const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
-  lastPlan: null, planningBeside: null, why: null, along: null,
+  lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
   tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [],
 });
 const history = createHistory(store, "selection");

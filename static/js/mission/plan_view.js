@@ -5,7 +5,6 @@ import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
-import { departsText } from "./route_times.js";
 import { basisOf, withoutWishes } from "./selection.js";
 
 const REASONS = {
@@ -86,7 +85,7 @@ export function sentenceOf(plan) {
   const time = durationText(longestDuration_s(plan.result));
   const endsAfield = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start);
   const sentence = endsAfield ? t("Done in {time}", { time }) : t("All back in {time}", { time });
-  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m), ...energyFacts(plan.result), departsText(plan.result)].filter(Boolean).join(" · ") };
+  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m), ...energyFacts(plan.result)].join(" · ") };
 }
 
 const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)]);

@@ -187,7 +187,7 @@ export function drawProfile({ route, flight, longest_m, width_px, reserve_percen
 
 /** What is left of the battery, from full to empty, with the reserve that no plan uses. */
 function batteryDrawing(path, { x, width_px, reserve_percent }) {
-  const y = (percent) => BATTERY_PX.empty - (percent / 100) * (BATTERY_PX.empty - BATTERY_PX.full);
+  const y = (percent) => BATTERY_PX.empty - (Math.max(0, percent) / 100) * (BATTERY_PX.empty - BATTERY_PX.full);
   const known = path.filter(({ battery_percent }) => battery_percent !== null);
   const points = known.map(({ at_m, battery_percent }) => `${x(at_m).toFixed(1)},${y(battery_percent).toFixed(1)}`);
   return [

@@ -2,7 +2,7 @@
 
 import { t } from "../text.js";
 import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../units.js";
-import { departureText, timeAt } from "./flight_options.js";
+import { timeAt } from "./flight_options.js";
 
 /** index of a target → { arrival_s, battery_percent } where a route first reaches it; null is not known. */
 export function visitsOf({ waypoints, arrival_s, battery_left_percent }) {
@@ -37,19 +37,17 @@ export function batteryOf({ battery_percent, energy_wh }) {
   return { left: percentText(battery_percent), used: energyText(energy_wh) };
 }
 
-/** When the plan departs, where it says so. */
-export const departsText = ({ departs_at }) => (departs_at ? t("departs {moment}", { moment: departureText(departs_at) }) : "");
-
 /**
  * How the UAVs are kept apart: { isFault, words }; null where the plan does not say or one flies alone.
  *
- * separation: see SeparationSerializer; delays and layers are those of the routes.
+ * separation: see SeparationSerializer; layers are those of the routes that are flown.
  */
 export function separationOf({ separation, routes }) {
-  if (!separation?.unresolved || routes.filter(({ geometry }) => geometry).length < 2) return null;
+  const flown = routes.filter(({ geometry }) => geometry);
+  if (!separation?.unresolved || flown.length < 2) return null;
   if (separation.unresolved.length) return { isFault: true, words: separation.unresolved.map(conflictWords).join(" ") };
-  const changes = routes.flatMap(({ uav }, index) => [
-    separation.delays[index] > 0 && t("{name} takes off {time} later", { name: uav, time: durationText(separation.delays[index]) }),
+  const changes = flown.flatMap(({ uav, departs_s }, index) => [
+    departs_s > 0 && t("{name} takes off {time} later", { name: uav, time: durationText(departs_s) }),
     separation.layers[index] > 0 && t("{name} flies {height} higher", { name: uav, height: heightText(separation.layers[index]) }),
   ].filter(Boolean));
   const kept = changes.length ? t("Kept apart: {changes}.", { changes: changes.join(", ") }) : t("The UAVs keep apart.");

@@ -16,6 +16,8 @@ import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
 const BATTERY_PX = 76 + 12; // where one has a battery
+const LENGTH_PX = 84 + 12;
+const LEAST_STRIP_PX = 200; // else length and battery give way
 const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
 /** One that cannot take off; the notice and the row of the UAV say which. */
@@ -27,10 +29,15 @@ export function moreOrLess(difference, least, textOf) {
   return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
 }
 
-/** Room for a strip: what the grid leaves beside name and figures. On a phone all of it. */
+/** What the grid leaves beside name and all figures. */
+const roomBesideAll = (dock) => dock.querySelector(".dock-main").clientWidth - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0);
+
+/** Room for a strip: on a phone all there is, where the dock is narrow without length and battery. */
 export function stripRoom(dock) {
-  const room = dock.querySelector(".dock-main").clientWidth;
-  return Math.max(160, matchMedia("(max-width: 720px)").matches ? room - 32 : room - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0));
+  const width = dock.querySelector(".dock-main").clientWidth;
+  if (matchMedia("(max-width: 720px)").matches) return Math.max(160, width - 32);
+  const room = roomBesideAll(dock);
+  return Math.max(160, room < LEAST_STRIP_PX ? width - BESIDE_PX + LENGTH_PX : room);
 }
 
 export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
@@ -67,7 +74,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
         h("span", {}, h("strong", {}, route.name), h("small", {}, second)),
       ),
       h("div", { class: "strip-place" }, (isUsed || wishes[route.sequence].length > 0) && strip(route, state, longest(state, before)), old?.length_m > 0 && oldStrip(old, longest(state, before))),
-      h("span", { class: "figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
+      h("span", { class: "figure length-figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
       h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText)), landing !== null && h("small", {}, t("until {time}", { time: timeAt(state.plan.result.departs_at, landing) }))),
       dock.classList.contains("with-battery") && h("span", { class: "figure battery-figure", title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null }, battery?.left ?? "—", battery && h("small", {}, t("at landing"))),
       isUsed &&
@@ -123,6 +130,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${isPlanInSight(state) ? t("before your last change") : t("for the selection before")}`;
     dock.classList.toggle("with-battery", state.plan.result.routes.some((route) => batteryOf(route)));
     width_px = stripRoom(dock);
+    dock.classList.toggle("tight", roomBesideAll(dock) < LEAST_STRIP_PX);
     const last = lastPlanOf(state);
     const before = state.why?.compare ? last : null;
     dock.classList.toggle("comparing", Boolean(before));
@@ -200,9 +208,15 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     }
   }
 
+  byId("compare-ways").addEventListener("click", () => {
+    const isOpen = Boolean(store.state.why?.alternatives);
+    store.update({ why: isOpen ? null : { alternatives: true } });
+    if (!isOpen && canPlan) actions.planAlternatives();
+  });
   byId("compare-plans").addEventListener("click", () => store.update({ why: store.state.why?.compare ? null : { compare: true } }));
   store.listen(["plan", "selection", "lastPlan", "mission"], draw);
   store.listen(["why"], (state) => {
+    byId("compare-ways").setAttribute("aria-pressed", String(Boolean(state.why?.alternatives)));
     if (Boolean(state.why?.compare) !== dock.classList.contains("comparing")) draw(state);
   });
   store.listen(["plan"], (state) => {

@@ -1,4 +1,4 @@
-/** Beside the strips: why a UAV flies its route, why a target is not reached, or what differs from the last plan. */
+/** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, or the ways to plan it. */
 
 import { post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
@@ -6,6 +6,7 @@ import { routeLetter, routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
 import { requestOf } from "../selection.js";
+import { alternatives } from "./alternatives.js";
 import { comparison } from "./why_compared.js";
 import { routeExplanation } from "./why_route.js";
 import { targetExplanation } from "./why_target.js";
@@ -71,7 +72,12 @@ export function mountWhy(store, actions, { canPlan }) {
       opener = document.activeElement;
       openedFrom = opener?.closest(".route")?.dataset.sequence ?? "";
     }
-    if (why.compare) {
+    byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
+    if (why.alternatives) {
+      const focused = panel.contains(document.activeElement) && document.activeElement !== byId("why-title") ? document.activeElement.textContent : null;
+      put(t("Ways to plan it"), ...alternatives(state, actions, canPlan && isPlanCurrent(state)));
+      if (focused) ([...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")).focus();
+    } else if (why.compare) {
       const last = lastPlanOf(state);
       if (last) put(t("Against the last plan"), ...comparison(plan, last));
       else store.update({ why: null });
@@ -109,4 +115,5 @@ export function mountWhy(store, actions, { canPlan }) {
     store.update({ why: null });
   });
   store.listen(["why", "plan", "lastPlan"], draw);
+  store.listen(["figures", "planningBeside", "refusedBeside", "selection"], (state) => state.why?.alternatives && draw(state));
 }
