@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
+from uuid import UUID
 
 import numpy as np
 from django.conf import settings
@@ -12,9 +13,9 @@ from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F,
 
 from missions.flight_plan.separation import TimedRoute
 from missions.models import EndAction, Mission, MissionState, Route, Waypoint
-from workspace.models import Organisation
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
+COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task")
 _SECOND = Value(timedelta(seconds=1))
 _FLOWN = ExpressionWrapper((F("departs_s") + F("duration_s")) * _SECOND, output_field=DurationField())
 _ENDS_AT = ExpressionWrapper(F("mission__departs_at") + _FLOWN, output_field=DateTimeField())
@@ -28,16 +29,17 @@ class OtherFlights:
     untimed: tuple[tuple[str, str], ...] = ()
 
 
-def flights_at_the_same_time(organisation: Organisation, from_s: float, to_s: float, *, but: Mission | None = None) -> OtherFlights:
+def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *, but: UUID | str | None = None) -> OtherFlights:
     """Routes of approved, dispatched and active missions that are in the air at any time of a window, in seconds since the epoch.
 
-    Their own seconds count from from_s. A UAV that hovers at its end is taken to do so until the longest flight is over.
+    `but` is a mission that does not count. Their own seconds count from from_s.
+    A UAV that hovers at its end is taken to do so until the longest flight is over.
     """
     window_from, window_to = (datetime.fromtimestamp(moment_s, UTC) for moment_s in (from_s, to_s))
     longest = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
-    missions = Mission.objects.filter(organisation=organisation, deleted_at=None, state__in=FLYING_STATES, departs_at__lt=window_to)
+    missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at__lt=window_to)
     routes = (
-        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but.pk), geometry__isnull=False)
+        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), geometry__isnull=False)
         .alias(ends_at=_ENDS_AT)
         .filter(Q(ends_at__gt=window_from) | Q(mission__departs_at__gt=window_from - longest))
         .select_related("mission", "mission_uav")
@@ -45,19 +47,45 @@ def flights_at_the_same_time(organisation: Organisation, from_s: float, to_s: fl
     )
     flying = [route for route in routes if from_s < _departs_s(route) + _in_the_air_s(route) and _departs_s(route) < to_s]
     points: dict[int, list[tuple[Any, ...]]] = defaultdict(list)
-    columns = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task")
-    for route, *point in Waypoint.objects.filter(route__in=flying).order_by("route", "sequence").values_list("route", *columns):
+    for route, *point in Waypoint.objects.filter(route__in=flying).order_by("route", "sequence").values_list("route", *COLUMNS):
         points[route].append(tuple(point))
-    timed = {route: _timed_route(route, points[route.pk], from_s) for route in flying}
+    timed = {
+        route: _timed_route(
+            route,
+            points[route.pk],
+            _departure_s(route) - from_s,
+            lands_s=_departs_s(route) - from_s + _in_the_air_s(route),
+            mission=str(route.mission_id),
+        )
+        for route in flying
+    }
     return OtherFlights(
         tuple(found for found in timed.values() if found is not None),
         tuple((str(route.mission_id), route.mission_uav.name) for route, found in timed.items() if found is None),
     )
 
 
-def _departs_s(route: Route) -> float:
+def routes_of_mission_in_time(mission: Mission) -> list[TimedRoute | None]:
+    """Its routes that are flown, in their order, in seconds after its departure; None for one of whose times nothing is known."""
+    routes = mission.routes.select_related("mission", "mission_uav").filter(geometry__isnull=False)
+    return [
+        _timed_route(
+            route,
+            list(route.waypoints.values_list(*COLUMNS)),
+            0.0,
+            lands_s=route.departs_s + route.duration_s if _lands(route) else None,
+        )
+        for route in routes
+    ]
+
+
+def _departure_s(route: Route) -> float:
     departure_s: float = route.mission.departs_at.timestamp()
-    return departure_s + route.departs_s
+    return departure_s
+
+
+def _departs_s(route: Route) -> float:
+    return _departure_s(route) + route.departs_s
 
 
 def _lands(route: Route) -> bool:
@@ -68,19 +96,19 @@ def _in_the_air_s(route: Route) -> float:
     return route.duration_s if _lands(route) else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)
 
 
-def _timed_route(route: Route, points: Sequence[tuple[Any, ...]], origin_s: float) -> TimedRoute | None:
-    """None where the time of a waypoint is not known."""
+def _timed_route(
+    route: Route, points: Sequence[tuple[Any, ...]], departure_s: float, *, lands_s: float | None, mission: str | None = None
+) -> TimedRoute | None:
+    """departure_s is the mission's; lands_s when the route is over, None for never. None where the time of a waypoint is not known."""
     if not points or any(arrival_s is None for _, _, _, arrival_s, _ in points):
         return None
     amsl_m, agl_m = (np.array([point[column] for point in points], dtype=np.float64) for column in (1, 2))
     hold_s = np.array([(task or {}).get("hold_s", 0.0) for *_, task in points], dtype=np.float64)
-    take_off_s = _departs_s(route) - origin_s
     held_s = np.cumsum(hold_s) - hold_s
     flown_s = np.array([point[3] for point in points], dtype=np.float64) - held_s
-    departure_s = route.mission.departs_at.timestamp() - origin_s
+    take_off_s = departure_s + route.departs_s
     # Stored to a tenth of a second: rounded, a short leg may seem to end before it begins.
     arrival_s = np.maximum(departure_s + held_s + np.maximum.accumulate(flown_s), take_off_s)
-    lands = _lands(route)
     ground_m = amsl_m - agl_m
     return TimedRoute(
         uav=route.mission_uav.name,
@@ -90,7 +118,7 @@ def _timed_route(route: Route, points: Sequence[tuple[Any, ...]], origin_s: floa
         hold_s=hold_s,
         take_off_s=take_off_s,
         take_off_m=float(ground_m[0]),
-        lands_s=max(take_off_s + _in_the_air_s(route), float(arrival_s[-1] + hold_s[-1])),
-        landing_m=float(ground_m[-1] if lands else amsl_m[-1]),
-        mission=str(route.mission_id),
+        lands_s=None if lands_s is None else max(lands_s, float(arrival_s[-1] + hold_s[-1])),
+        landing_m=float(ground_m[-1] if _lands(route) else amsl_m[-1]),
+        mission=mission,
     )

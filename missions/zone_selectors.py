@@ -57,9 +57,10 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
     )
 
 
-def zones_met(routes: Sequence[FlownRoute]) -> list[list[MetZone]]:
-    """For each route the zones in force that it meets; of a route without times at any time."""
-    margins, table = zone_margins(), zone_table()
+def zones_met(routes: Sequence[FlownRoute], table: ZoneTable | None = None) -> list[list[MetZone]]:
+    """For each route the zones that it meets, those of now or of the table; a route without times at any time."""
+    margins = zone_margins()
+    table = zone_table() if table is None else table
     found = []
     for route in routes:
         near, facts = zones_near(table, route.position, margins, _window(route))

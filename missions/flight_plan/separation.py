@@ -413,8 +413,8 @@ def _least_wait_s(intervals: FloatArray) -> tuple[float, bool]:
     return wait_s, False
 
 
-def separation_json(separation: Separation) -> dict[str, Any]:
-    """As a plan has it."""
+def separation_json(separation: Separation, untimed: Sequence[tuple[str, str]] = ()) -> dict[str, Any]:
+    """As a plan has it. untimed: mission and UAV of flights of which nobody knows when they are where."""
     rules = separation.rules
     return {
         "lateral_m": rules.lateral_m,
@@ -426,7 +426,8 @@ def separation_json(separation: Separation) -> dict[str, Any]:
         "unresolved": [
             {"code": "hovers_in_the_way" if encounter.blocks else "too_near", **_encounter_json(encounter)}
             for encounter in separation.unresolved
-        ],
+        ]
+        + [{"code": "times_not_known", "uavs": [uav], "missions": [mission]} for mission, uav in untimed],
     }
 
 

@@ -192,6 +192,7 @@ class Waypoint(models.Model):
     arrival_s = models.FloatField(null=True, blank=True, help_text="seconds after the mission's departure; empty in older plans")
     used_wh = models.FloatField(null=True, blank=True, help_text="since take-off; empty without a battery")
     battery_left_percent = models.FloatField(null=True, blank=True)
+    is_by_hand = models.BooleanField(default=False, db_default=False, help_text="put in, moved or flown at another height by a person")
 
     class Meta:
         ordering = ["sequence"]

@@ -1,5 +1,6 @@
 """What comes in: UAVs, targets, options, plans and missions."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
 
@@ -346,7 +347,7 @@ class PlanInputSerializer(OptionsSerializer):
         return attrs
 
     def to_request(self) -> PlanRequest:
-        return plan_request(self.validated_data)
+        return replace(plan_request(self.validated_data), organisation=self.context["organisation"].pk)
 
 
 class MissionInputSerializer(OptionsSerializer):

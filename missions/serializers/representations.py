@@ -154,6 +154,7 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "arrival_s": [waypoint.arrival_s for waypoint in waypoints],
         "used_wh": None if route.energy_wh is None else [waypoint.used_wh for waypoint in waypoints],
         "battery_left_percent": None if route.energy_wh is None else [waypoint.battery_left_percent for waypoint in waypoints],
+        "by_hand": [place for place, waypoint in enumerate(waypoints) if waypoint.is_by_hand],
         "targets": targets,
         "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),
         "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,

@@ -48,6 +48,9 @@ class RouteSerializer(serializers.Serializer):
         child=serializers.FloatField(), allow_null=True, help_text="for each waypoint, since take-off; null without a battery"
     )
     battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="for each waypoint")
+    by_hand = serializers.ListField(
+        child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or flies at another height"
+    )
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
     locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")

@@ -11,7 +11,7 @@ from missions.flight_plan.separation import Separation, TimedRoute, keep_apart, 
 from missions.flight_plan.timing import timing
 from missions.flight_plan.waypoints import RoutePoints, Waypoints
 from missions.models import EndAction
-from missions.services.last_look import zones_met
+from missions.services.last_look import keys_of_zones_met
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest
 
@@ -79,4 +79,4 @@ def _raised(
     if usable_wh is not None and clock.total_wh is not None and clock.total_wh > usable_wh:
         return None
     higher = replace(route, waypoints=waypoints, duration_s=clock.total_s, timing=clock)
-    return None if zones_met([higher], departs_at, table) else higher
+    return None if keys_of_zones_met([higher], departs_at, table) else higher

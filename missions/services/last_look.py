@@ -3,27 +3,17 @@
 from collections.abc import Sequence
 from datetime import datetime
 
-import numpy as np
-
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.clearance import FlownRoute, breaches
-from missions.flight_plan.zone_facts import zones_near
+from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
 from missions.services.plan_json import PlannedRoute
-from missions.zone_selectors import zone_margins
+from missions.zone_selectors import zones_met
 
 
-def zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | None, table: ZoneTable) -> frozenset[int]:
+def keys_of_zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | None, table: ZoneTable) -> frozenset[int]:
     """Primary keys of the zones that a route meets; without a departure at any time."""
     flown = [flown_route(route, departs_at) for route in routes if route.waypoints is not None]
-    if not flown or not len(table):
-        return frozenset()
-    margins = zone_margins()
-    window = None
-    if departs_at is not None:
-        window = departs_at.timestamp(), max(route.ends_s for route in flown if route.ends_s is not None)
-    near, facts = zones_near(table, np.concatenate([route.position for route in flown]), margins, window)
-    return frozenset(int(near.ids[breach.zone]) for route in flown for breach in breaches(route, facts, margins))
+    return frozenset(meeting.zone for met in zones_met(flown, table) for meeting in met)
 
 
 def flown_route(route: PlannedRoute, departs_at: datetime | None) -> FlownRoute:

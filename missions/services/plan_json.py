@@ -84,6 +84,7 @@ def plan_to_json(
                 "length_m": length_m,
                 "duration_s": round(route.duration_s, 1),
                 **timing_to_json(route, column),
+                "by_hand": [],
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": coordinates(route.line)},

@@ -9,12 +9,13 @@ from django.conf import settings
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation, separation_json
+from missions.flight_selectors import OtherFlights, flights_at_the_same_time
 from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
-from missions.services.last_look import zones_met
+from missions.services.last_look import keys_of_zones_met
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -60,6 +61,7 @@ class _Planner:
     on_progress: OnPlanProgress
     seed: int
     search_s: float
+    others: OtherFlights
 
     def best_on(self, ground: PlanningGround) -> tuple[Finished, Finished]:
         """The best plan that meets no zone of this ground, and the plan on the fewest zones, which might; often the same.
@@ -105,8 +107,8 @@ class _Planner:
         self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
         has_terrain = has_terrain_at(ground.edition)
         alone = found.routes(self.request, ground_heights_m if has_terrain else None)
-        routes, separation = routes_apart(self.request, alone, choice.table)
-        met = zones_met(routes, self.request.departs_at, choice.table)
+        routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
+        met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes))
 
 
@@ -126,7 +128,8 @@ def make_plan(
     on_progress(PlanProgress(0.0, "Looking up the targets"))
     read = planning_read(whole_assets(request.targets))
     places, gone = places_of(request.targets, read.points)
-    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s)
+    others = _others_in_the_air(request)
+    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s, others)
     ground = read.ground()
     for _ in range(MOST_GROUNDS):
         terrain = terrain_at(ground.edition)  # before any height is read
@@ -135,7 +138,7 @@ def make_plan(
             break
         # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.
         now = ground = planning_read().ground()
-        if terrain_at(now.edition) == terrain and not zones_met(plan.routes, request.departs_at, now.table):
+        if terrain_at(now.edition) == terrain and not keys_of_zones_met(plan.routes, request.departs_at, now.table):
             break
     else:
         raise GraphOutdated
@@ -147,10 +150,19 @@ def make_plan(
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
-        separation=separation_json(plan.separation),
+        separation=separation_json(plan.separation, others.untimed),
         quality=_quality(request, plan, freest),
         as_text=as_text,
     )
+
+
+def _others_in_the_air(request: PlanRequest) -> OtherFlights:
+    """A plan for any time cannot be kept apart from flights of a certain one; it gets a departure before it is flown."""
+    if request.departs_at is None or request.organisation is None:
+        return OtherFlights()
+    from_s = request.departs_at.timestamp()
+    to_s = from_s + settings.FLIGHT_RULES.longest_flight_s
+    return flights_at_the_same_time(request.organisation, from_s, to_s, but=request.mission)
 
 
 def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str, object]:

@@ -65,6 +65,7 @@ class BaseRequest:
 class PlanRequest:
     """`bases` are those of the organisation when the plan was asked for; only filled in where a UAV is to land at one.
 
+    `organisation` and `mission` are the keys of whose plan it is: other missions of the organisation that fly then are kept apart from.
     Without `departs_at` the plan is for any time. `charging_w` is the power of charging at towers on the way, if that is wished.
     """
 
@@ -77,6 +78,8 @@ class PlanRequest:
     departs_at: datetime | None = None
     conditions: Conditions = CALM
     charging_w: float | None = None
+    organisation: int | None = None
+    mission: str | None = None
 
     def end_action(self, uav: int) -> EndAction:
         """What the UAV does in the end: the wish that all return comes first."""
@@ -158,6 +161,8 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
         "departs_at": moment_to_json(request.departs_at),
         "conditions": conditions_to_json(request.conditions),
         "charging_w": request.charging_w,
+        "organisation": request.organisation,
+        "mission": request.mission,
     }
 
 
@@ -197,4 +202,6 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
         departs_at=moment_from_json(value.get("departs_at")),
         conditions=conditions_from_json(value.get("conditions") or {}),
         charging_w=value.get("charging_w"),
+        organisation=value.get("organisation"),
+        mission=value.get("mission"),
     )

@@ -50,4 +50,5 @@ test("always and never are said as such", () => {
 test("spans and legs in words", () => {
   assert.equal(spanText({ from_ms: at("21T18:30:00"), to_ms: at("21T20:00:00") }), "21 Nov, 19:30 to 21:00");
   assert.equal(legsText([{ uav: "Heron", leg: 2 }, { uav: "Heron", leg: 4 }, { uav: "Kite", leg: 0 }]), "Heron, legs 3 to 5; Kite, leg 1");
+  assert.equal(legsText([{ uav: "Heron", leg: -1 }]), "Heron, at take-off");
 });

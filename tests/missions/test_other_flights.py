@@ -32,7 +32,7 @@ def approved(ground: worlds.World, *, departs_at: datetime = DEPARTURE, end_acti
 
 def test_a_flight_counts_its_seconds_from_the_window():
     mission = approved(worlds.world())
-    found = flights_at_the_same_time(mission.organisation, FROM_S - 100.0, FROM_S + 10.0)
+    found = flights_at_the_same_time(mission.organisation_id, FROM_S - 100.0, FROM_S + 10.0)
     [flight] = found.routes
     stored = mission.routes.get()
     assert (flight.uav, flight.mission, found.untimed) == ("Tern", str(mission.pk), ())
@@ -46,23 +46,23 @@ def test_a_flight_counts_its_seconds_from_the_window():
 def test_only_what_is_in_the_air_in_the_window_is_told():
     mission = approved(worlds.world())
     ends_s = FROM_S + mission.routes.get().duration_s
-    assert flights_at_the_same_time(mission.organisation, FROM_S - 900.0, FROM_S).routes == ()
-    assert flights_at_the_same_time(mission.organisation, ends_s, ends_s + 900.0).routes == ()
-    assert len(flights_at_the_same_time(mission.organisation, ends_s - 1.0, ends_s + 900.0).routes) == 1
+    assert flights_at_the_same_time(mission.organisation_id, FROM_S - 900.0, FROM_S).routes == ()
+    assert flights_at_the_same_time(mission.organisation_id, ends_s, ends_s + 900.0).routes == ()
+    assert len(flights_at_the_same_time(mission.organisation_id, ends_s - 1.0, ends_s + 900.0).routes) == 1
 
 
 def test_a_hover_lasts_until_the_longest_flight_is_over(settings):
     mission = approved(worlds.world(), end_action=EndAction.HOVER)
     longest_s = settings.FLIGHT_RULES.longest_flight_s
-    [flight] = flights_at_the_same_time(mission.organisation, FROM_S + longest_s - 1.0, FROM_S + longest_s).routes
+    [flight] = flights_at_the_same_time(mission.organisation_id, FROM_S + longest_s - 1.0, FROM_S + longest_s).routes
     assert flight.lands_s == pytest.approx(1.0)
-    assert flights_at_the_same_time(mission.organisation, FROM_S + longest_s, FROM_S + longest_s + 1.0).routes == ()
+    assert flights_at_the_same_time(mission.organisation_id, FROM_S + longest_s, FROM_S + longest_s + 1.0).routes == ()
 
 
 @pytest.mark.parametrize("state", [MissionState.PLANNED, MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED])
 def test_missions_that_are_not_to_be_flown_are_not_told(state):
     mission = approved(worlds.world(), state=state)
-    assert flights_at_the_same_time(mission.organisation, FROM_S, FROM_S + 10.0).routes == ()
+    assert flights_at_the_same_time(mission.organisation_id, FROM_S, FROM_S + 10.0).routes == ()
 
 
 def test_neither_the_mission_itself_nor_deleted_ones_nor_those_of_others_are_told():
@@ -70,21 +70,29 @@ def test_neither_the_mission_itself_nor_deleted_ones_nor_those_of_others_are_tol
     mission = approved(ground)
     deleted = approved(ground, deleted_at=DEPARTURE - timedelta(days=1))
     assert deleted.pk != mission.pk
-    assert flights_at_the_same_time(mission.organisation, FROM_S, FROM_S + 10.0, but=mission).routes == ()
-    assert flights_at_the_same_time(Organisation.objects.create(name="Elsewhere"), FROM_S, FROM_S + 10.0).routes == ()
+    assert flights_at_the_same_time(mission.organisation_id, FROM_S, FROM_S + 10.0, but=mission.pk).routes == ()
+    assert flights_at_the_same_time(Organisation.objects.create(name="Elsewhere").pk, FROM_S, FROM_S + 10.0).routes == ()
 
 
 def test_a_flight_without_times_is_named_and_never_taken_as_away():
     mission = approved(worlds.world())
     Waypoint.objects.filter(route__mission=mission, sequence=1).update(arrival_s=None)
-    found = flights_at_the_same_time(mission.organisation, FROM_S, FROM_S + 10.0)
+    found = flights_at_the_same_time(mission.organisation_id, FROM_S, FROM_S + 10.0)
     assert (found.routes, found.untimed) == ((), ((str(mission.pk), "Tern"),))
 
 
-def test_the_same_plan_flown_twice_at_once_is_in_conflict_with_itself():
+def test_a_mission_waits_until_an_approved_one_no_longer_hovers_in_its_way(settings):
+    ground = worlds.world()
+    first, second = (approved(ground, end_action=EndAction.HOVER) for _ in range(2))
+    assert first.separation["delays"] == [0.0]
+    assert second.separation["delays"][0] > settings.FLIGHT_RULES.longest_flight_s - first.routes.get().duration_s
+
+
+def test_a_mission_that_lands_is_flown_after_an_approved_one_over_the_same_line():
     ground = worlds.world()
     first, second = approved(ground), approved(ground)
-    found = flights_at_the_same_time(first.organisation, FROM_S, FROM_S + 10.0)
+    assert second.separation["unresolved"] == []
+    assert second.separation["delays"][0] > 0
+    found = flights_at_the_same_time(first.organisation_id, FROM_S, FROM_S + 3_600.0)
     assert {flight.mission for flight in found.routes} == {str(first.pk), str(second.pk)}
-    [conflict] = conflicts(found.routes, rules=SeparationRules())
-    assert (conflict.seconds, conflict.metres) == (0.0, 0.0)
+    assert conflicts(found.routes, rules=SeparationRules()) == ()

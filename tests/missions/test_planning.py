@@ -317,12 +317,15 @@ def test_with_terrain_data_all_three_heights_agree(tmp_path: Path) -> None:
         assert waypoint["altitude_relative_m"] == pytest.approx(amsl_m - take_off_m, abs=0.05)
 
 
-def test_a_zone_is_kept_clear_of_from_the_moment_it_is_saved() -> None:
+def test_a_saved_zone_is_in_force_before_the_graph_is_built_anew() -> None:
     here = world()
-    zone = zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
-    plan = make_plan(request=request(here.towers[5]))
-    assert plan["routes"][0]["targets"] == [0]
-    assert not LineString(plan["routes"][0]["geometry"]["coordinates"]).intersects(zone.geometry)
+    before = make_plan(request=request(here.towers[5]))
+    zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
+    after = make_plan(request=request(here.towers[5]))
+    assert after["routes"][0]["targets"] == [0]
+    assert after["graph_version"] == before["graph_version"]
+    assert after["ground_revision"] > before["ground_revision"]
+    assert_clear_of_zones(after)
 
 
 def test_a_zone_saved_while_a_plan_is_made_is_kept_clear_of() -> None:

@@ -85,7 +85,7 @@ function typeFields(type) {
   const speed = numberField("cruise_speed_mps", t("Speed"), type.cruise_speed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, required: true });
   const battery = numberField("battery_wh", t("Battery"), type.battery_wh, { unit: "Wh", min: 0.1 });
   const mass = numberField("mass_kg", t("Mass"), type.mass_kg, { unit: "kg", min: 0.01, hint: t("At take-off.") });
-  const reserve = numberField("reserve_percent", t("Kept in reserve"), type.reserve_percent, { unit: "%", min: 0, max: 90, digits: 1, hint: t("Of the battery; a plan does not use it.") });
+  const reserve = numberField("reserve_percent", t("Kept in reserve"), type.reserve_percent, { unit: "%", min: 0, max: 95, digits: 1, required: true, hint: t("Of the battery; a plan does not use it.") });
   const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, hint: t("Against the wind; empty: not limited.") });
   const sensors = textField("sensors", t("Sensors"), type.sensors.join(", "), { maxlength: 600, hint: t("Divided by commas.") });
   const list = sensors.read;

@@ -6,7 +6,7 @@ import { clockText, dayText, heightText, sinceText, speedText, temperatureText }
 /** Any time, calm, no charging. */
 export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null });
 export const MILD_C = 15; // ISA at sea level, where nobody says otherwise
-export const MOST_LAYERS = 8;
+export const MOST_LAYERS = 10; // missions/serializers/limits.py
 const COMPASS = [t("north"), t("north-east"), t("east"), t("south-east"), t("south"), t("south-west"), t("west"), t("north-west")];
 
 const layerOf = ({ altitude_agl_m, speed_mps, from_deg }) => ({ altitude_agl_m, speed_mps, from_deg });

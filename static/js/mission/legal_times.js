@@ -10,9 +10,10 @@ const TICK_HOURS = 6;
 
 const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
 
-/** The server's answer with moments as ms. */
-export function legalTimesOf({ from, to, windows, zones }) {
-  return { ...span({ from, to }), windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span) })) };
+/** The server's answer with moments as ms; nameOf(index) names the UAV of a leg. */
+export function legalTimesOf({ from, to, windows, zones }, nameOf = String) {
+  const named = (legs) => legs.map(({ uav, leg }) => ({ uav: nameOf(uav), leg }));
+  return { ...span({ from, to }), windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
 }
 
 /** How far along the bar, 0 to 1. */
@@ -79,12 +80,13 @@ function departureWords(times, moment) {
   return next ? `${words} ${t("The next legal one is {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}` : words;
 }
 
-/** "Heron leg 3 to 5, Kite leg 2": which legs of the routes meet a zone, counted from 1. */
+/** "Heron, legs 3 to 5; Kite, leg 2": which legs of the routes meet a zone, counted from 1; the climb before them is the take-off. */
 export function legsText(legs) {
   const byUav = new Map();
   for (const { uav, leg } of legs) byUav.set(uav, [...(byUav.get(uav) ?? []), leg]);
   return [...byUav].map(([uav, numbers]) => {
-    const [first, last] = [Math.min(...numbers) + 1, Math.max(...numbers) + 1];
+    const [first, last] = [Math.max(1, Math.min(...numbers) + 1), Math.max(...numbers) + 1];
+    if (last === 0) return t("{uav}, at take-off", { uav });
     return first === last ? t("{uav}, leg {number}", { uav, number: first }) : t("{uav}, legs {first} to {last}", { uav, first, last });
   }).join("; ");
 }

@@ -9,6 +9,7 @@ import { partOfLine } from "../map/line_part.js";
 import * as routesLayer from "../map/layers/routes.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createTargets } from "../map/layers/targets.js";
+import * as zonesLayer from "../map/layers/zones.js";
 import { createUavs } from "../map/layers/uavs.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { goTo } from "../map/places_found.js";
@@ -173,6 +174,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     });
     store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);
+    store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
     store.listen(["ground"], ({ ground }) => {

@@ -3,7 +3,7 @@
 import { t, tn } from "../text.js";
 import { areContrary, settled } from "./locks.js";
 import { flightOptionsOf } from "./flight_options.js";
-import { wishesOf } from "./selection.js";
+import { PERFORMANCE, wishesOf } from "./selection.js";
 
 /** Options that each have one value. */
 const optionsOf = ({ objective, return_to_start, ...selection }) => ({ objective, return_to_start, ...flightOptionsOf(selection) });
@@ -13,9 +13,11 @@ const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav
 /** Without a task a target has its kind's own, which the server writes down: that is the same. */
 const isSameTask = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
 const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
-const UAV_FACTS = ["name", "position", "max_range_m", "cruise_speed_mps", "end_action", "most_targets", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps"];
-const uavFacts = (uav) => JSON.stringify(UAV_FACTS.map((fact) => uav[fact] ?? null));
-const isSameUav = (a, b) => uavFacts(a) === uavFacts(b);
+const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null }) =>
+  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets]);
+/** What nobody has said of a UAV is its type's, which the server writes down: that is the same. */
+const isSamePerformance = (a, b) => PERFORMANCE.every((fact) => a[fact] === undefined || b[fact] === undefined || a[fact] === b[fact]);
+const isSameUav = (a, b) => uavFacts(a) === uavFacts(b) && isSamePerformance(a, b);
 
 /** Items of three lists by their keys: theirs, with what I added, changed and took away. */
 function mergedList(base, mine, theirs, keyOf, isSame) {

@@ -2,7 +2,7 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
-import { durationText, lengthText, numberText } from "../units.js";
+import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { basisOf, withoutWishes } from "./selection.js";
@@ -63,8 +63,9 @@ export function unreachedOf(plan) {
   }));
 }
 
+/** From the mission's departure until the last UAV is done. */
 export function longestDuration_s(result) {
-  return Math.max(0, ...result.routes.map((route) => route.duration_s));
+  return Math.max(0, ...result.routes.map((route) => route.duration_s + (route.departs_s ?? 0)));
 }
 
 /** "56 min, 79.5 km": what an objective gives, where it has been planned. */
@@ -84,8 +85,10 @@ export function sentenceOf(plan) {
   const time = durationText(longestDuration_s(plan.result));
   const endsAfield = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start);
   const sentence = endsAfield ? t("Done in {time}", { time }) : t("All back in {time}", { time });
-  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m)].join(" · ") };
+  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m), ...energyFacts(plan.result)].join(" · ") };
 }
+
+const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)]);
 
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing

@@ -118,8 +118,10 @@ export function uavOf(feature) {
   };
 }
 
+/** What a UAV's flying takes: missions/flight_plan/performance.py. */
+export const PERFORMANCE = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w"];
 /** What a mission may say of a UAV's flying; where it says nothing, the UAV's own or its type's counts. */
-const UAV_VALUES = ["max_range_m", "cruise_speed_mps", "end_action", "most_targets", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps"];
+const UAV_VALUES = ["max_range_m", "cruise_speed_mps", "end_action", "most_targets", ...PERFORMANCE];
 
 const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
 

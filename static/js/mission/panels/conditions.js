@@ -8,9 +8,8 @@ import { compassText, conditionsOf, MILD_C, MOST_LAYERS } from "../flight_option
 import { windArrow } from "../wind_arrow.js";
 
 const FIRST_LAYER = { altitude_agl_m: 100, speed_mps: 5, from_deg: 270 };
-const HIGHEST_M = 3000;
-const STRONGEST_MPS = 40;
-const [COLDEST_C, HOTTEST_C] = [-40, 55];
+const [HIGHEST_M, STRONGEST_MPS] = [1000, 60]; // missions/serializers/limits.py
+const [COLDEST_C, HOTTEST_C] = [-60, 60];
 
 /** Typed in the reader's unit, read in SI; one that nobody touched is what it was. */
 function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown) => shown, oninput }) {

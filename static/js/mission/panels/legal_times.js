@@ -13,11 +13,20 @@ const HOUR_MS = 3_600_000;
 /** To which side a label has no room. */
 const sideOf = (share) => (share < 0.15 ? "at-begin" : share > 0.85 ? "at-end" : "within");
 
-/** Where the answer comes from: the stored mission while its plan is the one on the page, else the routes on the page. */
-function ask({ plan, planIsStored, mission, selection }, signal) {
+const waypointOf = ({ position, altitude_agl_m, altitude_amsl_m }) => ({ position, altitude_agl_m, altitude_amsl_m });
+
+/** What the server says of the stored mission while its plan is the one on the page, else of the routes on the page. */
+async function ask({ plan, planIsStored, mission }, signal) {
   const from = new Date().toISOString();
-  if (mission && planIsStored) return get(`/missions/${mission.id}/legal-windows?from=${encodeURIComponent(from)}`, { signal });
-  return post("/plans/legal-windows", { from, departs_at: selection.departs_at ?? null, routes: plan.result.routes }, { signal });
+  const { routes } = plan.result;
+  if (mission && planIsStored) {
+    const { data } = await get(`/missions/${mission.id}/legal-windows?from=${encodeURIComponent(from)}`, { signal });
+    return legalTimesOf(data, (uav) => routes[uav]?.uav ?? "");
+  }
+  const flown = routes.filter(({ geometry }) => geometry);
+  const asked = flown.map(({ end_action, departs_s, duration_s, arrival_s, waypoints }) => ({ end_action, departs_s: departs_s ?? 0, duration_s, arrival_s: arrival_s ?? [], waypoints: waypoints.map(waypointOf) }));
+  const { data } = await post("/plans/legal-windows", { from, routes: asked }, { signal });
+  return legalTimesOf(data, (uav) => flown[uav]?.uav ?? "");
 }
 
 export function showLegalTimes(store, actions) {
@@ -32,8 +41,8 @@ export function showLegalTimes(store, actions) {
   function askAgain() {
     body.replaceChildren(h("div", { class: "stack", role: "status", "aria-label": t("Being worked out") }, [1, 2, 3].map(() => h("div", { class: "skeleton" }))));
     ask(store.state, asking.signal).then(
-      ({ data }) => {
-        times = legalTimesOf(data);
+      (answer) => {
+        times = answer;
         body.replaceChildren(said, chart, departure);
         draw();
       },

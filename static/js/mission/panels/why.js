@@ -1,4 +1,4 @@
-/** Beside the strips: why a UAV flies its route, why a target is not reached, or what differs from the last plan. */
+/** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, or the ways to plan it. */
 
 import { post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
@@ -6,14 +6,16 @@ import { routeLetter, routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
 import { requestOf } from "../selection.js";
+import { alternatives } from "./alternatives.js";
 import { comparison } from "./why_compared.js";
 import { routeExplanation } from "./why_route.js";
 import { targetExplanation } from "./why_target.js";
 
 /** What the server is asked: the plan as it was made, whatever has been picked since. */
-function questionOf({ result, targets, uavs }) {
+function questionOf({ result, targets, uavs, charging_w }) {
+  const { objective, return_to_start, departs_at, conditions } = result;
   return {
-    ...requestOf({ targets, uavs, objective: result.objective, return_to_start: result.return_to_start }),
+    ...requestOf({ targets, uavs, objective, return_to_start, departs_at, conditions, charging_w }),
     routes: result.routes.map((route) => route.targets),
   };
 }
@@ -47,7 +49,9 @@ export function mountWhy(store, actions, { canPlan }) {
     const { why } = store.state;
     try {
       const said = await asked;
-      if (store.state.why === why) put(title, ...show(said));
+      if (store.state.why !== why) return;
+      put(title, ...show(said));
+      store.update({ litZones: (said.zones ?? []).map(({ id }) => id) });
     } catch (error) {
       if (store.state.why === why) put(title, h("p", { role: "alert" }, error.message), h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")));
     }
@@ -56,6 +60,7 @@ export function mountWhy(store, actions, { canPlan }) {
   function draw(state) {
     const { why, plan } = state;
     const wasHidden = panel.hidden;
+    if (store.state.litZones.length) store.update({ litZones: [] });
     panel.hidden = !why || !plan;
     byId("dock").classList.toggle("with-why", !panel.hidden);
     if (panel.hidden) {
@@ -67,7 +72,12 @@ export function mountWhy(store, actions, { canPlan }) {
       opener = document.activeElement;
       openedFrom = opener?.closest(".route")?.dataset.sequence ?? "";
     }
-    if (why.compare) {
+    byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
+    if (why.alternatives) {
+      const focused = panel.contains(document.activeElement) && document.activeElement !== byId("why-title") ? document.activeElement.textContent : null;
+      put(t("Ways to plan it"), ...alternatives(state, actions, canPlan && isPlanCurrent(state)));
+      if (focused) ([...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")).focus();
+    } else if (why.compare) {
       const last = lastPlanOf(state);
       if (last) put(t("Against the last plan"), ...comparison(plan, last));
       else store.update({ why: null });
@@ -105,4 +115,5 @@ export function mountWhy(store, actions, { canPlan }) {
     store.update({ why: null });
   });
   store.listen(["why", "plan", "lastPlan"], draw);
+  store.listen(["figures", "planningBeside", "refusedBeside", "selection"], (state) => state.why?.alternatives && draw(state));
 }

@@ -1,0 +1,251 @@
+"""Seconds and watt-hours along ways of the graph, in one wind and for UAVs that fly alike, by sums that are kept from plan to plan."""
+
+import math
+from collections import OrderedDict
+from collections.abc import Hashable
+from dataclasses import dataclass
+from threading import Lock
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.geodesy.short_vector import short_vector_m
+from inspection.graph.along_ways import Sums, leg_of_way, quantities_of_ways, steps_of_graph, sums_along
+from inspection.graph.condensed import NumberArray
+from inspection.graph.flyable import node_heights_m
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.route_index import route_index
+from inspection.graph.ways import DIRECT, Travel
+from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
+from missions.flight_plan.heights import pass_agl_m
+from missions.flight_plan.leg_taken import J_PER_WH, Speeds, leg_taken, speeds, table_of
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.rules import FlightRules
+
+FloatArray = NDArray[np.float64]
+
+NO_HEADWAY = 1e9  # seconds and joules of a step against too strong a wind: sums of it stay numbers, and a way with it is no way
+MOST_BYTES = 100 * 2**20  # of sums kept for one graph; a graph of 200,000 nodes takes some 20 MB for each wind and kind of UAV
+
+
+@dataclass(frozen=True)
+class FlightClass:
+    """UAVs that fly alike."""
+
+    performance: Performance
+    cruise_speed_mps: float
+
+
+@dataclass(frozen=True, eq=False)
+class NodeGround:
+    """Ground above sea level [m], NaN where not known: of each node (n,), each source (s,) and each sink (t,) of the ways."""
+
+    node_m: FloatArray
+    source_m: FloatArray
+    sink_m: FloatArray
+
+
+class Places(NamedTuple):
+    """position (n, 2) lon, lat [deg]; the height above ground at which they are flown, and of the ground above the sea, NaN if unknown."""
+
+    position: FloatArray
+    agl_m: FloatArray
+    ground_m: FloatArray
+
+
+class Air(NamedTuple):
+    """What is flown in, and how, as compiled code reads it."""
+
+    wind: FloatArray
+    temperature_c: float
+    own: Speeds
+    table: FloatArray
+
+    @classmethod
+    def of(cls, flying: FlightClass, conditions: Conditions, rules: FlightRules) -> "Air":
+        own = speeds(flying.performance, flying.cruise_speed_mps, rules)
+        return cls(conditions.wind_table, float(conditions.temperature_c), own, table_of(flying.performance, own.climb_mps))
+
+
+def taken_on_ways(
+    graph: InspectionGraph,
+    travel: Travel,
+    flying: FlightClass,
+    sources: Places,
+    sinks: Places,
+    conditions: Conditions,
+    rules: FlightRules,
+    ground: NodeGround | None,
+) -> FloatArray:
+    """Seconds and Wh of the way from each source to each sink, (2, s, t); inf where there is none, or the wind closes it."""
+    kept = _kept_of(graph, flying, conditions, rules, ground)
+    air = Air.of(flying, conditions, rules)
+    out, back, direct = _ends_of_ways(
+        travel.way, travel.entry_leg, travel.leg_node, graph.position, kept.passed_m, kept.ground_m, *sources, *sinks,
+        air.wind, air.temperature_c, air.own, air.table,
+    )  # fmt: skip
+    taken = quantities_of_ways(travel, kept.sums, out, back, direct)
+    taken[:, (taken >= NO_HEADWAY / 2.0).any(axis=0)] = np.inf
+    taken[1] /= J_PER_WH
+    return taken
+
+
+class _Kept(NamedTuple):
+    """Sums, the height at which each node is passed, and the nodes' ground, empty where not known."""
+
+    sums: Sums
+    passed_m: FloatArray
+    ground_m: FloatArray
+
+
+_NOT_KNOWN = np.zeros(0)
+_kept: WeakKeyDictionary[InspectionGraph, "OrderedDict[Hashable, _Kept]"] = WeakKeyDictionary()
+_one_thread = Lock()
+
+
+def _kept_of(graph: InspectionGraph, flying: FlightClass, conditions: Conditions, rules: FlightRules, ground: NodeGround | None) -> _Kept:
+    """What was used last is kept, within MOST_BYTES for a graph."""
+    ground_m = _NOT_KNOWN if ground is None else ground.node_m
+    key = (flying, conditions, rules, id(ground_m))  # which is held with what is kept, so that no other has its number
+    with _one_thread:
+        kept_of_graph = _kept.setdefault(graph, OrderedDict())
+        if key in kept_of_graph:
+            kept_of_graph.move_to_end(key)
+            return kept_of_graph[key]
+    air = Air.of(flying, conditions, rules)
+    passed_m = pass_agl_m(node_heights_m(graph, slice(None)), rules)
+    condensed, steps = route_index(graph).condensed, steps_of_graph(graph)
+    taken = _steps_taken(
+        condensed.chain_first, condensed.place_node, steps.length_m, steps.east, steps.north, passed_m, ground_m,
+        air.wind, air.temperature_c, air.own, air.table,
+    )  # fmt: skip
+    kept = _Kept(sums_along(graph, taken), passed_m, ground_m)
+    with _one_thread:
+        kept_of_graph[key] = kept
+        while len(kept_of_graph) > 1 and sum(one.sums.nbytes for one in kept_of_graph.values()) > MOST_BYTES:
+            kept_of_graph.popitem(last=False)
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def _rise_and_density(
+    lower_agl_m: float, lower_ground_m: float, upper_agl_m: float, upper_ground_m: float, temperature_c: float
+) -> tuple[float, float]:
+    """Metres up from the first place to the second, and the density of the air between; flat and at sea level where not known."""
+    rise_m = upper_agl_m - lower_agl_m
+    if math.isnan(lower_ground_m) or math.isnan(upper_ground_m):
+        return rise_m, air_density(0.0, temperature_c)
+    rise_m += upper_ground_m - lower_ground_m
+    return rise_m, air_density(0.5 * (lower_agl_m + lower_ground_m + upper_agl_m + upper_ground_m), temperature_c)
+
+
+@njit(cache=True, nogil=True)
+def _steps_taken(
+    chain_first: NumberArray,
+    place_node: NumberArray,
+    length_m: FloatArray,
+    east: FloatArray,
+    north: FloatArray,
+    passed_m: FloatArray,
+    ground_m: FloatArray,
+    wind: FloatArray,
+    temperature_c: float,
+    own: Speeds,
+    table: FloatArray,
+) -> FloatArray:
+    """Seconds and joules of the step to each place of a chain and of the step back, (p, 2, 2)."""
+    taken = np.zeros((len(place_node), 2, 2))
+    is_known = len(ground_m) > 0
+    density = air_density(0.0, temperature_c)
+    wind_agl_m = -1.0
+    east_mps = north_mps = 0.0
+    for chain_number in range(len(chain_first) - 1):
+        for place in range(chain_first[chain_number] + 1, chain_first[chain_number + 1]):
+            before, node = place_node[place - 1], place_node[place]
+            rise_m, middle_m = passed_m[node] - passed_m[before], 0.5 * (passed_m[node] + passed_m[before])
+            if is_known:
+                rise_m, density = _rise_and_density(passed_m[before], ground_m[before], passed_m[node], ground_m[node], temperature_c)
+            if middle_m != wind_agl_m:
+                wind_agl_m = middle_m
+                east_mps, north_mps = wind_in_table(wind, middle_m)
+            for way in range(2):
+                sign = 1.0 - 2.0 * way
+                seconds, joules = leg_taken(
+                    length_m[place], sign * east[place], sign * north[place], sign * rise_m, east_mps, north_mps, density, own, table
+                )
+                taken[place, way, 0], taken[place, way, 1] = min(seconds, NO_HEADWAY), min(joules, NO_HEADWAY)
+    return taken
+
+
+@njit(cache=True, nogil=True)
+def _straight(
+    start: FloatArray,
+    start_agl_m: float,
+    start_ground_m: float,
+    end: FloatArray,
+    end_agl_m: float,
+    end_ground_m: float,
+    wind: FloatArray,
+    temperature_c: float,
+    own: Speeds,
+    table: FloatArray,
+) -> tuple[float, float]:
+    """Seconds and joules of the straight leg between two positions lon, lat [deg]."""
+    east, north = short_vector_m(start[0], start[1], end[0], end[1])
+    length_m = math.hypot(east, north)
+    if length_m > 0.0:
+        east, north = east / length_m, north / length_m
+    rise_m, density = _rise_and_density(start_agl_m, start_ground_m, end_agl_m, end_ground_m, temperature_c)
+    east_mps, north_mps = wind_in_table(wind, 0.5 * (start_agl_m + end_agl_m))
+    return leg_taken(length_m, east, north, rise_m, east_mps, north_mps, density, own, table)
+
+
+@njit(cache=True, nogil=True)
+def _ends_of_ways(
+    way: NumberArray,
+    entry_leg: NumberArray,
+    leg_node: NumberArray,
+    node_position: FloatArray,
+    passed_m: FloatArray,
+    node_ground_m: FloatArray,
+    source_position: FloatArray,
+    source_agl_m: FloatArray,
+    source_ground_m: FloatArray,
+    sink_position: FloatArray,
+    sink_agl_m: FloatArray,
+    sink_ground_m: FloatArray,
+    wind: FloatArray,
+    temperature_c: float,
+    own: Speeds,
+    table: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Seconds and joules of the legs by which ways leave sources and come to sinks, (legs, 2) each, and of direct legs, (s, t, 2)."""
+    legs = len(leg_node)
+    out, back = np.full((legs, 2), np.nan), np.full((legs, 2), np.nan)
+    direct = np.full((way.shape[0], way.shape[1], 2), np.inf)
+    for source in range(way.shape[0]):
+        for sink in range(way.shape[1]):
+            if way[source, sink, 0] == DIRECT:
+                direct[source, sink, 0], direct[source, sink, 1] = _straight(
+                    source_position[source], source_agl_m[source], source_ground_m[source],
+                    sink_position[sink], sink_agl_m[sink], sink_ground_m[sink], wind, temperature_c, own, table,
+                )  # fmt: skip
+                continue
+            left, right = leg_of_way(way[source, sink, 0], entry_leg), leg_of_way(way[source, sink, 1], entry_leg)
+            if left >= 0 and math.isnan(out[left, 0]):
+                node = leg_node[left]
+                out[left, 0], out[left, 1] = _straight(
+                    source_position[source], source_agl_m[source], source_ground_m[source],
+                    node_position[node], passed_m[node], node_ground_m[node] if len(node_ground_m) else np.nan,
+                    wind, temperature_c, own, table,
+                )  # fmt: skip
+            if right >= 0 and math.isnan(back[right, 0]):
+                node = leg_node[right]
+                back[right, 0], back[right, 1] = _straight(
+                    node_position[node], passed_m[node], node_ground_m[node] if len(node_ground_m) else np.nan,
+                    sink_position[sink], sink_agl_m[sink], sink_ground_m[sink], wind, temperature_c, own, table,
+                )  # fmt: skip
+    return out, back, direct
