@@ -18,6 +18,7 @@ import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
+import { mountHandMap } from "./hand_map.js";
 import { createMapPicking } from "./map_picking.js";
 import { isWhole, nameOf } from "./selection.js";
 
@@ -39,8 +40,9 @@ export function mountMap(store, actions, page, { askForUav }) {
     onLook: (sequence) => store.update({ lookedAt: store.state.plan ? sequence : null }),
   });
   const tip = createTip(frame);
+  let handMap = null; // once the map has its style
 
-  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => store.state.tool === "place", measures: (isOn) => isOn && store.update({ tool: "point" }) });
+  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => store.state.tool === "place", measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => handMap?.recolour() });
 
   // clicks
 
@@ -55,7 +57,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   function click(thing, place, point) {
     picking.close();
     tip(null);
-    if (controls.click(place)) return;
+    if (controls.click(place) || handMap?.isOn()) return;
     const { tool } = store.state;
     if (tool === "place") {
       askForUav(place.map((degrees) => Number(degrees.toFixed(6))));
@@ -81,7 +83,7 @@ export function mountMap(store, actions, page, { askForUav }) {
       const target = point && targets.at(point);
       if (target !== (store.state.litTarget ?? null) && (target || litHere)) store.update({ litTarget: target });
       litHere = Boolean(target);
-      if (controls.isMeasuring() || target || picking.isOpen()) thing = null;
+      if (controls.isMeasuring() || target || picking.isOpen() || handMap?.isOn()) thing = null;
       tip(thing ? `${thing.kind} ${thing.id}` : null, point, (refresh) => tipOf({ ...thing, place }, refresh));
       const next = thing && thing.kind !== "zone" && !picking.isOpen() ? thing : null;
       if (next?.id === pointed?.id && next?.kind === pointed?.kind) return;
@@ -174,6 +176,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     });
     store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);
+    handMap = mountHandMap(map, store, actions);
     store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
