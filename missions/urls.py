@@ -6,6 +6,7 @@ from missions import views
 from missions.views.by_hand import LegChecks, RouteWaypoints
 from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
+from missions.views.reachability import Reachability
 from missions.views.selections import SelectionDetail, SelectionList
 
 urlpatterns = [
@@ -13,6 +14,7 @@ urlpatterns = [
     path("plans/why-target", WhyTarget.as_view(), name="api-plans-why-target"),
     path("plans/why-route", WhyRoute.as_view(), name="api-plans-why-route"),
     path("plans/legal-windows", PlanLegalWindows.as_view(), name="api-plans-legal-windows"),
+    path("reachability", Reachability.as_view(), name="api-reachability"),
     path("missions", views.MissionList.as_view(), name="api-missions"),
     path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
     path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),

@@ -84,6 +84,7 @@ class _Kept(Generic[Made]):
 
 _graphs: _Kept[InspectionGraph] = _Kept()
 _indices: _Kept[ZoneIndex] = _Kept()
+_networks: _Kept[Network] = _Kept()
 
 
 def rules_of_snapshots() -> dict[str, Any]:
@@ -133,6 +134,17 @@ def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> Inspectio
         raise NoGraph
     key = (*row, zones.digest, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
     return _graphs.get(key, lambda: _load(row, zones))
+
+
+def network_for(row: SnapshotRow | None) -> Network:
+    """The network of a snapshot, as if there were no zones. Raises NoGraph for None, and for a version that is not kept."""
+    if row is None:
+        raise NoGraph
+    return _networks.get(row, lambda: _network(row))
+
+
+def _network(row: SnapshotRow) -> Network:
+    return read_network(settings.GRAPH_CACHE_DIR, content_sha256=row[2]) or from_bytes(_content(row), content_sha256=row[2])
 
 
 def prepare_graph(row: SnapshotRow, content: Callable[[], bytes], zones: ZoneIndex) -> None:

@@ -11,10 +11,11 @@ from django.db import DEFAULT_DB_ALIAS
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.network import Network
 from inspection.graph.snapshot_file import LAYOUT
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind
-from inspection.selectors.graph import SnapshotRow, graph_for, zones_of_table
+from inspection.selectors.graph import SnapshotRow, graph_for, network_for, zones_of_table
 from inspection.selectors.terrain import has_terrain, terrain_edition
 from inspection.selectors.zone_table import zone_table_of_edition
 from inspection.zones.reach import BoolArray, ZoneTable
@@ -86,6 +87,10 @@ class PlanningGround:
     def graph(self, zones: ZoneIndex) -> InspectionGraph:
         """The network cleared of these zones. Costs nothing more until the network or the zones change. Raises NoGraph."""
         return graph_for(self.snapshot, zones)
+
+    def network(self) -> Network:
+        """The network as if there were no zones. Raises NoGraph."""
+        return network_for(self.snapshot)
 
 
 class PlanningRead(NamedTuple):

@@ -1,5 +1,6 @@
 """What a plan looks at: the network cleared of its zones, the zones, and the rules."""
 
+import numpy as np
 from django.conf import settings
 
 from inspection.selectors.planning import PlanningGround, planning_read
@@ -33,3 +34,9 @@ def current_scene(request: PlanRequest | None = None) -> Scene:
     ground = planning_read().ground()
     chosen = None if request is None else zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest
     return scene_on(ground, chosen)
+
+
+def scene_without_zones() -> Scene:
+    """As if there were none. Raises NoGraph."""
+    ground = planning_read().ground()
+    return scene_on(ground, np.zeros(len(ground.table), dtype=bool))

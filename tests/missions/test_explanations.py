@@ -6,9 +6,7 @@ import pytest
 from django.test import Client
 
 from inspection.models import Asset
-from inspection.selectors.ground_data import ground_without_zones
 from missions.models import Uav
-from missions.services import why_route as why_route_service
 from tests.inspection import ground
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
@@ -163,17 +161,6 @@ def test_a_route_with_no_way_to_a_base_is_not_explained(here: World, client: Cli
     post(client, "bases", {"name": "North", "position": [base_lon, 56.0005]})
     zone_around((10.012, 56.0005), half_deg=0.0003)
     refused_route(client, plan_body(here.towers[2]) | {"uavs": [TERN | {"end_action": "base"}]})
-
-
-def test_a_route_is_explained_where_the_zones_alone_cannot_be_thought_away(here: World, client: Client, monkeypatch: Any) -> None:
-    far = ground.tower((10.09, 56.0))
-    power_line([here.towers[5], far])
-    zone_around((10.010, 56.003), half_deg=0.0005)
-    body = plan_body(far, return_to_start=True)
-    monkeypatch.setattr(why_route_service, "ground_without_zones", lambda box: ground_without_zones((0.0, 0.0, 0.001, 0.001)))
-    said, plan = why_route(client, body)
-    assert said["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
-    assert (said["round_zones_m"], said["zones"]) == (None, [])
 
 
 def test_a_place_where_there_is_no_network_at_all_has_no_distance_to_it(here: World, client: Client) -> None:

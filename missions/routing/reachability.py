@@ -1,0 +1,377 @@
+"""Which assets can be inspected from where UAVs stand, one flight for each, and why the others cannot.
+
+A node is judged as a plan with this node as its only target would be: by the way of least cost there and on to where the flight ends.
+Without wind and batteries a way takes the same in both directions.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+import shapely
+from numba import njit
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.graph.access import clear_legs
+from inspection.graph.condensed import CORE
+from inspection.graph.inspection_graph import InspectionGraph, NodeKind
+from inspection.graph.legs import Attachments, joined
+from inspection.graph.nearness import chord
+from inspection.graph.network import Network
+from inspection.graph.node_tree import points_on_sphere
+from inspection.graph.route_index import node_tree, route_index
+from inspection.graph.spread import Crossroads, crossroads, spread
+from inspection.graph.zone_index import ZoneIndex
+from missions.routing.problem import End
+from missions.routing.terminals import AccessRules
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+SAME_PLACE_M = 1.0  # nodes nearer than that have become one
+NEAREST_LEGS = 24  # of a node that no flight gets to over the network, as `clear_legs` gives a target
+TRIED_LEGS = (1, 8, 64)  # of the nearest to each part of the network: more, where all of these meet zones
+
+
+class Verdict(IntEnum):
+    """The order is that of what to say first where the parts of a line differ."""
+
+    REACHABLE = 0
+    PARTLY = 1  # a line or railway of which some spans can be inspected
+    BEYOND_RANGE = 2
+    CUT_OFF = 3  # no way keeps clear of zones, or there is none
+    ABOVE_HEIGHT_LIMIT = 4
+    INSIDE_ZONE = 5
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A UAV that could take off at a place."""
+
+    position: LonLat
+    end: End
+    limit_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """A verdict for each of a assets, sorted by their primary keys.
+
+    asset      int64 (a,)
+    verdict    int8 (a,)     see Verdict
+    flight     int16 (a,)    of the flights that can do it the one that flies least; -1 for none, or for a way that takes several
+    missing_m  float64 (a,)  by how much the range is too short at best; 0 unless that is the verdict
+    zone       int32 (a,)    the number of the zone that it is in; -1 for none
+    box        float64 (a, 4)  west, south, east, north of its nodes
+    """
+
+    asset: IntArray
+    verdict: NDArray[np.int8]
+    flight: NDArray[np.int16]
+    missing_m: FloatArray
+    zone: NDArray[np.int32]
+    box: FloatArray
+
+
+def reach(
+    network: Network,
+    whole_graph: InspectionGraph,
+    graph: InspectionGraph,
+    zones: ZoneIndex,
+    leg_zones: ZoneIndex,
+    flights: Sequence[Flight],
+    bases: Sequence[LonLat],
+    rules: AccessRules,
+) -> Reach:
+    """whole_graph is the network cleared of the zones, graph the part of it that can be flown over; bases are outside zones.
+
+    leg_zones are those of the zones that reach the heights between targets.
+    """
+    on_whole = _nodes_of(network.position, network.node_asset, whole_graph.position, whole_graph.node_asset)
+    on_graph = _nodes_of(network.position, network.node_asset, graph.position, graph.node_asset)
+    verdict, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
+    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules)
+    is_on = on_graph >= 0
+    verdict[is_on] = found.verdict[on_graph[is_on]]
+    flight, missing_m = np.full(network.node_count, -1, dtype=np.int16), np.zeros(network.node_count)
+    flight[is_on], missing_m[is_on] = found.flight[on_graph[is_on]], found.missing_m[on_graph[is_on]]
+    return _of_assets(network, graph, on_graph, _Nodes(verdict, flight, missing_m, zone))
+
+
+@dataclass(frozen=True, eq=False)
+class _Nodes:
+    verdict: NDArray[np.int8]
+    flight: NDArray[np.int16]
+    missing_m: FloatArray
+    zone: NDArray[np.int32]
+
+
+@njit(cache=True, nogil=True)
+def _nodes_of(position: FloatArray, asset: IntArray, graph_position: FloatArray, graph_asset: IntArray) -> IntArray:
+    """The number in a part of a network of each of its nodes, -1 for those that it lacks. A part keeps the order."""
+    found = np.full(len(position), -1, dtype=np.int64)
+    at = 0
+    for node in range(len(position)):
+        if at == len(graph_position):
+            break
+        is_same = (
+            asset[node] == graph_asset[at] and position[node, 0] == graph_position[at, 0] and position[node, 1] == graph_position[at, 1]
+        )
+        if is_same:
+            found[node] = at
+            at += 1
+    return found
+
+
+def _off_the_graph(
+    network: Network,
+    whole_graph: InspectionGraph,
+    graph: InspectionGraph,
+    on_whole: IntArray,
+    on_graph: IntArray,
+    zones: ZoneIndex,
+    clearance_m: float,
+) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+    """Why nodes are not on the graph, and the zones that took them; where two nodes have become one, on_graph is told the other."""
+    verdict, zone = np.full(network.node_count, Verdict.ABOVE_HEIGHT_LIMIT, dtype=np.int8), np.full(network.node_count, -1, dtype=np.int32)
+    gone = np.flatnonzero(on_whole < 0)
+    if len(gone):
+        zone[gone] = _zones_at(zones, network.position[gone], clearance_m)
+        verdict[gone[zone[gone] >= 0]] = Verdict.INSIDE_ZONE
+        for node in gone[zone[gone] < 0].tolist():
+            at = network.position[node]
+            nearest = node_tree(graph).nearest(LonLat(*at.tolist()), 1)
+            if len(nearest) and distance_m(graph.position[nearest], at[None])[0] <= SAME_PLACE_M:
+                on_graph[node] = nearest[0]
+    return verdict, zone
+
+
+def _zones_at(zones: ZoneIndex, position: FloatArray, clearance_m: float) -> NDArray[np.int32]:
+    """For each position the first zone that it is in or nearer to than the clearance; -1 for none."""
+    found = np.full(len(position), -1, dtype=np.int32)
+    inside = np.flatnonzero(zones.contains(position, clearance_m)) if len(zones) else np.zeros(0, dtype=np.int64)
+    if not len(inside):
+        return found
+    polygons = zones.polygons
+    frame = LocalFrame.around(0.0, float(np.abs(position[inside, 1]).max()))
+    widest_deg = 1.01 * clearance_m / frame.metres_per_degree_east
+    points = shapely.points(position[inside])
+    for margin_deg in (0.0, widest_deg):
+        at, number = shapely.STRtree(polygons).query(points, predicate="dwithin", distance=margin_deg)
+        for place, one in zip(at[::-1].tolist(), number[::-1].tolist(), strict=True):
+            if margin_deg == 0.0 or found[inside[place]] < 0:
+                found[inside[place]] = one
+    return found
+
+
+def _reach_of_nodes(
+    graph: InspectionGraph, zones: ZoneIndex, flights: Sequence[Flight], bases: Sequence[LonLat], rules: AccessRules
+) -> _Nodes:
+    count = graph.node_count
+    able_m, flight = np.full(count, np.inf), np.full(count, -1, dtype=np.int16)
+    missing_m = np.full(count, np.inf)
+    places = list(dict.fromkeys(flight.position for flight in flights))
+    legs = [_legs(graph, zones, place, rules) for place in places]
+    base_legs = [_legs(graph, zones, base, rules) for base in bases] if any(one.end is End.ANY_BASE for one in flights) else []
+    islands = _Islands.of(graph, zones, joined(legs), joined(base_legs), rules)
+    scene = _Scene(graph, zones, rules, islands, crossroads(route_index(graph).condensed))
+    to_base_m = scene.least_m(bases, joined(base_legs)) if base_legs else np.full(count, np.inf)
+    for place, its_legs in zip(places, legs, strict=True):
+        there_m = scene.least_m([place], its_legs)
+        for number, one in enumerate(flights):
+            if one.position != place:
+                continue
+            needed_m = there_m if one.end is End.OPEN else 2.0 * there_m if one.end is End.RETURN else there_m + to_base_m
+            can = (needed_m <= one.limit_m) & (needed_m < able_m)
+            able_m[can], flight[can] = needed_m[can], number
+            if np.isfinite(one.limit_m):
+                np.minimum(missing_m, needed_m - one.limit_m, out=missing_m)
+    verdict = np.full(count, Verdict.CUT_OFF, dtype=np.int8)
+    verdict[np.isfinite(missing_m)] = Verdict.BEYOND_RANGE
+    verdict[flight >= 0] = Verdict.REACHABLE
+    return _Nodes(verdict, flight, np.where(verdict == Verdict.BEYOND_RANGE, missing_m, 0.0), np.full(count, -1, dtype=np.int32))
+
+
+def _legs(graph: InspectionGraph, zones: ZoneIndex, place: LonLat, rules: AccessRules) -> Attachments:
+    return clear_legs(graph, zones, place, radius_m=rules.access_leg_m, factor=rules.off_network_factor, clearance_m=rules.zone_clearance_m)
+
+
+@dataclass(frozen=True, eq=False)
+class _Islands:
+    """Nodes of parts of the network that no flight gets onto, and clear legs from them to nodes of other parts: column by column."""
+
+    node: IntArray
+    other: IntArray
+    length_m: FloatArray
+
+    @classmethod
+    def of(cls, graph: InspectionGraph, zones: ZoneIndex, legs: Attachments, base_legs: Attachments, rules: AccessRules) -> "_Islands":
+        """As a plan gives such a target legs of its own: of its nearest neighbours, and the shortest clear one to each part that counts.
+
+        The parts that count are those that flights or bases meet.
+        """
+        component = components_of_nodes(graph)
+        met, known = (np.zeros(component.max(initial=-1) + 1, dtype=bool) for _ in range(2))
+        met[component[legs.node]] = True
+        known[component[legs.node]], known[component[base_legs.node]] = True, True
+        left = np.flatnonzero(~met[component])
+        if not len(left) or not met.any():
+            return cls(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0))
+        look = _Look(graph, zones, rules, points_on_sphere(graph.position))
+        found = [look.legs(left, np.arange(graph.node_count), NEAREST_LEGS, known, component)]
+        for part in np.flatnonzero(known).tolist():
+            nodes = np.flatnonzero(component == part)
+            waiting = left[component[left] != part]
+            for tried in TRIED_LEGS:
+                waiting = look.near(waiting, nodes)
+                found.append(look.legs(waiting, nodes, tried, known, component))
+                waiting = np.setdiff1d(waiting, found[-1][0])
+                if not len(waiting) or len(nodes) <= tried:
+                    break
+        return cls(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """For nodes that are near to other nodes."""
+
+    graph: InspectionGraph
+    zones: ZoneIndex
+    rules: AccessRules
+    point: FloatArray
+
+    def near(self, nodes: IntArray, others: IntArray) -> IntArray:
+        """Those of the nodes that lie within a leg of the box around the others."""
+        within = chord(float(self.rules.access_leg_m))
+        low, high = self.point[others].min(axis=0) - within, self.point[others].max(axis=0) + within
+        kept: IntArray = nodes[((self.point[nodes] >= low) & (self.point[nodes] <= high)).all(axis=1)]
+        return kept
+
+    def legs(
+        self, nodes: IntArray, others: IntArray, count: int, known: BoolArray, component: NDArray[np.int32]
+    ) -> tuple[IntArray, IntArray, FloatArray]:
+        """Clear legs from each node to those of the others nearest to it that are on a part which counts, and not on its own."""
+        if not len(nodes):
+            return nodes, nodes, np.zeros(0)
+        tree = cKDTree(self.point[others], balanced_tree=False, compact_nodes=False)
+        within = chord(float(self.rules.access_leg_m))
+        _, near = tree.query(self.point[nodes], k=min(count, len(others)), distance_upper_bound=within)
+        near = near.reshape(len(nodes), -1)
+        row, column = np.nonzero(near < len(others))
+        node, other = nodes[row], others[near[row, column]]
+        counts = known[component[other]] & (component[other] != component[node])
+        node, other = node[counts], other[counts]
+        position = self.graph.position
+        length_m = distance_m(position[node], position[other])
+        kept = length_m <= self.rules.access_leg_m
+        if len(self.zones):
+            kept &= ~self.zones.meets(position[node], position[other], self.rules.zone_clearance_m)
+        return node[kept], other[kept], length_m[kept]
+
+
+def components_of_nodes(graph: InspectionGraph) -> NDArray[np.int32]:
+    """The number of the component that each node is in, (n,)."""
+    node_chain, node_place, chain_tail, component = route_index(graph).component_arrays
+    core = np.where(node_chain == CORE, node_place, chain_tail[np.maximum(node_chain, 0)] if len(chain_tail) else node_place)
+    found: NDArray[np.int32] = component[core]
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Scene:
+    graph: InspectionGraph
+    zones: ZoneIndex
+    rules: AccessRules
+    islands: _Islands
+    at_core: Crossroads
+
+    def least_m(self, places: Sequence[LonLat], legs: Attachments) -> FloatArray:
+        """Metres along the way of least cost between each node and the place that is nearest to it by cost; inf where there is none."""
+        found = spread(self.graph, legs, self.at_core)
+        cost, length_m = found.cost, found.length_m
+        islands, factor = self.islands, self.rules.off_network_factor
+        if len(islands.node):
+            over_cost = factor * islands.length_m + cost[islands.other]
+            order = np.lexsort((over_cost, islands.node))
+            first = order[np.unique(islands.node[order], return_index=True)[1]]
+            first = first[over_cost[first] < cost[islands.node[first]]]
+            over, onto = islands.node[first], islands.other[first]
+            cost[over], length_m[over] = over_cost[first], islands.length_m[first] + length_m[onto]
+        for place in places:
+            self._straight(place, cost, length_m)
+        return length_m
+
+    def _straight(self, place: LonLat, cost: FloatArray, length_m: FloatArray) -> None:
+        """Nodes that are flown to straight, where that costs no more."""
+        position, rules = self.graph.position, self.rules
+        frame = LocalFrame.around(place.lon, place.lat)
+        within = np.flatnonzero(np.abs(position[:, 1] - place.lat) * frame.metres_per_degree_north <= 1.02 * rules.direct_leg_m)
+        east, north = frame.to_metres(position[within]).T
+        rough_m = np.hypot(east, north)
+        within = within[(rough_m <= 1.02 * rules.direct_leg_m) & (0.98 * rules.off_network_factor * rough_m <= cost[within])]
+        if not len(within):
+            return
+        straight_m = distance_m(np.broadcast_to(np.array(place), (len(within), 2)), position[within])
+        better = (straight_m <= rules.direct_leg_m) & (rules.off_network_factor * straight_m <= cost[within])
+        within, straight_m = within[better], straight_m[better]
+        if len(within) and len(self.zones):
+            clear = ~self.zones.meets([place], position[within], rules.zone_clearance_m)
+            within, straight_m = within[clear], straight_m[clear]
+        cost[within], length_m[within] = rules.off_network_factor * straight_m, straight_m
+
+
+def _of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, nodes: _Nodes) -> Reach:
+    """Towers and bridges as their nodes; of lines and railways every span counts, and both of its ends."""
+    single = np.flatnonzero(np.isin(network.node_kind, (NodeKind.SUPPORT, NodeKind.BRIDGE)))
+    spans = np.flatnonzero(network.edge_asset >= 0)
+    way, of_span = np.unique(network.edge_asset[spans], return_inverse=True)
+    ends = network.edge[spans]
+    reached = (nodes.verdict[ends] == Verdict.REACHABLE).all(axis=1) & _is_edge(graph, on_graph[ends])
+    count, done = np.bincount(of_span, minlength=len(way)), np.bincount(of_span, weights=reached, minlength=len(way))
+
+    # What keeps a span from being inspected: the worse of its ends; a zone, where both ends can be reached but it is not flown over.
+    worst = nodes.verdict[ends].argmax(axis=1)
+    node = ends[np.arange(len(ends)), worst]
+    why = np.where(~reached & (nodes.verdict[node] == Verdict.REACHABLE), Verdict.INSIDE_ZONE, nodes.verdict[node]).astype(np.int8)
+    # Of all spans of a way the first that can be had most easily.
+    order = np.lexsort((nodes.missing_m[node], why, of_span))
+    first = order[np.searchsorted(of_span[order], np.arange(len(way)))]
+    way_verdict = np.where(done == count, Verdict.REACHABLE, np.where(done > 0, Verdict.PARTLY, why[first])).astype(np.int8)
+    least, most = np.full(len(way), 32_767, dtype=np.int16), np.full(len(way), -1, dtype=np.int16)
+    for end in range(2):
+        np.minimum.at(least, of_span, nodes.flight[ends[:, end]])
+        np.maximum.at(most, of_span, nodes.flight[ends[:, end]])
+    box = np.full((len(way), 4), [np.inf, np.inf, -np.inf, -np.inf])
+    for end in range(2):
+        for axis in range(2):
+            np.minimum.at(box[:, axis], of_span, network.position[ends[:, end], axis])
+            np.maximum.at(box[:, 2 + axis], of_span, network.position[ends[:, end], axis])
+    is_short, is_inside = way_verdict == Verdict.BEYOND_RANGE, way_verdict == Verdict.INSIDE_ZONE
+
+    asset = np.concatenate([network.node_asset[single], way])
+    order = np.argsort(asset, kind="stable")
+    position = network.position[single]
+    return Reach(
+        asset=asset[order],
+        verdict=np.concatenate([nodes.verdict[single], way_verdict])[order],
+        flight=np.concatenate([nodes.flight[single], np.where(least == most, least, -1).astype(np.int16)])[order],
+        missing_m=np.concatenate([nodes.missing_m[single], np.where(is_short, nodes.missing_m[node[first]], 0.0)])[order],
+        zone=np.concatenate([nodes.zone[single], np.where(is_inside, nodes.zone[node[first]], -1).astype(np.int32)])[order],
+        box=np.concatenate([np.hstack([position, position]), box])[order],
+    )
+
+
+def _is_edge(graph: InspectionGraph, pairs: IntArray) -> BoolArray:
+    """Whether each two nodes of the graph are joined by an edge; -1 for a node that it lacks."""
+    key = np.sort(graph.edge[:, 0].astype(np.int64) * graph.node_count + graph.edge[:, 1], kind="stable")
+    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    at = np.searchsorted(key, low * graph.node_count + high)
+    found: BoolArray = np.zeros(len(pairs), dtype=bool)
+    inside = (low >= 0) & (at < len(key))
+    found[inside] = key[at[inside]] == low[inside] * graph.node_count + high[inside]
+    return found

@@ -1,0 +1,136 @@
+"""Which assets the chosen UAVs can inspect from where they stand, or from chosen bases, and why the others they cannot."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.selectors.planning import planning_read
+from missions.models import EndAction
+from missions.routing.problem import End, UavStart
+from missions.routing.reachability import Flight, Reach, Verdict, reach
+from missions.services.refusals import Scene, groundings, zone_at
+from missions.services.requests import BaseRequest, PlanRequest
+from missions.services.scenes import scene_on
+from missions.services.zone_choice import zone_choice
+
+Box = tuple[float, float, float, float]
+ENDS = {EndAction.HOVER: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
+CODES = {
+    Verdict.PARTLY: "partly_reachable",
+    Verdict.BEYOND_RANGE: "beyond_range",
+    Verdict.CUT_OFF: "no_path",
+    Verdict.ABOVE_HEIGHT_LIMIT: "above_height_limit",
+    Verdict.INSIDE_ZONE: "inside_zone",
+}
+NO_UAV = "no_uav"
+
+
+@dataclass(frozen=True)
+class _Start:
+    """A UAV of the request, and the base that it is to start from; None for where it stands."""
+
+    uav: int
+    base: str | None
+
+
+def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), box: Box | None = None) -> dict[str, Any]:
+    """In the shape of the API; the request's targets do not matter. Raises NoGraph.
+
+    starts: bases from each of which each UAV might fly, instead of from where it stands; box: west, south, east, north of what is wanted.
+    Zones that can be in force at any time of the flight are kept clear of, as a plan first does.
+    """
+    ground = planning_read().ground()
+    scene = scene_on(ground, zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest)
+    starting, flights, grounded = _flights(request, starts, scene)
+    bases = [base.position for base in request.bases if zone_at(base.position, scene) is None]
+    found = reach(ground.network(), scene.whole_graph, scene.graph, scene.zones, scene.leg_zones, flights, bases, scene.access)
+    chosen = np.ones(len(found.asset), dtype=bool) if box is None else _in_box(found, box)
+    code, reasons = _reasons(found, chosen, scene.graph, has_flights=bool(flights))
+    return {
+        "reachable": int((code == 0).sum()),
+        "of": len(code),
+        "flights": [{"uav": start.uav, "base": start.base} for start in starting],
+        "grounded": grounded,
+        "reasons": reasons,
+        "assets": {
+            "ids": found.asset[chosen].tolist(),
+            "code": code.tolist(),
+            "flight": found.flight[chosen].tolist(),
+            "missing_m": np.ceil(found.missing_m[chosen]).astype(np.int64).tolist(),
+        },
+        "graph_version": scene.graph.version,
+        "ground_revision": ground.edition[0],
+    }
+
+
+def _flights(request: PlanRequest, starts: Sequence[BaseRequest], scene: Scene) -> tuple[list[_Start], list[Flight], list[dict[str, Any]]]:
+    """The flights that can take off, and why the others cannot."""
+    starting, flights, grounded = [], [], []
+    for base in starts or (None,):
+        uavs = request.uavs if base is None else [replace(uav, position=base.position) for uav in request.uavs]
+        kept_down = groundings(uavs, scene)
+        for number, uav in enumerate(uavs):
+            name = None if base is None else base.name
+            if number in kept_down:
+                why = kept_down[number]
+                grounded.append({"uav": number, "base": name, "code": why.code, "message": why.message})
+                continue
+            end = ENDS[request.end_action(number)]
+            starting.append(_Start(number, name))
+            flights.append(Flight(uav.position, end, UavStart(uav.max_range_m, end).limit_m))
+    return starting, flights, grounded
+
+
+def _in_box(found: Reach, box: Box) -> np.ndarray:
+    west, south, east, north = box
+    in_lat = (found.box[:, 1] <= north) & (found.box[:, 3] >= south)
+    if west > east:  # over the 180th meridian
+        return in_lat & ((found.box[:, 2] >= west) | (found.box[:, 0] <= east))
+    return in_lat & (found.box[:, 0] <= east) & (found.box[:, 2] >= west)
+
+
+def _reasons(found: Reach, chosen: np.ndarray, graph: InspectionGraph, *, has_flights: bool) -> tuple[np.ndarray, list[dict[str, Any]]]:
+    """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
+    verdict, zone, missing_m = found.verdict[chosen].astype(np.int64), found.zone[chosen].astype(np.int64), found.missing_m[chosen]
+    kinds = len(Verdict)
+    key = verdict + np.where(verdict == Verdict.INSIDE_ZONE, (zone + 1) * kinds, 0)
+    keys, number, count = np.unique(key, return_inverse=True, return_counts=True)
+    code_of, reasons = np.zeros(len(keys), dtype=np.int64), []
+    for place, (one, assets) in enumerate(zip(keys.tolist(), count.tolist(), strict=True)):
+        why = Verdict(one % kinds)
+        if why is Verdict.REACHABLE:
+            continue
+        if why is Verdict.CUT_OFF and not has_flights:
+            reasons.append({"code": NO_UAV, "message": _("No UAV can take off."), "count": assets})
+        else:
+            message = _message(why, one // kinds - 1, missing_m[number == place], graph)
+            reasons.append({"code": CODES[why], "message": message, "count": assets})
+        code_of[place] = len(reasons)
+    return code_of[number], reasons
+
+
+def _message(why: Verdict, zone: int, missing_m: np.ndarray, graph: InspectionGraph) -> str:
+    flight, access = settings.FLIGHT_RULES, settings.ROUTING_RULES
+    if why is Verdict.PARTLY:
+        return _("Some spans of the line or railway can be inspected, others cannot.")
+    if why is Verdict.BEYOND_RANGE:
+        words = _("The range of every UAV is too short: by %(least)s at the nearest, by %(most)s at the farthest.")
+        return words % {"least": _km(float(missing_m.min())), "most": _km(float(missing_m.max()))}
+    if why is Verdict.CUT_OFF:
+        words = _("No UAV gets there on a way that keeps clear of every zone: along the network, or up to %(km)s beside it.")
+        return words % {"km": _km(access.access_leg_m)}
+    if why is Verdict.ABOVE_HEIGHT_LIMIT:
+        words = _("Too tall: it cannot be flown over with a clearance of %(clearance)s m below %(limit)s m.")
+        return words % {"clearance": f"{flight.clearance_m:.0f}", "limit": f"{flight.max_agl_m:.0f}"}
+    if zone >= 0:
+        return _("Inside %(zone)s.") % {"zone": graph.zone_name[zone]}
+    return _("A no-fly zone lies on it.")
+
+
+def _km(length_m: float) -> str:
+    return f"{length_m:,.0f} m" if length_m < 1_000 else f"{length_m / 1_000:,.1f} km"
