@@ -306,6 +306,7 @@ GRAPH_RULES = LinkingRules(
     crossing_m=_float("SPANWISE_CROSSING_M", LinkingRules.crossing_m),
     railway_spacing_m=_float("SPANWISE_RAILWAY_SPACING_M", LinkingRules.railway_spacing_m),
     off_network_factor=_float("SPANWISE_OFF_NETWORK_FACTOR", LinkingRules.off_network_factor),
+    detour_m=_float("SPANWISE_DETOUR_M", LinkingRules.detour_m),
     zone_clearance_m=_float("SPANWISE_ZONE_CLEARANCE_M", LinkingRules.zone_clearance_m),
 )
 ROUTING_RULES = RoutingRules(

@@ -1,11 +1,12 @@
 """From the network to the inspection graph for one set of zones: everything out that meets one, and links where there is room."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.graph.edges import Edges, component_labels, joined
+from inspection.graph.detours import detours, gaps
+from inspection.graph.edges import NO_ASSET, Edges, component_labels, joined
 from inspection.graph.flown_heights import FlownHeights, FlownNodes
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.links import bridge_to_tower_links, railway_to_tower_links
@@ -31,15 +32,18 @@ def cleared(
 ) -> ClearedGraph:
     """The network without what is within the clearance of a zone at the height flown there; what zones cut off is linked anew.
 
-    Each bridge, and each railway that would be cut off, is linked to the nearest support that is left. The same network, zones, rules
-    and heights always give the same arrays.
+    Each bridge, and each railway that would be cut off, is linked to the nearest support that is left. The ends of what is cut out of a
+    line or railway are joined by the shortest ways round, and so is what no straight link reaches. The same network, zones, rules and
+    heights always give the same arrays.
     """
     nodes = Nodes(network.position, network.node_kind, network.node_asset, network.node_height_m)
     edges = Edges(network.edge.astype(np.int64), network.edge_kind, network.edge_asset)
     flown = FlownNodes.of(nodes.position, nodes.kind, nodes.height_m, heights)
     inside = flown.in_zones(zones, rules.zone_clearance_m)
     out = _edges_out(edges, inside, flown, zones, rules)
+    wanted = gaps(edges, out, inside, nodes.position)
     index = np.cumsum(~inside) - 1
+    wanted = [replace(gap, node=index[gap.node]) for gap in wanted]
     excluded_nodes, excluded_edges = int(inside.sum()), int(out.sum())
     edges = Edges(index[edges.pair[~out]], edges.kind[~out], edges.asset[~out])
     nodes, flown = nodes.where(~inside), flown.where(~inside)
@@ -48,7 +52,9 @@ def cleared(
     to_tower = bridge_to_tower_links(_unlinked_bridges(nodes, edges), supports, flown, zones, rules)
     edges = joined(edges, to_tower.edges)
     to_railway = railway_to_tower_links(nodes.of_kind(NodeKind.RAILWAY), supports, flown, edges, zones, rules)
-    edges, nodes = contracted(joined(edges, to_railway.edges), nodes)
+    edges = joined(edges, to_railway.edges)
+    round_zones = detours([*wanted, *to_tower.unlinked, *to_railway.unlinked], flown, zones, rules, heights)
+    edges, nodes = contracted(joined(edges, round_zones.edges()), _with_bends(nodes, round_zones.bend))
     edges, length_m, cost = measured(edges, nodes.position, rules)
     graph = InspectionGraph(
         version=version,
@@ -76,6 +82,15 @@ def _edges_out(edges: Edges, inside: NDArray[np.bool_], flown: FlownNodes, zones
     free = np.flatnonzero(~out)
     out[free[flown.legs_in_zones(zones, edges.pair[free, 0], edges.pair[free, 1], rules.zone_clearance_m)]] = True
     return out
+
+
+def _with_bends(nodes: Nodes, bend: NDArray[np.float64]) -> Nodes:
+    return Nodes(
+        np.concatenate([nodes.position, bend]),
+        np.concatenate([nodes.kind, np.full(len(bend), NodeKind.BEND, dtype=np.uint8)]),
+        np.concatenate([nodes.asset, np.full(len(bend), NO_ASSET, dtype=np.int64)]),
+        np.concatenate([nodes.height_m, np.zeros(len(bend))]),
+    )
 
 
 def _unlinked_bridges(nodes: Nodes, edges: Edges) -> NDArray[np.int64]:

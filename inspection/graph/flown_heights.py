@@ -13,7 +13,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 # Where no tag states a height, towards the upper end of what is common, so that the error is on the safe side.
-UNTAGGED_HEIGHT_M = {NodeKind.SUPPORT: 45.0, NodeKind.LINE_VERTEX: 45.0, NodeKind.RAILWAY: 8.0, NodeKind.BRIDGE: 30.0}
+UNTAGGED_HEIGHT_M = {NodeKind.SUPPORT: 45.0, NodeKind.LINE_VERTEX: 45.0, NodeKind.RAILWAY: 8.0, NodeKind.BRIDGE: 30.0, NodeKind.BEND: 0.0}
 _UNTAGGED_M = np.array([UNTAGGED_HEIGHT_M[kind] for kind in NodeKind])
 
 
@@ -31,6 +31,11 @@ class FlownHeights:
         passed_m = np.maximum(self.transit_agl_m, heights_m + self.clearance_m)
         give_m = self.tolerance_m + self.margin_m
         return passed_m - give_m, passed_m + give_m
+
+    def place_band_m(self, height_m: float | None) -> tuple[float, float]:
+        """The same at one place; where the height of what stands there is not known, up to any."""
+        low_m, high_m = self.band_m(np.array([0.0 if height_m is None else height_m]))
+        return float(low_m[0]), np.inf if height_m is None else float(high_m[0])
 
 
 def asset_heights_m(kind: NDArray[np.uint8], tagged_m: FloatArray) -> FloatArray:

@@ -64,6 +64,12 @@ class ZoneIndex:
         copies: NDArray[np.object_] = np.asarray(shapely.force_2d(self._polygons), dtype=object)
         return copies
 
+    @property
+    def parts(self) -> NDArray[np.object_]:
+        """The single polygons of the zones, as `meetings` counts them; copies."""
+        copies: NDArray[np.object_] = np.asarray(shapely.force_2d(shapely.get_parts(self._polygons)), dtype=object)
+        return copies
+
     @cached_property
     def wkb(self) -> tuple[bytes, ...]:
         return tuple(shapely.to_wkb(self._polygons).tolist())
@@ -113,6 +119,20 @@ class ZoneIndex:
             leg_index, _ = self._meetings(_legs(start, end), clearance_m, low_m, high_m)
             met[leg_index] = True
         return met
+
+    def meetings(
+        self,
+        start: ArrayLike,
+        end: ArrayLike,
+        clearance_m: float,
+        low_m: ArrayLike | None = None,
+        high_m: ArrayLike | None = None,
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Which leg meets which of the `parts`, as `meets`: numbers of legs and parts, side by side."""
+        start, end = _rows(start), _rows(end)
+        if not (len(self._parts) and len(start) and len(end)):
+            return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
+        return self._meetings(_legs(start, end), clearance_m, low_m, high_m)
 
     def contains(
         self, position: ArrayLike, clearance_m: float = 0.0, low_m: ArrayLike | None = None, high_m: ArrayLike | None = None
@@ -202,12 +222,16 @@ def _bands(count: int, floor_agl_m: ArrayLike | None, ceiling_agl_m: ArrayLike |
 
 def widen(polygons: NDArray[np.object_], clearance_m: float) -> NDArray[np.object_]:
     """The polygons, wider by at least the clearance on every side, in lon/lat."""
-    bounds = shapely.bounds(polygons)
-    farthest_lat = np.minimum(np.maximum(np.abs(bounds[:, 1]), np.abs(bounds[:, 3])), NEAREST_POLE_DEG)
-    scale = np.column_stack([METRES_PER_DEGREE_LON * np.cos(np.radians(farthest_lat)), np.full(len(polygons), METRES_PER_DEGREE_LAT)])
+    scale = plane_scale(shapely.bounds(polygons))
     in_metres = _scaled(polygons, scale)
     wider = shapely.buffer(in_metres, clearance_m * CORNER_EXCESS, quad_segs=CORNER_SEGMENTS)
     return _scaled(wider, 1.0 / scale)
+
+
+def plane_scale(bounds: FloatArray) -> FloatArray:
+    """The fewest metres in a degree of longitude and of latitude within each box, west, south, east, north: (n, 2)."""
+    farthest_lat = np.minimum(np.maximum(np.abs(bounds[:, 1]), np.abs(bounds[:, 3])), NEAREST_POLE_DEG)
+    return np.column_stack([METRES_PER_DEGREE_LON * np.cos(np.radians(farthest_lat)), np.full(len(bounds), METRES_PER_DEGREE_LAT)])
 
 
 def _scaled(polygons: NDArray[np.object_], scale: FloatArray) -> NDArray[np.object_]:

@@ -19,7 +19,7 @@ from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
 from tests.inspection.graph.drawn_ground import ground, places, square, ways, zone
 
-RULES = LinkingRules()
+RULES = LinkingRules(detour_m=0.0)
 HEIGHTS = FlownHeights(transit_agl_m=60.0, clearance_m=15.0, tolerance_m=10.0, margin_m=5.0)
 STEP_M = 400.0
 
@@ -95,7 +95,7 @@ def test_building_is_clearing_of_all_the_grounds_zones():
     spots = [(number * STEP_M, 0.0) for number in range(4)]
     wall = square((600.0, 0.0), 50.0)
     drawn = ground(supports=places(spots, first_asset=100), lines=ways(spots, first_asset=200), zones=[wall])
-    built, made = build(drawn, RULES), cleared(line_of_four(), index(wall), RULES, HEIGHTS)
+    built, made = build(drawn, RULES), cleared(line_of_four(), index(wall), RULES, FlownHeights())
     assert (built.components, built.excluded_nodes, built.excluded_edges) == (made.components, made.excluded_nodes, made.excluded_edges)
     assert (built.graph.edge.tolist(), built.graph.zone_wkb) == (made.graph.edge.tolist(), made.graph.zone_wkb)
 
@@ -135,7 +135,7 @@ def test_fewer_zones_never_lengthen_a_way(whole, drawn, data):
     polygons = [polygon for polygon, _ in drawn]
     zones = index(*polygons, floor_m=[low for _, (low, _) in drawn], ceiling_m=[high for _, (_, high) in drawn])
     mask = np.array(data.draw(st.lists(st.booleans(), min_size=len(drawn), max_size=len(drawn))))
-    rules = LinkingRules(bridge_to_tower_m=0.0)
+    rules = LinkingRules(detour_m=0.0, bridge_to_tower_m=0.0)
     (more, more_nodes), (fewer, fewer_nodes) = (ways_of(cleared(whole, some, rules, HEIGHTS).graph) for some in (zones, zones.where(mask)))
     assert set(more_nodes) <= set(fewer_nodes)
     place_of = {node: place for place, node in more_nodes.items()}
@@ -150,7 +150,7 @@ def test_fewer_zones_never_lengthen_a_way(whole, drawn, data):
 def test_an_edge_is_there_unless_a_zone_is_in_its_way(whole, drawn):
     """Edge by edge, with shapely alone and without an index."""
     zones = index(*[polygon for polygon, _ in drawn], floor_m=[low for _, (low, _) in drawn], ceiling_m=[high for _, (_, high) in drawn])
-    graph = cleared(whole, zones, LinkingRules(bridge_to_tower_m=0.0, zone_clearance_m=0.0), HEIGHTS).graph
+    graph = cleared(whole, zones, LinkingRules(detour_m=0.0, bridge_to_tower_m=0.0, zone_clearance_m=0.0), HEIGHTS).graph
     place = whole.position.tolist()
     height = np.where(np.isnan(whole.node_height_m), np.array([45.0, 45.0, 8.0, 30.0])[whole.node_kind], whole.node_height_m)
     passed = np.maximum(60.0, height + 15.0).tolist()
@@ -190,7 +190,7 @@ def test_a_wall_with_a_gap_leaves_what_passes_the_gap():
     wall = [zone((550.0, north), (650.0, north), (650.0, north + 900.0), (550.0, north + 900.0)) for north in (-910.0, 10.0)]
     graph = cleared(line_of_four(), index(*wall), RULES, HEIGHTS).graph
     assert pairs(graph) == [(100, 101), (101, 102), (102, 103)]
-    wider = LinkingRules(zone_clearance_m=12.0)
+    wider = LinkingRules(detour_m=0.0, zone_clearance_m=12.0)
     assert pairs(cleared(line_of_four(), index(*wall), wider, HEIGHTS).graph) == [(100, 101), (102, 103)]
 
 
