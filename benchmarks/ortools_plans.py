@@ -95,7 +95,7 @@ def _square(arcs: Arcs) -> FloatArray:
     uavs, visits = arcs.first_m.shape
     metres = np.zeros((2 * uavs + visits, 2 * uavs + visits))
     metres[:uavs, uavs : uavs + visits] = arcs.first_m
-    metres[uavs : uavs + visits, uavs : uavs + visits] = arcs.onward_m
+    metres[uavs : uavs + visits, uavs : uavs + visits] = arcs.onward_m[0]
     metres[uavs : uavs + visits, uavs + visits :] = arcs.end_m.T
     np.fill_diagonal(metres, 0.0)
     return metres

@@ -5,7 +5,6 @@ with each hub label, so that no way is walked. Each quantity of each direction i
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numba import njit
@@ -78,9 +77,9 @@ def quantities_of_ways(travel: Travel, sums: Sums, out: FloatArray, back: FloatA
     out (legs, q) and back (legs, q): the legs of Travel.leg_node flown to the node and from it; only those need be right that ways
     take (see `ends_of_ways`). direct (s, t, q): straight from source to sink, where the way is direct.
     """
-    return _quantities(
+    return quantities_of_pairs(
         travel.way, travel.leg_node, travel.entry_leg, travel.entry_label, out, back, direct, sums.place, sums.label,
-        *_chain_arrays(travel.index),
+        *chain_arrays(travel.index),
     )  # fmt: skip
 
 
@@ -92,7 +91,8 @@ def leg_of_way(end: int, entry_leg: NumberArray) -> int:
     return entry_leg[end] // 2 if end >= 0 else -1
 
 
-def _chain_arrays(index: RouteIndex) -> tuple[Any, ...]:
+def chain_arrays(index: RouteIndex) -> tuple[NumberArray, NumberArray, NumberArray]:
+    """In the order in which the compiled sums take them."""
     condensed = index.condensed
     return condensed.node_chain, condensed.node_place, condensed.chain_first
 
@@ -184,7 +184,7 @@ def _sums(
 
 
 @njit(cache=True, nogil=True)
-def _quantities(
+def quantities_of_pairs(
     way: NumberArray,
     leg_node: NumberArray,
     entry_leg: NumberArray,
@@ -198,6 +198,7 @@ def _quantities(
     node_place: NumberArray,
     chain_first: NumberArray,
 ) -> FloatArray:
+    """As quantities_of_ways, for compiled code."""
     sources, sinks = way.shape[0], way.shape[1]
     quantities = place_sum.shape[2]
     taken = np.full((quantities, sources, sinks), np.inf)

@@ -32,6 +32,11 @@ class FlownHeights:
         give_m = self.tolerance_m + self.margin_m
         return passed_m - give_m, passed_m + give_m
 
+    def place_band_m(self, height_m: float | None) -> tuple[float, float]:
+        """The same at one place; where the height of what stands there is not known, up to any."""
+        low_m, high_m = self.band_m(np.array([0.0 if height_m is None else height_m]))
+        return float(low_m[0]), np.inf if height_m is None else float(high_m[0])
+
 
 def asset_heights_m(kind: NDArray[np.uint8], tagged_m: FloatArray) -> FloatArray:
     """The height that the asset at each node is taken to have: as tagged, where NaN by the node's kind."""

@@ -7,7 +7,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, chain
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,11 +14,13 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.short_vector import short_vector_m
+from inspection.graph.along_ways import chain_arrays
+from inspection.graph.condensed import NumberArray
 from inspection.graph.inspection_graph import InspectionGraph
 from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
 from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, leg_taken
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.ways_taken import Air, FlightClass, NodeGround, Places, taken_on_ways
+from missions.flight_plan.ways_taken import FlightClass, NodeGround, graph_taken, taken_on_ways
 from missions.routing.problem import End
 from missions.routing.terminals import Ways
 
@@ -83,113 +84,121 @@ def flight_costs(
     Timing a drawn route finds the same, but for turns of its course that drawing leaves out, waypoints that the terrain asks for, and
     wind that changes with height along a leg. Without the ground nothing is known of hills, and the air is that of the sea's level.
     """
-    uavs, visits = ways.uavs, ways.visits
+    uavs, visits, travel = ways.uavs, ways.visits, ways.travel
     numbers: dict[FlightClass, int] = {}
     class_of = tuple(numbers.setdefault(flying, len(numbers)) for flying in classes)
-    transit_m = float(rules.transit_agl_m)
-    course = _Courses.of(courses, agl_m, hold_s)
-    flown_agl_m = np.maximum(course.agl_m, transit_m)
-    start = _positions(starts)
-    sources = Places(
-        np.concatenate([start, course.position[course.first[1:] - 1]]),
-        np.concatenate([np.full(uavs, transit_m), flown_agl_m]),
-        np.full(uavs + visits, np.nan) if ground is None else ground.source_m,
-    )
-    sinks = Places(
-        np.concatenate([course.position[course.first[:-1]], start, _positions(bases)]),
-        np.concatenate([flown_agl_m, np.full(uavs + ways.bases, transit_m)]),
-        np.full(visits + uavs + ways.bases, np.nan) if ground is None else ground.sink_m,
-    )
-    of_class = [_ClassTaken.of(graph, ways, flying, sources, sinks, course, ground, conditions, rules) for flying in numbers]
-    seconds, wh = (_taken(of_class, quantity, class_of, finishes, ways) for quantity in range(2))
+    course = np.array(list(chain.from_iterable(courses)), dtype=np.float64).reshape(-1, 2)
+    course_first = np.array([0, *accumulate(map(len, courses))], dtype=np.int64)
+    stands = np.array([*starts, *bases], dtype=np.float64).reshape(-1, 2)
+    flown = np.array([agl_m, hold_s], dtype=np.float64)
+    ends = np.array([(_ENDS[finish.end], finish.lands) for finish in finishes], dtype=np.int64).reshape(-1, 2)
+    source_m, sink_m = (_NOT_KNOWN, _NOT_KNOWN) if ground is None else (ground.source_m, ground.sink_m)
+    own_class = np.array(class_of, dtype=np.int64)
+    first, end = np.empty((2, uavs, visits)), np.empty((2, visits, uavs))
+    onward, at_visit = np.empty((2, len(numbers), visits, visits)), np.empty((2, 2, len(numbers), visits))
+    for flying, number in numbers.items():
+        taken = graph_taken(graph, flying, conditions, rules, ground)
+        _fill(
+            number, own_class, ends, ways.nearest_base, course, course_first, stands, flown, source_m, sink_m, float(rules.transit_agl_m),
+            travel.way, travel.entry_leg, travel.entry_label, travel.leg_node, *chain_arrays(travel.index),
+            taken.sums.place, taken.sums.label, graph.position, taken.passed_m, taken.ground_m,
+            taken.air.wind, taken.air.temperature_c, taken.air.own, taken.air.table, first, onward, end, at_visit,
+        )  # fmt: skip
+    seconds, wh = (Taken(first[part], onward[part], end[part], *at_visit[part]) for part in range(2))
     usable_wh = [flying.performance.usable_wh for flying in classes]
     return FlightCosts(seconds, wh, class_of, np.array([np.inf if one is None else one for one in usable_wh], dtype=np.float64))
 
 
-def _positions(places: Sequence[LonLat]) -> FloatArray:
-    return np.array(places, dtype=np.float64).reshape(-1, 2)
+_NOT_KNOWN = np.zeros(0)
+_ENDS = {End.OPEN: 0, End.RETURN: 1, End.ANY_BASE: 2}
+_OPEN, _RETURN = _ENDS[End.OPEN], _ENDS[End.RETURN]
 
-
-class _Courses(NamedTuple):
-    """The courses of visits one after another, where each begins (v + 1,), and how high and for how long each visit is done (v,)."""
-
-    position: FloatArray
-    first: IntArray
-    agl_m: FloatArray
-    hold_s: FloatArray
-
-    @classmethod
-    def of(cls, courses: Sequence[Sequence[LonLat]], agl_m: Sequence[float], hold_s: Sequence[float]) -> "_Courses":
-        first = np.array([0, *accumulate(map(len, courses))], dtype=np.int64)
-        together = _positions(list(chain.from_iterable(courses)))
-        return cls(together, first, np.array(agl_m, dtype=np.float64), np.array(hold_s, dtype=np.float64))
-
-
-class _ClassTaken(NamedTuple):
-    """What UAVs of one class take, seconds first, then Wh: on ways (2, s, t), at visits (v, VISIT_PARTS, 2), and straight up and down."""
-
-    ways: FloatArray
-    visits: FloatArray
-    columns: FloatArray
-
-    @classmethod
-    def of(
-        cls,
-        graph: InspectionGraph,
-        ways: Ways,
-        flying: FlightClass,
-        sources: Places,
-        sinks: Places,
-        course: _Courses,
-        ground: NodeGround | None,
-        conditions: Conditions,
-        rules: FlightRules,
-    ) -> "_ClassTaken":
-        air = Air.of(flying, conditions, rules)
-        visits, columns = _at_visits(*course, sources.ground_m, float(rules.transit_agl_m), air.wind, air.temperature_c, air.own, air.table)
-        visits[:, :, 1] /= J_PER_WH
-        columns[:, 1] /= J_PER_WH
-        return cls(taken_on_ways(graph, ways.travel, flying, sources, sinks, conditions, rules, ground), visits, columns)
-
-
-# What _at_visits tells of each visit: what is done there, with the way down; the way up again; the landing there; the stretch.
-SERVICE, UP, LANDING_THERE, ALONG = range(4)
+# What _at_visits tells of each visit: the stretch; what is done there, with the way down; the way up again; the landing there.
+ALONG, SERVICE, UP, LANDING_THERE = range(4)
 TAKE_OFF, LANDING = range(2)
 
 
-def _taken(of_class: Sequence[_ClassTaken], quantity: int, class_of: Sequence[int], finishes: Sequence[Finish], ways: Ways) -> Taken:
-    uavs, visits = ways.uavs, ways.visits
-    first, end = np.empty((uavs, visits)), np.zeros((visits, uavs))
-    onward, service, along = np.empty((len(of_class), visits, visits)), np.empty((len(of_class), visits)), np.empty((len(of_class), visits))
-    for number, found in enumerate(of_class):
-        at_visits = found.visits[:, :, quantity]
-        service[number], along[number] = at_visits[:, SERVICE], at_visits[:, ALONG]
-        np.add(found.ways[quantity, uavs:, :visits], at_visits[:, UP, None], out=onward[number])
-    for uav, (number, finish) in enumerate(zip(class_of, finishes, strict=True)):
-        found = of_class[number]
-        first[uav] = found.ways[quantity, uav, :visits] + found.columns[TAKE_OFF, quantity]
-        if finish.end is End.OPEN:
-            end[:, uav] = found.visits[:, LANDING_THERE, quantity] if finish.lands else 0.0
-            continue
-        home: int | IntArray = visits + uav if finish.end is End.RETURN else visits + uavs + ways.nearest_base
-        end[:, uav] = found.ways[quantity, uavs + np.arange(visits), home] + found.visits[:, UP, quantity]
-        if finish.lands:
-            end[:, uav] += found.columns[LANDING, quantity]
-    # What cannot be done in this wind cannot be flown to.
-    closed = np.isinf(service) | np.isinf(along)
-    if closed.any():
-        first[closed[list(class_of)]] = np.inf
-        onward[np.broadcast_to(closed[:, None, :], onward.shape)] = np.inf
-        service[closed] = along[closed] = 0.0
-    return Taken(first, onward, end, along, service)
+@njit(cache=True, nogil=True)
+def _fill(
+    number: int,
+    class_of: IntArray,
+    ends: IntArray,
+    nearest_base: IntArray,
+    course: FloatArray,
+    course_first: IntArray,
+    stands: FloatArray,
+    flown: FloatArray,
+    source_ground_m: FloatArray,
+    sink_ground_m: FloatArray,
+    transit_m: float,
+    way: NumberArray,
+    entry_leg: NumberArray,
+    entry_label: IntArray,
+    leg_node: NumberArray,
+    node_chain: NumberArray,
+    node_place: NumberArray,
+    chain_first: NumberArray,
+    place_sum: FloatArray,
+    label_sum: FloatArray,
+    node_position: FloatArray,
+    passed_m: FloatArray,
+    node_ground_m: FloatArray,
+    wind: FloatArray,
+    temperature_c: float,
+    own: Speeds,
+    table: FloatArray,
+    first: FloatArray,
+    onward: FloatArray,
+    end: FloatArray,
+    at_visit: FloatArray,
+) -> None:
+    """Write what UAVs of one class take into first (2, u, v), onward (2, c, v, v), end (2, v, u) and at_visit (2, along or service, c, v).
+
+    course: the visits' courses one after another; stands: the starts, then the bases; flown: height and hold of each visit; ends (u, 2):
+    where each UAV ends, and whether it lands.
+    """
+    uavs, visits = len(class_of), len(course_first) - 1
+    source, sink = np.full((uavs + visits, 4), np.nan), np.full((visits + len(stands), 4), np.nan)
+    for uav in range(len(stands)):
+        sink[visits + uav, :2], sink[visits + uav, 2] = stands[uav], transit_m
+    source[:uavs] = sink[visits : visits + uavs]
+    for visit in range(visits):
+        source[uavs + visit, :2], sink[visit, :2] = course[course_first[visit + 1] - 1], course[course_first[visit]]
+        source[uavs + visit, 2] = sink[visit, 2] = max(flown[0, visit], transit_m)
+    if len(source_ground_m):
+        source[:, 3], sink[:, 3] = source_ground_m, sink_ground_m
+    taken = taken_on_ways(
+        way, entry_leg, entry_label, leg_node, node_chain, node_place, chain_first, place_sum, label_sum,
+        node_position, passed_m, node_ground_m, source, sink, wind, temperature_c, own, table,
+    )  # fmt: skip
+    parts, columns = _at_visits(course, course_first, flown, source[:, 3], transit_m, wind, temperature_c, own, table)
+    for part in range(2):
+        for visit in range(visits):
+            # What cannot be done in this wind cannot be flown to.
+            is_closed = math.isinf(parts[part, SERVICE, visit]) or math.isinf(parts[part, ALONG, visit])
+            for kind in (ALONG, SERVICE):
+                at_visit[part, kind, number, visit] = 0.0 if is_closed else parts[part, kind, visit]
+            for other in range(visits):
+                onward[part, number, other, visit] = np.inf if is_closed else parts[part, UP, other] + taken[part, uavs + other, visit]
+            for uav in range(uavs):
+                if class_of[uav] != number:
+                    continue
+                first[part, uav, visit] = np.inf if is_closed else columns[part, TAKE_OFF] + taken[part, uav, visit]
+                landing = columns[part, LANDING]
+                if ends[uav, 0] == _OPEN:
+                    end[part, visit, uav], landing = 0.0, parts[part, LANDING_THERE, visit]
+                else:
+                    home = visits + (uav if ends[uav, 0] == _RETURN else uavs + nearest_base[visit])
+                    end[part, visit, uav] = parts[part, UP, visit] + taken[part, uavs + visit, home]
+                if ends[uav, 1]:
+                    end[part, visit, uav] += landing
 
 
 @njit(cache=True, nogil=True)
 def _at_visits(
     course: FloatArray,
     course_first: IntArray,
-    agl_m: FloatArray,
-    hold_s: FloatArray,
+    flown: FloatArray,
     ground_m: FloatArray,
     transit_m: float,
     wind: FloatArray,
@@ -197,40 +206,43 @@ def _at_visits(
     own: Speeds,
     table: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Seconds and joules of each visit's parts, (v, 4, 2), and of take-off to transit height and landing from there, (2, 2).
+    """Seconds and Wh of each visit's parts, (2, 4, v), and of take-off to transit height and landing from there, (2, 2).
 
     ground_m is of the starts and then of the visits, NaN where not known. The columns are those of the highest start: in the thinnest air.
     """
-    parts, columns = np.zeros((len(agl_m), 4, 2)), np.zeros((2, 2))
-    uavs = len(ground_m) - len(agl_m)
-    for visit in range(len(agl_m)):
-        level_m = agl_m[visit]
+    visits = len(course_first) - 1
+    uavs = len(ground_m) - visits
+    parts, columns = np.zeros((2, 4, visits)), np.zeros((2, 2))
+    for visit in range(visits):
+        level_m = flown[0, visit]
         low_m = min(level_m, transit_m)
         known_m = ground_m[uavs + visit]
         density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, temperature_c)
         east_mps, north_mps = wind_in_table(wind, level_m)
-        seconds, joules = hold_taken(hold_s[visit], east_mps, north_mps, density, own, table)
+        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = hold_taken(flown[1, visit], east_mps, north_mps, density, own, table)
         for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
             east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
             length_m = math.hypot(east, north)
             if length_m > 0.0:
                 along = leg_taken(length_m, east / length_m, north / length_m, 0.0, east_mps, north_mps, density, own, table)
-                parts[visit, ALONG, 0] += along[0]
-                parts[visit, ALONG, 1] += along[1]
+                parts[0, ALONG, visit] += along[0]
+                parts[1, ALONG, visit] += along[1]
         east_mps, north_mps = wind_in_table(wind, 0.5 * (low_m + transit_m))
         down = leg_taken(0.0, 0.0, 0.0, low_m - transit_m, east_mps, north_mps, density, own, table)
         up = leg_taken(0.0, 0.0, 0.0, transit_m - low_m, east_mps, north_mps, density, own, table)
         east_mps, north_mps = wind_in_table(wind, 0.5 * level_m)
         landing = leg_taken(0.0, 0.0, 0.0, -level_m, east_mps, north_mps, density, own, table)
-        parts[visit, SERVICE, 0], parts[visit, SERVICE, 1] = seconds + down[0], joules + down[1]
-        parts[visit, UP, 0], parts[visit, UP, 1] = up
-        parts[visit, LANDING_THERE, 0], parts[visit, LANDING_THERE, 1] = landing
+        for part in range(2):
+            parts[part, SERVICE, visit] += down[part]
+            parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part]
     highest_m = 0.0
     for uav in range(uavs):
         if not math.isnan(ground_m[uav]):
             highest_m = max(highest_m, ground_m[uav])
     density = air_density(highest_m, temperature_c)
     east_mps, north_mps = wind_in_table(wind, 0.5 * transit_m)
-    columns[TAKE_OFF, 0], columns[TAKE_OFF, 1] = leg_taken(0.0, 0.0, 0.0, transit_m, east_mps, north_mps, density, own, table)
-    columns[LANDING, 0], columns[LANDING, 1] = leg_taken(0.0, 0.0, 0.0, -transit_m, east_mps, north_mps, density, own, table)
+    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, transit_m, east_mps, north_mps, density, own, table)
+    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, -transit_m, east_mps, north_mps, density, own, table)
+    parts[1] /= J_PER_WH
+    columns[1] /= J_PER_WH
     return parts, columns

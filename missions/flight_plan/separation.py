@@ -119,10 +119,12 @@ def timed_route(
 def raised_agl_m(points: RoutePoints, layer_m: float, *, lands: bool, rules: FlightRules) -> FloatArray | None:
     """Heights above ground of a route whose transit is flown a layer higher, (n,); None where that is above the greatest height.
 
-    Targets, and the points between two ends of one, are flown as high as before; likewise the end of a route that hovers over its last.
+    Targets, and the points between two ends of one, are flown as high as before; likewise the end of a route that
+    hovers over its last, or lands there.
     """
     is_transit = (points.kind != TARGET) & (points.target == NONE)
-    if not lands:
+    ends_at_target = not lands or len(points) < 2 or (points.position[-1] == points.position[-2]).all()
+    if ends_at_target:
         is_transit &= points.kind != END
     agl_m: FloatArray = np.where(is_transit, points.agl_m + layer_m, points.agl_m)
     return agl_m if (agl_m[is_transit] <= rules.max_agl_m).all() else None

@@ -13,12 +13,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.short_vector import short_vector_m
-from inspection.graph.along_ways import Sums, leg_of_way, quantities_of_ways, steps_of_graph, sums_along
+from inspection.graph.along_ways import Sums, leg_of_way, quantities_of_pairs, steps_of_graph, sums_along
 from inspection.graph.condensed import NumberArray
 from inspection.graph.flyable import node_heights_m
+from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.route_index import route_index
-from inspection.graph.ways import DIRECT, Travel
+from inspection.graph.ways import DIRECT
 from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
 from missions.flight_plan.heights import pass_agl_m
 from missions.flight_plan.leg_taken import J_PER_WH, Speeds, leg_taken, speeds, table_of
@@ -28,7 +29,7 @@ from missions.flight_plan.rules import FlightRules
 FloatArray = NDArray[np.float64]
 
 NO_HEADWAY = 1e9  # seconds and joules of a step against too strong a wind: sums of it stay numbers, and a way with it is no way
-MOST_BYTES = 100 * 2**20  # of sums kept for one graph; a graph of 200,000 nodes takes some 20 MB for each wind and kind of UAV
+MOST_BYTES = 100 * 2**20  # of sums kept for one graph; of 200,000 nodes they take 10 MB for each wind and kind of UAV
 
 
 @dataclass(frozen=True)
@@ -48,14 +49,6 @@ class NodeGround:
     sink_m: FloatArray
 
 
-class Places(NamedTuple):
-    """position (n, 2) lon, lat [deg]; the height above ground at which they are flown, and of the ground above the sea, NaN if unknown."""
-
-    position: FloatArray
-    agl_m: FloatArray
-    ground_m: FloatArray
-
-
 class Air(NamedTuple):
     """What is flown in, and how, as compiled code reads it."""
 
@@ -70,44 +63,27 @@ class Air(NamedTuple):
         return cls(conditions.wind_table, float(conditions.temperature_c), own, table_of(flying.performance, own.climb_mps))
 
 
-def taken_on_ways(
-    graph: InspectionGraph,
-    travel: Travel,
-    flying: FlightClass,
-    sources: Places,
-    sinks: Places,
-    conditions: Conditions,
-    rules: FlightRules,
-    ground: NodeGround | None,
-) -> FloatArray:
-    """Seconds and Wh of the way from each source to each sink, (2, s, t); inf where there is none, or the wind closes it."""
-    kept = _kept_of(graph, flying, conditions, rules, ground)
-    air = Air.of(flying, conditions, rules)
-    out, back, direct = _ends_of_ways(
-        travel.way, travel.entry_leg, travel.leg_node, graph.position, kept.passed_m, kept.ground_m, *sources, *sinks,
-        air.wind, air.temperature_c, air.own, air.table,
-    )  # fmt: skip
-    taken = quantities_of_ways(travel, kept.sums, out, back, direct)
-    taken[:, (taken >= NO_HEADWAY / 2.0).any(axis=0)] = np.inf
-    taken[1] /= J_PER_WH
-    return taken
+class GraphTaken(NamedTuple):
+    """Sums along the graph's chains and labels, in the air in which they are flown; the height at which each node is passed; its ground.
 
-
-class _Kept(NamedTuple):
-    """Sums, the height at which each node is passed, and the nodes' ground, empty where not known."""
+    ground_m is empty where not known.
+    """
 
     sums: Sums
+    air: Air
     passed_m: FloatArray
     ground_m: FloatArray
 
 
 _NOT_KNOWN = np.zeros(0)
-_kept: WeakKeyDictionary[InspectionGraph, "OrderedDict[Hashable, _Kept]"] = WeakKeyDictionary()
+_kept: WeakKeyDictionary[InspectionGraph, "OrderedDict[Hashable, GraphTaken]"] = WeakKeyDictionary()
 _one_thread = Lock()
 
 
-def _kept_of(graph: InspectionGraph, flying: FlightClass, conditions: Conditions, rules: FlightRules, ground: NodeGround | None) -> _Kept:
-    """What was used last is kept, within MOST_BYTES for a graph."""
+def graph_taken(
+    graph: InspectionGraph, flying: FlightClass, conditions: Conditions, rules: FlightRules, ground: NodeGround | None
+) -> GraphTaken:
+    """What every step of the graph takes, summed up. What was used last is kept, within MOST_BYTES for a graph."""
     ground_m = _NOT_KNOWN if ground is None else ground.node_m
     key = (flying, conditions, rules, id(ground_m))  # which is held with what is kept, so that no other has its number
     with _one_thread:
@@ -122,7 +98,7 @@ def _kept_of(graph: InspectionGraph, flying: FlightClass, conditions: Conditions
         condensed.chain_first, condensed.place_node, steps.length_m, steps.east, steps.north, passed_m, ground_m,
         air.wind, air.temperature_c, air.own, air.table,
     )  # fmt: skip
-    kept = _Kept(sums_along(graph, taken), passed_m, ground_m)
+    kept = GraphTaken(sums_along(graph, taken), air, passed_m, ground_m)
     with _one_thread:
         kept_of_graph[key] = kept
         while len(kept_of_graph) > 1 and sum(one.sums.nbytes for one in kept_of_graph.values()) > MOST_BYTES:
@@ -181,71 +157,74 @@ def _steps_taken(
 
 
 @njit(cache=True, nogil=True)
-def _straight(
-    start: FloatArray,
-    start_agl_m: float,
-    start_ground_m: float,
-    end: FloatArray,
-    end_agl_m: float,
-    end_ground_m: float,
+def taken_on_ways(
+    way: NumberArray,
+    entry_leg: NumberArray,
+    entry_label: IntArray,
+    leg_node: NumberArray,
+    node_chain: NumberArray,
+    node_place: NumberArray,
+    chain_first: NumberArray,
+    place_sum: FloatArray,
+    label_sum: FloatArray,
+    node_position: FloatArray,
+    passed_m: FloatArray,
+    node_ground_m: FloatArray,
+    source: FloatArray,
+    sink: FloatArray,
     wind: FloatArray,
     temperature_c: float,
     own: Speeds,
     table: FloatArray,
+) -> FloatArray:
+    """Seconds and Wh of the way from each source to each sink, (2, s, t); inf where there is none, or the wind closes it.
+
+    source (s, 4) and sink (t, 4): lon, lat [deg], the height above ground at which it is left or come to, and the ground above sea level
+    there, NaN where not known.
+    """
+    legs = len(leg_node)
+    out, back = np.full((legs, 2), np.nan), np.full((legs, 2), np.nan)
+    direct = np.full((len(source), len(sink), 2), np.inf)
+    node_at = np.empty(4)
+    for start in range(len(source)):
+        for end in range(len(sink)):
+            if way[start, end, 0] == DIRECT:
+                direct[start, end, 0], direct[start, end, 1] = _straight(source[start], sink[end], wind, temperature_c, own, table)
+                continue
+            left, right = leg_of_way(way[start, end, 0], entry_leg), leg_of_way(way[start, end, 1], entry_leg)
+            if left >= 0 and math.isnan(out[left, 0]):
+                _put_node(node_at, leg_node[left], node_position, passed_m, node_ground_m)
+                out[left, 0], out[left, 1] = _straight(source[start], node_at, wind, temperature_c, own, table)
+            if right >= 0 and math.isnan(back[right, 0]):
+                _put_node(node_at, leg_node[right], node_position, passed_m, node_ground_m)
+                back[right, 0], back[right, 1] = _straight(node_at, sink[end], wind, temperature_c, own, table)
+    taken = quantities_of_pairs(
+        way, leg_node, entry_leg, entry_label, out, back, direct, place_sum, label_sum, node_chain, node_place, chain_first
+    )
+    for start in range(len(source)):
+        for end in range(len(sink)):
+            if taken[0, start, end] >= NO_HEADWAY / 2.0 or taken[1, start, end] >= NO_HEADWAY / 2.0:
+                taken[0, start, end] = taken[1, start, end] = np.inf
+            else:
+                taken[1, start, end] /= J_PER_WH
+    return taken
+
+
+@njit(cache=True, nogil=True)
+def _put_node(at: FloatArray, node: int, node_position: FloatArray, passed_m: FloatArray, node_ground_m: FloatArray) -> None:
+    at[0], at[1], at[2] = node_position[node, 0], node_position[node, 1], passed_m[node]
+    at[3] = node_ground_m[node] if len(node_ground_m) else np.nan
+
+
+@njit(cache=True, nogil=True)
+def _straight(
+    start: FloatArray, end: FloatArray, wind: FloatArray, temperature_c: float, own: Speeds, table: FloatArray
 ) -> tuple[float, float]:
-    """Seconds and joules of the straight leg between two positions lon, lat [deg]."""
+    """Seconds and joules of the straight leg between two places, each as in taken_on_ways."""
     east, north = short_vector_m(start[0], start[1], end[0], end[1])
     length_m = math.hypot(east, north)
     if length_m > 0.0:
         east, north = east / length_m, north / length_m
-    rise_m, density = _rise_and_density(start_agl_m, start_ground_m, end_agl_m, end_ground_m, temperature_c)
-    east_mps, north_mps = wind_in_table(wind, 0.5 * (start_agl_m + end_agl_m))
+    rise_m, density = _rise_and_density(start[2], start[3], end[2], end[3], temperature_c)
+    east_mps, north_mps = wind_in_table(wind, 0.5 * (start[2] + end[2]))
     return leg_taken(length_m, east, north, rise_m, east_mps, north_mps, density, own, table)
-
-
-@njit(cache=True, nogil=True)
-def _ends_of_ways(
-    way: NumberArray,
-    entry_leg: NumberArray,
-    leg_node: NumberArray,
-    node_position: FloatArray,
-    passed_m: FloatArray,
-    node_ground_m: FloatArray,
-    source_position: FloatArray,
-    source_agl_m: FloatArray,
-    source_ground_m: FloatArray,
-    sink_position: FloatArray,
-    sink_agl_m: FloatArray,
-    sink_ground_m: FloatArray,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Seconds and joules of the legs by which ways leave sources and come to sinks, (legs, 2) each, and of direct legs, (s, t, 2)."""
-    legs = len(leg_node)
-    out, back = np.full((legs, 2), np.nan), np.full((legs, 2), np.nan)
-    direct = np.full((way.shape[0], way.shape[1], 2), np.inf)
-    for source in range(way.shape[0]):
-        for sink in range(way.shape[1]):
-            if way[source, sink, 0] == DIRECT:
-                direct[source, sink, 0], direct[source, sink, 1] = _straight(
-                    source_position[source], source_agl_m[source], source_ground_m[source],
-                    sink_position[sink], sink_agl_m[sink], sink_ground_m[sink], wind, temperature_c, own, table,
-                )  # fmt: skip
-                continue
-            left, right = leg_of_way(way[source, sink, 0], entry_leg), leg_of_way(way[source, sink, 1], entry_leg)
-            if left >= 0 and math.isnan(out[left, 0]):
-                node = leg_node[left]
-                out[left, 0], out[left, 1] = _straight(
-                    source_position[source], source_agl_m[source], source_ground_m[source],
-                    node_position[node], passed_m[node], node_ground_m[node] if len(node_ground_m) else np.nan,
-                    wind, temperature_c, own, table,
-                )  # fmt: skip
-            if right >= 0 and math.isnan(back[right, 0]):
-                node = leg_node[right]
-                back[right, 0], back[right, 1] = _straight(
-                    node_position[node], passed_m[node], node_ground_m[node] if len(node_ground_m) else np.nan,
-                    sink_position[sink], sink_agl_m[sink], sink_ground_m[sink], wind, temperature_c, own, table,
-                )  # fmt: skip
-    return out, back, direct

@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from missions.routing.problem import FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
+from missions.routing.problem import Amounts, FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
+
+MOST_WAYS = 8  # through a locked run between the same two visits: all for up to three stretches between its ends
 
 
 @dataclass(frozen=True)
@@ -62,10 +64,11 @@ def reduced(problem: Problem) -> Reduced:
     last = np.array([run.visits[-1] for run in ways], dtype=np.int64)
     between_m = problem.between_m[np.ix_(last, first)]
     allowed = np.ones((len(problem.uavs), len(problem.visits)), dtype=bool) if problem.allowed is None else problem.allowed
+    owner_of = np.array(problem.owner) if problem.owner else np.arange(len(problem.uavs))
     allowed = np.array([allowed[:, list(run.visits)].all(axis=1) for run in ways], dtype=bool).reshape(len(ways), len(problem.uavs)).T
     for index, wish in enumerate(owner):
         if wish is not None:
-            allowed[:, index] &= np.arange(len(problem.uavs)) == wish.uav
+            allowed[:, index] &= owner_of == owner_of[wish.uav]
             if wish.at_start:
                 between_m[:, index] = np.inf
             if wish.at_end:
@@ -84,10 +87,22 @@ def reduced(problem: Problem) -> Reduced:
             priorities=(),
             locks=(),
             weights=_weights(problem, targets_of, len(free)),
+            seconds=None if problem.seconds is None else _of_runs(problem.seconds, ways),
+            wh=None if problem.wh is None else _of_runs(problem.wh, ways),
         ),
         tuple(run.visits for run in ways),
         targets_of,
     )
+
+
+def _of_runs(amounts: Amounts, ways: Sequence[_Run]) -> Amounts:
+    """What whole runs take, along the ways between their visits too."""
+    inside = [
+        amounts.at_visit[:, list(run.visits)].sum(axis=1) + amounts.onward[:, list(run.visits[:-1]), list(run.visits[1:])].sum(axis=1)
+        for run in ways
+    ]
+    first, last = np.array([run.visits[0] for run in ways], dtype=np.int64), np.array([run.visits[-1] for run in ways], dtype=np.int64)
+    return amounts.taken(first, last, np.array(inside, dtype=np.float64).reshape(len(ways), len(amounts.onward)).T)
 
 
 def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int) -> FloatArray:
@@ -103,13 +118,20 @@ def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int)
 
 
 def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> list[_Run]:
-    """The shortest way through one visit of each target, for each first and each last visit that has one."""
+    """The shortest way through one visit of each target, for each first and each last visit that has one.
+
+    Where seconds or Wh are not as the metres, up to so many of the shortest: each may be the best by what counts.
+    """
+    most = 1 if problem.seconds is None and problem.wh is None else MOST_WAYS
     runs = []
     for first in alternatives[0]:
-        ways = {first: _Run((first,), problem.visits[first].length_m)}
+        ways = {first: [_Run((first,), problem.visits[first].length_m)]}
         for visits in alternatives[1:]:
-            ways = {visit: min((_onward(problem, run, visit) for run in ways.values()), key=lambda run: run.length_m) for visit in visits}
-        runs += [run for run in ways.values() if np.isfinite(run.length_m)]
+            ways = {
+                visit: sorted((_onward(problem, run, visit) for runs in ways.values() for run in runs), key=lambda run: run.length_m)[:most]
+                for visit in visits
+            }
+        runs += [run for found in ways.values() for run in found if np.isfinite(run.length_m)]
     return runs
 
 

@@ -16,8 +16,9 @@ from scipy.spatial import cKDTree
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.access import clear_legs
+from inspection.graph.access import band_of_legs
 from inspection.graph.condensed import CORE
+from inspection.graph.flown_heights import asset_heights_m
 from inspection.graph.inspection_graph import InspectionGraph, NodeKind
 from inspection.graph.legs import Attachments, joined
 from inspection.graph.nearness import chord
@@ -27,7 +28,7 @@ from inspection.graph.route_index import node_tree, route_index
 from inspection.graph.spread import Crossroads, crossroads, spread
 from inspection.graph.zone_index import ZoneIndex
 from missions.routing.problem import End
-from missions.routing.terminals import AccessRules
+from missions.routing.terminals import AccessRules, Terminal, access_legs, direct_legs
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -35,6 +36,7 @@ BoolArray = NDArray[np.bool_]
 
 SAME_PLACE_M = 1.0  # nodes nearer than that have become one
 NEAREST_LEGS = 24  # of a node that no flight gets to over the network, as `clear_legs` gives a target
+MOST_ROUND = 40  # nodes from which legs round zones are looked for
 TRIED_LEGS = (1, 8, 64)  # of the nearest to each part of the network: more, where all of these meet zones
 
 
@@ -176,8 +178,10 @@ def _reach_of_nodes(
     able_m, flight = np.full(count, np.inf), np.full(count, -1, dtype=np.int16)
     missing_m = np.full(count, np.inf)
     places = list(dict.fromkeys(flight.position for flight in flights))
-    legs = [_legs(graph, zones, place, rules) for place in places]
-    base_legs = [_legs(graph, zones, base, rules) for base in bases] if any(one.end is End.ANY_BASE for one in flights) else []
+    legs = [access_legs(graph, zones, Terminal(place), rules) for place in places]
+    base_legs = (
+        [access_legs(graph, zones, Terminal(base), rules) for base in bases] if any(one.end is End.ANY_BASE for one in flights) else []
+    )
     islands = _Islands.of(graph, zones, joined(legs), joined(base_legs), rules)
     scene = _Scene(graph, zones, rules, islands, crossroads(route_index(graph).condensed))
     to_base_m = scene.least_m(bases, joined(base_legs)) if base_legs else np.full(count, np.inf)
@@ -195,10 +199,6 @@ def _reach_of_nodes(
     verdict[np.isfinite(missing_m)] = Verdict.BEYOND_RANGE
     verdict[flight >= 0] = Verdict.REACHABLE
     return _Nodes(verdict, flight, np.where(verdict == Verdict.BEYOND_RANGE, missing_m, 0.0), np.full(count, -1, dtype=np.int32))
-
-
-def _legs(graph: InspectionGraph, zones: ZoneIndex, place: LonLat, rules: AccessRules) -> Attachments:
-    return clear_legs(graph, zones, place, radius_m=rules.access_leg_m, factor=rules.off_network_factor, clearance_m=rules.zone_clearance_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,6 +233,8 @@ class _Islands:
                 waiting = np.setdiff1d(waiting, found[-1][0])
                 if not len(waiting) or len(nodes) <= tried:
                     break
+        if len(zones):
+            found += look.legs_round(np.setdiff1d(left, np.concatenate([node for node, _, _ in found])), known, component)
         return cls(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
@@ -270,8 +272,27 @@ class _Look:
         length_m = distance_m(position[node], position[other])
         kept = length_m <= self.rules.access_leg_m
         if len(self.zones):
-            kept &= ~self.zones.meets(position[node], position[other], self.rules.zone_clearance_m)
+            kept &= ~self._meets(node, other)
         return node[kept], other[kept], length_m[kept]
+
+    def _meets(self, node: IntArray, other: IntArray) -> BoolArray:
+        position, clearance_m, heights = self.graph.position, self.rules.zone_clearance_m, self.rules.heights
+        if heights is None:
+            return self.zones.meets(position[node], position[other], clearance_m)
+        low_m, high_m = heights.band_m(asset_heights_m(self.graph.node_kind, self.graph.node_height_m))
+        low_m, high_m = np.minimum(low_m[node], low_m[other]), np.maximum(high_m[node], high_m[other])
+        return self.zones.meets(position[node], position[other], clearance_m, low_m, high_m)
+
+    def legs_round(self, nodes: IntArray, known: BoolArray, component: NDArray[np.int32]) -> list[tuple[IntArray, IntArray, FloatArray]]:
+        """What a plan would find for each of the nodes, of no more than some: legs round zones are looked for one by one."""
+        found = []
+        for node in nodes[:MOST_ROUND].tolist():
+            place = Terminal(LonLat(*self.graph.position[node].tolist()))
+            legs = access_legs(self.graph, self.zones, place, self.rules)
+            counts = known[component[legs.node]] & (component[legs.node] != component[node])
+            other = legs.node[counts].astype(np.int64)
+            found.append((np.full(len(other), node, dtype=np.int64), other, legs.length_m[counts]))
+        return found
 
 
 def components_of_nodes(graph: InspectionGraph) -> NDArray[np.int32]:
@@ -320,9 +341,19 @@ class _Scene:
         better = (straight_m <= rules.direct_leg_m) & (rules.off_network_factor * straight_m <= cost[within])
         within, straight_m = within[better], straight_m[better]
         if len(within) and len(self.zones):
-            clear = ~self.zones.meets([place], position[within], rules.zone_clearance_m)
+            clear = ~self.zones.meets(
+                [place], position[within], rules.zone_clearance_m, *band_of_legs(self.graph, within, rules.heights, 0.0)
+            )
+            self._round(place, within[~clear & np.isinf(cost[within])], cost, length_m)
             within, straight_m = within[clear], straight_m[clear]
         cost[within], length_m[within] = rules.off_network_factor * straight_m, straight_m
+
+    def _round(self, place: LonLat, nodes: IntArray, cost: FloatArray, length_m: FloatArray) -> None:
+        """Nodes that nothing else reaches, round the zones that stand before them."""
+        for node in nodes[:MOST_ROUND].tolist():
+            target = Terminal(LonLat(*self.graph.position[node].tolist()))
+            for leg in direct_legs([Terminal(place)], [target], self.zones, self.rules):
+                cost[node], length_m[node] = leg.cost, leg.length_m
 
 
 def _of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, nodes: _Nodes) -> Reach:

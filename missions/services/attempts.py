@@ -11,6 +11,7 @@ from missions.routing.solver import Stop
 from missions.routing.terminals import Terminal, ways_between
 from missions.services.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch
+from missions.services.counted import counted, needs_counting
 from missions.services.drawing import Drawing
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
@@ -56,8 +57,9 @@ def attempt(
     on_progress: OnPlanProgress,
     seed: int,
     search_s: float,
+    usable_share: Mapping[int, float],
 ) -> Attempt:
-    """every_place: the request's targets on the ground, `gone` those that are no longer there."""
+    """every_place: the request's targets on the ground, `gone` those that are no longer there; usable_share as in `assignment`."""
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]
@@ -67,7 +69,10 @@ def attempt(
 
     on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
     agl_m = [inspection_agl_m(place_height_m(place, scene), scene.flight) for place in places]
-    takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
+    counts = needs_counting(request)
+    takes_s = None
+    if not counts:
+        takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
     visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
@@ -78,8 +83,9 @@ def attempt(
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
     )
-    ready = [least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
-    asked = assignment(request, uavs, places, visits, ways, grounded, ready)
+    costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
+    ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
+    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share)
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )

@@ -7,9 +7,11 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
+from inspection.graph.ways import BEND
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.timing import timing
+from missions.flight_plan.waypoints import NONE
 from missions.models import EndAction
 from missions.routing.problem import Routes, Visit
 from missions.routing.terminals import Ways
@@ -102,12 +104,14 @@ class Drawing:
         """What is passed on the ways of each route, looked up for all of them at once."""
         if not ways:
             return []
-        graph = self.scene.graph
-        nodes, first = self.ways.travel.paths(np.array(list(chain.from_iterable(ways)), dtype=np.int64))
-        position, asset = graph.position[nodes], graph.node_asset[nodes]
-        agl_m = pass_agl_m(node_heights_m(graph, nodes), self.scene.flight)
+        graph, flight = self.scene.graph, self.scene.flight
+        told = self.ways.travel.passed(np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
+        is_node = told.node != BEND
+        nodes = told.node[is_node]
+        asset, agl_m = np.full(len(told.node), NONE, dtype=np.int64), np.full(len(told.node), flight.transit_agl_m)
+        asset[is_node], agl_m[is_node] = graph.node_asset[nodes], pass_agl_m(node_heights_m(graph, nodes), flight)
         passed = []
         for begin, end in pairwise([0, *accumulate(map(len, ways))]):
-            own = slice(first[begin], first[end])
-            passed.append(PassedNodes(position[own], agl_m[own], asset[own], first[begin : end + 1] - first[begin]))
+            own = slice(told.first[begin], told.first[end])
+            passed.append(PassedNodes(told.position[own], agl_m[own], asset[own], told.first[begin : end + 1] - told.first[begin]))
         return passed

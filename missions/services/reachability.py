@@ -19,7 +19,7 @@ from missions.services.scenes import scene_on
 from missions.services.zone_choice import zone_choice
 
 Box = tuple[float, float, float, float]
-ENDS = {EndAction.HOVER: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
+ENDS = {EndAction.HOVER: End.OPEN, EndAction.LAND: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
 CODES = {
     Verdict.PARTLY: "partly_reachable",
     Verdict.BEYOND_RANGE: "beyond_range",
@@ -122,7 +122,7 @@ def _message(why: Verdict, zone: int, missing_m: np.ndarray, graph: InspectionGr
         words = _("The range of every UAV is too short: by %(least)s at the nearest, by %(most)s at the farthest.")
         return words % {"least": _km(float(missing_m.min())), "most": _km(float(missing_m.max()))}
     if why is Verdict.CUT_OFF:
-        words = _("No UAV gets there on a way that keeps clear of every zone: along the network, or up to %(km)s beside it.")
+        words = _("No way that keeps clear of every zone was found: along the network, or up to %(km)s beside it.")
         return words % {"km": _km(access.access_leg_m)}
     if why is Verdict.ABOVE_HEIGHT_LIMIT:
         words = _("Too tall: it cannot be flown over with a clearance of %(clearance)s m below %(limit)s m.")

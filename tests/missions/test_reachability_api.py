@@ -45,6 +45,12 @@ def test_without_a_limit_all_that_is_joined_can_be_inspected(here: World, client
     assert said["flights"] == [{"uav": 0, "base": None}]
 
 
+@pytest.mark.parametrize("end_action", ["hover", "land", "return", "base"])
+def test_however_it_ends_all_that_is_joined_can_be_inspected(here: World, client: Client, end_action: str) -> None:
+    Base.objects.create(name="West", location=Point(10.001, 56.0, srid=4326))
+    assert asked(client, uavs=[TERN | {"end_action": end_action}])["reachable"] == 9
+
+
 def test_a_short_range_tells_what_is_missing(here: World, client: Client) -> None:
     said = asked(client, uavs=[TERN | {"max_range_m": 1_000}])
     found = codes(said)

@@ -163,7 +163,7 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
     found = judged(ground, flights, zones=zones, bases=places[2:])
 
     known = dict(zip(found.asset.tolist(), range(len(found.asset)), strict=True))
-    for node in range(graph.node_count):
+    for node in np.flatnonzero(graph.node_asset > 0).tolist():
         target = Terminal(LonLat(*graph.position[node].tolist()), int(graph.node_asset[node]))
         ways = ways_between(graph, zones, [Terminal(one.position) for one in flights], [target], [target], RULES, [Terminal(places[2])])
         needed_m = [
