@@ -51,9 +51,9 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
             [np.nan if waypoint.altitude_amsl_m is None else waypoint.altitude_amsl_m for waypoint in waypoints], dtype=np.float64
         ),
         arrival_s=began_s + arrival_s if is_timed else None,
-        departs_s=began_s + route.departs_s if is_timed else None,
-        ends_s=began_s + route.departs_s + route.duration_s if is_timed else None,
-        lands=route.mission_uav.end_action != EndAction.HOVER,
+        departs_s=None if departs_s is None else began_s + route.departs_s,
+        ends_s=None if departs_s is None else began_s + route.departs_s + route.duration_s,
+        lands=route.mission.return_to_start or route.mission_uav.end_action != EndAction.HOVER,
     )
 
 
