@@ -57,7 +57,7 @@ def leg_taken(
 
     (east, north) is the leg's direction, of length 1. A UAV that flies and climbs at once is sooner there: this errs on the long side.
     """
-    wind_mps = math.hypot(east_wind_mps, north_wind_mps)
+    wind_mps = math.sqrt(east_wind_mps * east_wind_mps + north_wind_mps * north_wind_mps)
     if wind_mps > own.limit_mps:
         return np.inf, np.inf
     seconds = joules = 0.0
@@ -84,7 +84,7 @@ def hold_taken(
     hold_s: float, east_wind_mps: float, north_wind_mps: float, density: float, own: Speeds, table: FloatArray
 ) -> tuple[float, float]:
     """Seconds and joules of staying in one place; endless where the wind is too strong for it."""
-    wind_mps = math.hypot(east_wind_mps, north_wind_mps)
+    wind_mps = math.sqrt(east_wind_mps * east_wind_mps + north_wind_mps * north_wind_mps)
     if wind_mps > own.limit_mps:
         return np.inf, np.inf
     return hold_s, hold_s * watts(table, LEVEL, wind_mps, density) if len(table) > 0 else 0.0

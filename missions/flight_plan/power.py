@@ -80,9 +80,9 @@ def ground_speed_mps(course_deg: float, max_airspeed_mps: float | None, wanted_m
 @njit(cache=True, nogil=True)
 def ground_and_air_speed(wanted_mps: float, limit_mps: float, along_mps: float, across_mps: float) -> tuple[float, float]:
     """Speed over ground and through the air, both TOO_STRONG where there is no headway; the wind along the course and across it."""
-    air_mps = math.hypot(wanted_mps - along_mps, across_mps)
-    if math.hypot(along_mps, across_mps) > limit_mps:
+    if along_mps * along_mps + across_mps * across_mps > limit_mps * limit_mps:
         return TOO_STRONG, TOO_STRONG
+    air_mps = math.sqrt((wanted_mps - along_mps) ** 2 + across_mps * across_mps)
     if air_mps <= limit_mps:
         return wanted_mps, air_mps
     spare_mps = math.sqrt(limit_mps * limit_mps - across_mps * across_mps)

@@ -17,6 +17,8 @@ from missions.flight_plan.waypoints import Waypoints
 
 FloatArray = NDArray[np.float64]
 
+SAME_AIR_M = 5.0  # up or down, over which density is taken as one: it changes by 0.05 %
+
 
 @dataclass(frozen=True, eq=False)
 class Timing:
@@ -109,7 +111,8 @@ def _timing(
     count = len(position)
     arrival_s, used_j = np.empty(count), np.empty(count)
     now_s = now_j = 0.0
-    density = air_density(0.0, temperature_c)
+    density_amsl_m, density = 0.0, air_density(0.0, temperature_c)
+    wind_agl_m, wind_here = -1.0, (0.0, 0.0)
     for place in range(count + 1 if lands and count else count):
         # The leg to this waypoint; the one after the last goes down to the ground.
         length_m = east = north = 0.0
@@ -120,12 +123,15 @@ def _timing(
         else:
             middle_m, rise_m = 0.5 * (agl_m[place - 1] + agl_m[place]), relative_m[place] - relative_m[place - 1]
             east, north = short_vector_m(position[place - 1, 0], position[place - 1, 1], position[place, 0], position[place, 1])
-            length_m = math.hypot(east, north)
+            length_m = math.sqrt(east * east + north * north)
             if length_m > 0.0:
                 east, north = east / length_m, north / length_m
-        if len(table) > 0 and len(amsl_m) > 0:
-            density = air_density(amsl_m[min(place, count - 1)], temperature_c)
-        seconds, joules = leg_taken(length_m, east, north, rise_m, *wind_in_table(wind, middle_m), density, own, table)
+        if len(table) > 0 and len(amsl_m) > 0 and abs(amsl_m[min(place, count - 1)] - density_amsl_m) > SAME_AIR_M:
+            density_amsl_m = amsl_m[min(place, count - 1)]
+            density = air_density(density_amsl_m, temperature_c)
+        if middle_m != wind_agl_m:
+            wind_agl_m, wind_here = middle_m, wind_in_table(wind, middle_m)
+        seconds, joules = leg_taken(length_m, east, north, rise_m, wind_here[0], wind_here[1], density, own, table)
         now_s, now_j = now_s + seconds, now_j + joules
         if place < count:
             arrival_s[place], used_j[place] = now_s, now_j

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
+from missions.models import EndAction
 from missions.routing.problem import Solution
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import Stop
 from missions.routing.terminals import Terminal, ways_between
 from missions.services.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch
+from missions.services.counted import counted, needs_counting
 from missions.services.drawing import Drawing
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
@@ -56,8 +58,9 @@ def attempt(
     on_progress: OnPlanProgress,
     seed: int,
     search_s: float,
+    usable_share: Mapping[int, float],
 ) -> Attempt:
-    """every_place: the request's targets on the ground, `gone` those that are no longer there."""
+    """every_place: the request's targets on the ground, `gone` those that are no longer there; usable_share as in `assignment`."""
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]
@@ -67,7 +70,10 @@ def attempt(
 
     on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
     agl_m = [inspection_agl_m(place_height_m(place, scene), scene.flight) for place in places]
-    takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
+    counts = needs_counting(request)
+    takes_s = None
+    if not counts:
+        takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
     visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
@@ -78,15 +84,26 @@ def attempt(
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
     )
-    ready = [least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
-    asked = assignment(request, uavs, places, visits, ways, grounded, ready)
+    costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
+    ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
+    no_landing = _no_landing(request, uavs, places, scene)
+    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing)
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
-    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene)
+    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing)
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing)
+
+
+def _no_landing(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], scene: Scene) -> dict[int, str]:
+    """If a UAV is to land at its last target: places, by their numbers, with a zone between the height of inspection and the ground."""
+    if all(request.end_action(uav) is not EndAction.LAND for uav in uavs):
+        return {}
+    return {
+        number: zone for number, place in enumerate(places) for at in {place.course[0], place.course[-1]} if (zone := zone_at(at, scene))
+    }
 
 
 def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:

@@ -6,6 +6,7 @@ from typing import Any
 
 from django.conf import settings
 
+from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation, separation_json
@@ -14,13 +15,14 @@ from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
+from missions.services.battery import battery_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import keys_of_zones_met
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
-from missions.services.worth import Worth, worth_of
+from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
@@ -69,7 +71,7 @@ class _Planner:
         First all zones that can be in force at some time of the flight are kept clear of. If some of them are so for a part of it only,
         plans that keep clear of fewer are tried: whatever such a plan really meets is added, until it meets nothing or is no better.
         """
-        choice = zone_choice(ground.table, self.request.departs_at, settings.FLIGHT_RULES)
+        choice = zone_choice(ground.table, self.request.departs_at, settings.FLIGHT_RULES, self._positions())
         share = 0.5 if choice.changes else 1.0
         best = self._clean(ground, choice, choice.widest, share)
         if not choice.changes:
@@ -86,6 +88,9 @@ class _Planner:
             chosen = choice.with_zones(chosen, tried.met)
         return best, freest or best
 
+    def _positions(self) -> list[LonLat]:
+        return [*(uav.position for uav in self.request.uavs), *(at for place in self.places for at in place.course)]
+
     def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
         """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""
         for _ in range(MOST_TRIES):
@@ -99,14 +104,23 @@ class _Planner:
         raise GraphOutdated
 
     def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
+        """An attempt, drawn. Where hills make a route take more of its battery than the search had counted, it counts on less and tries
+        again; in the end the UAV stays on the ground."""
         scene = scene_on(ground, chosen)
-        found = attempt(
-            self.request, self.places, self.gone, scene,
-            stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share,
-        )  # fmt: skip
-        self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
         has_terrain = has_terrain_at(ground.edition)
-        alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+        usable_share: dict[int, float] = {}
+        for last in range(MOST_TRIES):
+            found = attempt(
+                self.request, self.places, self.gone, scene,
+                stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share, usable_share=usable_share,
+            )  # fmt: skip
+            self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
+            alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+            over = battery_overruns(self.request, alone)
+            if not over:
+                break
+            for uav, too_much in over.items():
+                usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if last < MOST_TRIES - 2 else 0.0
         routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes))
@@ -172,7 +186,6 @@ def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str
         freest.found.solution,
         plan.found.lock_cost,
         request.objective,
-        total_m=sum(route.length_m for route in plan.routes),
-        longest_s=max(route.duration_s for route in plan.routes),
+        value=value_of(request.objective, plan.routes),
         share_of_freest=1.0 if plan is freest else share,
     )

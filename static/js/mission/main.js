@@ -37,7 +37,7 @@ const store = createStore({
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
-  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [],
+  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], hand: null,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -96,8 +96,8 @@ function planningKeys() {
   return [
     { keys: ["p"], words: t("Plan, plan again"), act: actions.plan },
     { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => void actions.save() },
-    { keys: ["mod+z"], words: t("Undo"), act: actions.undo },
-    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: actions.redo },
+    { keys: ["mod+z"], words: t("Undo"), act: () => (store.state.hand ? actions.undoByHand() : actions.undo()) },
+    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: () => (store.state.hand ? actions.redoByHand() : actions.redo()) },
     { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
     { keys: ["l"], words: t("Lock or unlock the chosen target"), act: lockChosen },
     { keys: ["alt+arrowup"], words: t("The chosen target earlier"), act: () => shiftChosen(-1) },
@@ -112,6 +112,7 @@ function planningKeys() {
 }
 
 function removeChosen() {
+  if (store.state.hand) return actions.removeByHand(store.state.hand.chosen);
   const { chosenTargets } = store.state;
   if (!chosenTargets.length) return false;
   actions.removeTargets(chosenTargets);

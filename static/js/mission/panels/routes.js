@@ -14,7 +14,7 @@ import { createPillDrag } from "../strip_drag.js";
 import { uavsByName } from "../selection.js";
 import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
-const BESIDE_PX = 184 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
+const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
 const BATTERY_PX = 76 + 12; // where one has a battery
 const LENGTH_PX = 84 + 12;
 const LEAST_STRIP_PX = 200; // else length and battery give way
@@ -60,7 +60,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const look = () => store.update({ lookedAt: route.sequence });
     const leave = () => store.update({ lookedAt: null });
     const old = before && counterpart(route, before);
-    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
+    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
     const delta = (words) => old && h("small", {}, words);
     const landing = isUsed && state.plan.result.departs_at && !old ? landing_s(route) : null;
     const battery = isUsed ? batteryOf(route) : null;
@@ -77,8 +77,9 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       h("span", { class: "figure length-figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
       h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText)), landing !== null && h("small", {}, t("until {time}", { time: timeAt(state.plan.result.departs_at, landing) }))),
       dock.classList.contains("with-battery") && h("span", { class: "figure battery-figure", title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null }, battery?.left ?? "—", battery && h("small", {}, t("at landing"))),
-      isUsed &&
-        h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?")),
+      isUsed && h("span", { class: "route-acts" },
+        canPlan && h("button", { type: "button", class: "icon-button tight", "aria-label": t("Change the route of {name} by hand", { name: route.name }), title: t("Change by hand"), onclick: () => void actions.beginByHand(route.sequence) }, icon("hand", "small")),
+        h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?"))),
     );
   }
 

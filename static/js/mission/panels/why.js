@@ -1,4 +1,5 @@
-/** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, or the ways to plan it. */
+/** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, the ways to plan it, or a
+ * route that is changed by hand. */
 
 import { post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
@@ -7,6 +8,7 @@ import { t } from "../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
 import { requestOf } from "../selection.js";
 import { alternatives } from "./alternatives.js";
+import { createByHand } from "./by_hand.js";
 import { comparison } from "./why_compared.js";
 import { routeExplanation } from "./why_route.js";
 import { targetExplanation } from "./why_target.js";
@@ -23,6 +25,7 @@ function questionOf({ result, targets, uavs, charging_w }) {
 export function mountWhy(store, actions, { canPlan }) {
   const panel = byId("why");
   const answers = new WeakMap(); // result of a plan → Map of question → promise
+  const byHand = createByHand(store, actions);
   let opener = null;
   let openedFrom = ""; // the row of it: rows are drawn anew
   let shown = null; // the question that was drawn last
@@ -73,7 +76,9 @@ export function mountWhy(store, actions, { canPlan }) {
       openedFrom = opener?.closest(".route")?.dataset.sequence ?? "";
     }
     byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
-    if (why.alternatives) {
+    if (why.byHand !== undefined) {
+      if (why !== shown) put(t("Change the route of {name} by hand", { name: plan.result.routes[why.byHand].uav }), byHand.element);
+    } else if (why.alternatives) {
       const focused = panel.contains(document.activeElement) && document.activeElement !== byId("why-title") ? document.activeElement.textContent : null;
       put(t("Ways to plan it"), ...alternatives(state, actions, canPlan && isPlanCurrent(state)));
       if (focused) ([...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")).focus();
@@ -91,9 +96,10 @@ export function mountWhy(store, actions, { canPlan }) {
       if (!route?.geometry) store.update({ why: null });
       else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
     }
-    panel.className = why.route === undefined ? "why" : `why route-${routeNumber(why.route)}`;
-    byId("why-letter").hidden = why.route === undefined;
-    byId("why-letter").textContent = why.route === undefined ? "" : routeLetter(why.route);
+    const sequence = why.route ?? why.byHand;
+    panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
+    byId("why-letter").hidden = sequence === undefined;
+    byId("why-letter").textContent = sequence === undefined ? "" : routeLetter(sequence);
     if (why !== shown || document.activeElement === document.body) byId("why-title").focus(); // on a phone it comes into sight so
     shown = why;
   }
