@@ -1,7 +1,7 @@
 """From places and ways to the solver's problem with all that is wished; and what the locked runs cost."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -59,11 +59,13 @@ def assignment(
     ready: Sequence[float],
     costs: FlightCosts | None = None,
     usable_share: Mapping[int, float] = NOTHING_TAKEN_OFF,
+    no_landing: Collection[int] = (),
 ) -> Assignment:
     """uavs: those that fly, by their places in the request; visits: of the places, by their numbers; ready [s]: of each UAV's route.
 
     costs: seconds and Wh where they do not follow from the metres; ready, and what the visits take, are then among them. usable_share:
-    of a UAV's usable battery, by its place in the request, what the search may count on.
+    of a UAV's usable battery, by its place in the request, what the search may count on. no_landing: places, by their numbers, where a
+    UAV must not go down to the ground.
     """
     targets = [request.targets[place.target] for place in places]
     ends = {request.end_action(uav) for uav in uavs}
@@ -91,11 +93,18 @@ def assignment(
         seconds=None if costs is None else Amounts(**vars(costs.seconds)),
         wh=None if costs is None else Amounts(**vars(costs.wh)),
         class_of=() if costs is None else costs.class_of,
+        cannot_end=_cannot_end(request, uavs, visits, no_landing) if no_landing else None,
     )
     if not request.locks:
         return Assignment(free, None, {})
     held_back, locks = _runs(request, uavs, places, grounded)
     return Assignment(replace(free, locks=locks, allowed=_without(free, held_back)), free, held_back)
+
+
+def _cannot_end(request: PlanRequest, uavs: Sequence[int], visits: Sequence[Visit], no_landing: Collection[int]) -> BoolArray:
+    """(v, u): visits of the places at which UAVs that land at their last target must not do so."""
+    lands = np.array([request.end_action(uav) is EndAction.LAND for uav in uavs], dtype=bool)
+    return np.array([visit.target in no_landing for visit in visits], dtype=bool)[:, None] & lands
 
 
 def _usable_wh(asked: UavRequest, share: float) -> float | None:

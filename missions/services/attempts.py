@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
+from missions.models import EndAction
 from missions.routing.problem import Solution
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import Stop
@@ -85,14 +86,24 @@ def attempt(
     )
     costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
     ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
-    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share)
+    no_landing = _no_landing(request, uavs, places, scene)
+    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing)
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
-    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene)
+    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing)
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing)
+
+
+def _no_landing(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], scene: Scene) -> dict[int, str]:
+    """If a UAV is to land at its last target: places, by their numbers, with a zone between the height of inspection and the ground."""
+    if all(request.end_action(uav) is not EndAction.LAND for uav in uavs):
+        return {}
+    return {
+        number: zone for number, place in enumerate(places) for at in {place.course[0], place.course[-1]} if (zone := zone_at(at, scene))
+    }
 
 
 def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:

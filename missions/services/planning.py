@@ -6,6 +6,7 @@ from typing import Any
 
 from django.conf import settings
 
+from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation, separation_json
@@ -70,7 +71,7 @@ class _Planner:
         First all zones that can be in force at some time of the flight are kept clear of. If some of them are so for a part of it only,
         plans that keep clear of fewer are tried: whatever such a plan really meets is added, until it meets nothing or is no better.
         """
-        choice = zone_choice(ground.table, self.request.departs_at, settings.FLIGHT_RULES)
+        choice = zone_choice(ground.table, self.request.departs_at, settings.FLIGHT_RULES, self._positions())
         share = 0.5 if choice.changes else 1.0
         best = self._clean(ground, choice, choice.widest, share)
         if not choice.changes:
@@ -86,6 +87,9 @@ class _Planner:
                 break
             chosen = choice.with_zones(chosen, tried.met)
         return best, freest or best
+
+    def _positions(self) -> list[LonLat]:
+        return [*(uav.position for uav in self.request.uavs), *(at for place in self.places for at in place.course)]
 
     def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
         """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""

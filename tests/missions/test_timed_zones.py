@@ -7,6 +7,7 @@ import pytest
 from django.contrib.gis.geos import LineString
 
 from inspection.models import NoFlyZone
+from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import make_plan
 from tests.missions.worlds import request, uav, world, zone_around
@@ -127,3 +128,15 @@ def test_a_zone_that_ends_below_the_flight_bars_take_off_and_is_flown_over() -> 
     assert crosses(make_plan(request=request(here.towers[5])), zone)
     grounded = make_plan(request=request(here.towers[5], uavs=(uav(AT_THE_LINE),)))
     assert [warning["code"] for warning in grounded["warnings"]] == ["uav_inside_zone"]
+
+
+def test_a_uav_does_not_land_through_a_zone_below_its_target() -> None:
+    here = world(height_m=40.0)
+    zone = zone_around(here.towers[3].centre.coords, 0.0003)
+    NoFlyZone.objects.filter(pk=zone.pk).update(upper_limit_m=15.0, upper_reference="AGL")
+    zone_around((0.0, 0.0), 0.0001)
+    landing = (uav((10.0, 55.9999), end_action=EndAction.LAND),)
+    alone = make_plan(request=request(here.towers[3], uavs=landing))
+    assert [item["reason"] for item in alone["unassigned"]] == ["inside_zone"]
+    both = make_plan(request=request(here.towers[3], here.towers[5], uavs=landing))
+    assert both["routes"][0]["targets"] == [0, 1]
