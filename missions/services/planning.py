@@ -110,7 +110,7 @@ class _Planner:
         scene = scene_on(ground, chosen)
         has_terrain = has_terrain_at(ground.edition)
         usable_share: dict[int, float] = {}
-        for last in range(MOST_TRIES):
+        for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
                 stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share, usable_share=usable_share,
@@ -120,10 +120,10 @@ class _Planner:
             over = battery_overruns(self.request, alone)
             if not over:
                 break
-            if last == MOST_TRIES - 1:
+            if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
             for uav, too_much in over.items():
-                usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if last < MOST_TRIES - 2 else 0.0
+                usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if number < MOST_TRIES - 2 else 0.0
         routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
