@@ -211,7 +211,13 @@ def test_a_question_about_another_plan_is_refused(here: World, client: Client, p
 
 
 def test_what_binds_a_route_is_said(here: World, client: Client) -> None:
-    iris = TERN | {"position": [10.0, 55.9999], "cruise_speed_mps": 8.0, "battery_wh": 56.6, "max_airspeed_mps": 11.0, "end_action": "return"}
+    iris = TERN | {
+        "position": [10.0, 55.9999],
+        "cruise_speed_mps": 8.0,
+        "battery_wh": 56.6,
+        "max_airspeed_mps": 11.0,
+        "end_action": "return",
+    }
     body = plan_body(here.towers[5], uavs=[iris])
     calm, plan = why_route(client, body)
     assert calm["binds"] == []
