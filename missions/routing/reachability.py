@@ -223,11 +223,10 @@ def _reach_of_nodes(
             back = there if one.end is End.RETURN else to_base[flying] if one.end is End.ANY_BASE else None
             needed_m = there.length_m if back is None else there.length_m + back.length_m
             needed_wh = scene.needed_wh(there, back, one)
-            fits = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh)
-            can = fits & (needed_m < able_m)
+            can = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh) & (needed_m < able_m)
             able_m[can], flight[can] = needed_m[can], number
             has_way |= np.isfinite(needed_m)
-            against = np.isfinite(needed_wh)
+            against = np.isfinite(needed_m) & np.isfinite(needed_wh)
             np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, FARTHEST_M), np.inf), out=missing_m)
             enough = against & (needed_m <= one.limit_m)
             np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MOST_WH), np.inf), out=missing_wh)
