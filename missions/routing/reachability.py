@@ -308,7 +308,7 @@ class _Look:
     def legs(
         self, nodes: IntArray, others: IntArray, count: int, known: BoolArray, component: NDArray[np.int32]
     ) -> tuple[IntArray, IntArray, FloatArray]:
-        """Clear legs from each node to those of the others nearest to it that are on a part which counts, and not on its own."""
+        """Clear legs from each node to those of the others nearest to it that are on a part which counts."""
         if not len(nodes):
             return nodes, nodes, np.zeros(0)
         tree = cKDTree(self.point[others], balanced_tree=False, compact_nodes=False)
@@ -317,7 +317,7 @@ class _Look:
         near = near.reshape(len(nodes), -1)
         row, column = np.nonzero(near < len(others))
         node, other = nodes[row], others[near[row, column]]
-        counts = known[component[other]] & (component[other] != component[node])
+        counts = known[component[other]]
         node, other = node[counts], other[counts]
         position = self.graph.position
         length_m = distance_m(position[node], position[other])
@@ -340,7 +340,7 @@ class _Look:
         for node in nodes[:MOST_ROUND].tolist():
             place = Terminal(LonLat(*self.graph.position[node].tolist()))
             legs = access_legs(self.graph, self.zones, place, self.rules)
-            counts = known[component[legs.node]] & (component[legs.node] != component[node])
+            counts = known[component[legs.node]]
             other = legs.node[counts].astype(np.int64)
             found.append((np.full(len(other), node, dtype=np.int64), other, legs.length_m[counts]))
         return found
