@@ -285,7 +285,8 @@ class _Islands:
                 if not len(waiting) or len(nodes) <= tried:
                     break
         if len(zones):
-            found += look.legs_round(np.setdiff1d(left, np.concatenate([node for node, _, _ in found])), known, component)
+            served = np.concatenate([node[met[component[other]]] for node, other, _ in found])
+            found += look.legs_round(np.setdiff1d(left, served), known, component)
         return cls(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
