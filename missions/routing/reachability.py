@@ -223,11 +223,10 @@ def _reach_of_nodes(
             back = there if one.end is End.RETURN else to_base[flying] if one.end is End.ANY_BASE else None
             needed_m = there.length_m if back is None else there.length_m + back.length_m
             needed_wh = scene.needed_wh(there, back, one)
-            fits = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh)
-            can = fits & (needed_m < able_m)
+            can = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh) & (needed_m < able_m)
             able_m[can], flight[can] = needed_m[can], number
             has_way |= np.isfinite(needed_m)
-            against = np.isfinite(needed_wh)
+            against = np.isfinite(needed_m) & np.isfinite(needed_wh)
             np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, FARTHEST_M), np.inf), out=missing_m)
             enough = against & (needed_m <= one.limit_m)
             np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MOST_WH), np.inf), out=missing_wh)
@@ -286,7 +285,8 @@ class _Islands:
                 if not len(waiting) or len(nodes) <= tried:
                     break
         if len(zones):
-            found += look.legs_round(np.setdiff1d(left, np.concatenate([node for node, _, _ in found])), known, component)
+            served = np.concatenate([node[met[component[other]]] for node, other, _ in found])
+            found += look.legs_round(np.setdiff1d(left, served), known, component)
         return cls(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
@@ -309,7 +309,7 @@ class _Look:
     def legs(
         self, nodes: IntArray, others: IntArray, count: int, known: BoolArray, component: NDArray[np.int32]
     ) -> tuple[IntArray, IntArray, FloatArray]:
-        """Clear legs from each node to those of the others nearest to it that are on a part which counts, and not on its own."""
+        """Clear legs from each node to those of the others nearest to it that are on a part which counts."""
         if not len(nodes):
             return nodes, nodes, np.zeros(0)
         tree = cKDTree(self.point[others], balanced_tree=False, compact_nodes=False)
@@ -318,7 +318,7 @@ class _Look:
         near = near.reshape(len(nodes), -1)
         row, column = np.nonzero(near < len(others))
         node, other = nodes[row], others[near[row, column]]
-        counts = known[component[other]] & (component[other] != component[node])
+        counts = known[component[other]]
         node, other = node[counts], other[counts]
         position = self.graph.position
         length_m = distance_m(position[node], position[other])
@@ -341,7 +341,7 @@ class _Look:
         for node in nodes[:MOST_ROUND].tolist():
             place = Terminal(LonLat(*self.graph.position[node].tolist()))
             legs = access_legs(self.graph, self.zones, place, self.rules)
-            counts = known[component[legs.node]] & (component[legs.node] != component[node])
+            counts = known[component[legs.node]]
             other = legs.node[counts].astype(np.int64)
             found.append((np.full(len(other), node, dtype=np.int64), other, legs.length_m[counts]))
         return found
