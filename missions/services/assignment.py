@@ -69,6 +69,8 @@ def assignment(
     of a UAV's usable battery, by its place in the request, what the search may count on. no_landing: places, by their numbers, where a
     UAV must not go down to the ground.
     """
+    if not uavs:
+        costs = None  # nothing flies: there is nothing to count
     targets = [request.targets[place.target] for place in places]
     ends = {request.end_action(uav) for uav in uavs}
     free = Problem(
@@ -90,7 +92,7 @@ def assignment(
         from_start_m=ways.from_start_m,
         between_m=ways.between_m,
         to_start_m=ways.to_start_m,
-        objective=request.objective,
+        objective=request.objective if uavs else Objective.TOTAL,
         to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(uavs))) if EndAction.BASE in ends else None,
         allowed=_allowed(request, uavs, places, visits) if any(target.uav or target.sensor for target in targets) else None,
         priorities=tuple(target.priority for target in targets) if any(target.priority != Priority.NORMAL for target in targets) else (),

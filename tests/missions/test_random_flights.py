@@ -58,7 +58,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
         region, judge = Region(), Judge()
         departures = [None, *(A_MONDAY + timedelta(minutes=draw.randrange(7 * 24 * 60)) for _ in range(DEPARTURES))]
         for _ in range(missions // ZONE_SETS + 1):
-            asked = _in_the_wind(_hovering_at_last(replace(region.mission(draw), departs_at=draw.choice(departures))), draw)
+            asked = _in_the_wind(replace(region.mission(draw), departs_at=draw.choice(departures)), draw)
             plan = make_plan(request=asked)
             assert judge.faults(asked, plan) == [], asked
             seen.update(item["reason"] for item in plan["unassigned"])
@@ -152,12 +152,6 @@ def _period(entries: list[dict[str, Any]], start: str | None = None, end: str | 
 
 def _text(moment: datetime) -> str:
     return f"{moment:%Y-%m-%dT%H:%M:%SZ}"
-
-
-def _hovering_at_last(asked: PlanRequest) -> PlanRequest:
-    """Whoever would land at its last target hovers there: the planner does not yet look for a zone between the target and the ground."""
-    uavs = (replace(uav, end_action=EndAction.HOVER) if uav.end_action is EndAction.LAND else uav for uav in asked.uavs)
-    return replace(asked, uavs=tuple(uavs))
 
 
 def _in_the_wind(asked: PlanRequest, draw: random.Random) -> PlanRequest:
