@@ -20,6 +20,8 @@ SEA_LEVEL_K = 288.15
 LAPSE_K_PER_M = 0.0065
 PRESSURE_EXPONENT = 5.255_88
 GAS_CONSTANT = 287.052_87  # J/(kg K), dry air
+# (1 + x) ** PRESSURE_EXPONENT as a power series: in the troposphere, where -0.25 < x < 0.01, right to a millionth. The power takes longer.
+_POWER_SERIES = tuple(float(math.prod((PRESSURE_EXPONENT - below) / (below + 1) for below in range(power))) for power in range(9))
 TROPOSPHERE_M = (-430.0, 11_000.0)  # the lowest land, and where the troposphere ends
 
 
@@ -98,8 +100,11 @@ class Conditions:
 def air_density(amsl_m: float, temperature_c: float) -> float:
     """As Conditions.air_density, for compiled code."""
     height_m = min(max(amsl_m, TROPOSPHERE_M[0]), TROPOSPHERE_M[1])
-    pressure_pa = SEA_LEVEL_PA * (1.0 - LAPSE_K_PER_M * height_m / SEA_LEVEL_K) ** PRESSURE_EXPONENT
-    return float(pressure_pa / (GAS_CONSTANT * (temperature_c + 273.15)))
+    fallen = -LAPSE_K_PER_M / SEA_LEVEL_K * height_m
+    series = _POWER_SERIES[-1]
+    for power in range(len(_POWER_SERIES) - 2, -1, -1):
+        series = _POWER_SERIES[power] + fallen * series
+    return float(SEA_LEVEL_PA * series / (GAS_CONSTANT * (temperature_c + 273.15)))
 
 
 @njit(cache=True, nogil=True)

@@ -65,6 +65,8 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
     plan = work.plan
     least, least_m, at_uav, at_place, at_visit = np.inf, 0.0, -1, 0, 0
     blink = _next_blink(work.random)
+    if ground.has_sorties and ground.is_makespan:
+        _look_beside(ground, work)
     for index in range(ground.option_from[target], ground.option_from[target + 1]):
         visit = ground.option[index]
         for uav in range(len(plan.size)):
@@ -96,7 +98,7 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
                 continue
             if added_m == math.inf:
                 continue
-            price = _price(ground, plan, uav, visit, added_m, power, scale)
+            price = _price(ground, work, uav, visit, added_m, power, scale)
             if price < least:
                 least, least_m, at_uav, at_place, at_visit = price, added_m, uav, best_place, visit
         for number in range(1, min(ground.near.shape[1], INSERTION_NEIGHBOURS + 1) if is_near else 1):
@@ -115,7 +117,7 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
                     break
                 if ground.is_limited and not _fits(ground, plan, uav, visit, place):
                     continue
-                price = _price(ground, plan, uav, visit, added_m, power, scale)
+                price = _price(ground, work, uav, visit, added_m, power, scale)
                 if price < least:
                     if blink == 0:
                         blink = _next_blink(work.random)
@@ -136,15 +138,10 @@ def _next_blink(random: RandomState) -> int:
 
 
 @njit(cache=True, nogil=True, inline="always")  # a plan handed on costs more than the price
-def _price(ground: Ground, plan: Plan, uav: int, visit: int, added_m: float, power: int, scale: float) -> float:
+def _price(ground: Ground, work: Workspace, uav: int, visit: int, added_m: float, power: int, scale: float) -> float:
     """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
-    length_m, service_s = plan.length_m[uav], plan.service_s[uav]
-    limit_m, speed_mps, added_s = ground.limit_m[uav], ground.speed_mps[uav], ground.service_s[visit]
-    before_s = 0.0
-    if ground.has_sorties and ground.is_makespan:
-        before_s, opened_s = _beside(ground, plan, uav)
-        added_s += opened_s
-        service_s += before_s - opened_s
+    length_m, service_s = work.plan.length_m[uav], work.plan.service_s[uav] + work.beside_s[uav]
+    limit_m, speed_mps, added_s = ground.limit_m[uav], ground.speed_mps[uav], ground.service_s[visit] + work.opened_s[uav]
     return _price_of(length_m, service_s, added_m, added_s, limit_m, speed_mps, ground.is_makespan, power, scale)
 
 
@@ -170,13 +167,16 @@ def _price_of(
 
 
 @njit(cache=True, nogil=True)
-def _beside(ground: Ground, plan: Plan, uav: int) -> tuple[float, float]:
-    """Seconds of the UAV's other sorties, and those that this one begins with and does not yet count."""
-    beside_s = 0.0
-    for other in range(ground.first_of[uav], ground.end_of[uav]):
-        if other != uav and (plan.size[other] or other == ground.first_of[uav]):
-            beside_s += duration_s(plan.length_m[other], ground.speed_mps[other], plan.service_s[other])
-    return beside_s, 0.0 if plan.size[uav] or uav == ground.first_of[uav] else float(plan.service_s[uav])
+def _look_beside(ground: Ground, work: Workspace) -> None:
+    """Fill in what the UAV's other sorties add to each, and what an empty one begins with beyond what it counts."""
+    plan = work.plan
+    for uav in range(len(plan.size)):
+        beside_s = 0.0
+        for other in range(ground.first_of[uav], ground.end_of[uav]):
+            if other != uav and (plan.size[other] or other == ground.first_of[uav]):
+                beside_s += duration_s(plan.length_m[other], ground.speed_mps[other], plan.service_s[other])
+        work.opened_s[uav] = 0.0 if plan.size[uav] or uav == ground.first_of[uav] else plan.service_s[uav]
+        work.beside_s[uav] = beside_s - work.opened_s[uav]
 
 
 @njit(cache=True, nogil=True)

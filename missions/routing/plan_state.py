@@ -94,6 +94,8 @@ class Workspace(NamedTuple):
     waiting: IntArray  # (t,) targets to be put in
     key: FloatArray  # (t,) their order
     random: RandomState
+    beside_s: FloatArray  # (u,) of the other sorties of the same UAV, and what an empty sortie begins with; 0 where each flies once
+    opened_s: FloatArray
 
 
 def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
@@ -221,6 +223,8 @@ def workspace(uavs: int, targets: int, seed: int, limits: int = 0) -> Workspace:
         np.zeros(targets, dtype=np.int64),
         np.zeros(targets),
         np.array([(seed * 2 + 1) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF], dtype=np.uint64),
+        np.zeros(uavs),
+        np.zeros(uavs),
     )
 
 

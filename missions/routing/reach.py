@@ -163,7 +163,8 @@ def _beyond_battery(
 ) -> tuple[tuple[Reason, str], float]:
     """Of the UAVs that have the range, the one that lacks least, and how much."""
     limit_wh = np.array([uav.limit_wh for uav in problem.uavs])
-    missing_wh = np.where(within_range[:, visits], used_wh[:, visits] - limit_wh[:, None], np.inf)
+    within = within_range[:, visits]
+    missing_wh = np.where(within, used_wh[:, visits], np.inf) - np.where(within, limit_wh[:, None], 0.0)
     uav, visit = np.unravel_index(np.argmin(missing_wh), missing_wh.shape)
     needed, missing = used_wh[uav, visits[int(visit)]], float(missing_wh[uav, visit])
     there = _THERE[problem.uavs[uav].end]

@@ -13,6 +13,8 @@ from django.contrib.gis.db.models import Extent
 
 from inspection.models import Asset, NoFlyZone
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, make_plan
@@ -26,7 +28,7 @@ pytestmark = pytest.mark.django_db
 REGIONS = ["columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "nepal-power-2025.osm.pbf"]
 HILLY = REGIONS[:2]  # the third has no terrain: limits above sea level cannot be compared there
 ASSETS = 500  # of each region
-ZONE_SETS = 2
+ZONES, ZONE_SETS = 16, 2
 DEPARTURES = 2  # for each set of zones: the network is cleared anew for all that apply at another time
 A_MONDAY = datetime(2026, 11, 23, tzinfo=UTC)
 EVENTS = ("BMCT", "SR", "SS", "EECT")
@@ -56,7 +58,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
         region, judge = Region(), Judge()
         departures = [None, *(A_MONDAY + timedelta(minutes=draw.randrange(7 * 24 * 60)) for _ in range(DEPARTURES))]
         for _ in range(missions // ZONE_SETS + 1):
-            asked = replace(region.mission(draw), departs_at=draw.choice(departures))
+            asked = _in_the_wind(replace(region.mission(draw), departs_at=draw.choice(departures)), draw)
             plan = make_plan(request=asked)
             assert judge.faults(asked, plan) == [], asked
             seen.update(item["reason"] for item in plan["unassigned"])
@@ -65,7 +67,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
         seen["before or after its time"] += judge.seen_beside_time
     print(path.name, dict(seen))
     assert seen["visited"] > missions
-    for reason in ("inside_zone", "beyond_range", "over or under a zone", "before or after its time"):
+    for reason in ("inside_zone", "beyond_range", "beyond_energy", "over or under a zone", "before or after its time"):
         assert seen[reason] > 0, reason
 
 
@@ -91,7 +93,9 @@ def _put_hills(path: Path) -> None:
 
 
 def _give_heights_and_times(draw: random.Random) -> None:
-    zones = list(NoFlyZone.objects.order_by("pk"))
+    """Of the random zones, those that a small network leaves room for."""
+    zones = draw.sample(list(NoFlyZone.objects.order_by("pk")), ZONES)
+    NoFlyZone.objects.exclude(pk__in=[zone.pk for zone in zones]).delete()
     for zone in zones:
         for name, value in _band(draw).items():
             setattr(zone, name, value)
@@ -148,6 +152,23 @@ def _period(entries: list[dict[str, Any]], start: str | None = None, end: str | 
 
 def _text(moment: datetime) -> str:
     return f"{moment:%Y-%m-%dT%H:%M:%SZ}"
+
+
+def _in_the_wind(asked: PlanRequest, draw: random.Random) -> PlanRequest:
+    """Half of the missions in wind, half of the UAVs with a battery, some with a limit of airspeed that the wind stays below."""
+    wind = (WindLayer(10.0, draw.uniform(0, 6), draw.uniform(0, 359)), WindLayer(100.0, draw.uniform(0, 8), draw.uniform(0, 359)))
+    air = Conditions(wind if draw.random() < 0.5 else (), draw.uniform(-10, 35))
+    return replace(asked, conditions=air, uavs=tuple(replace(uav, performance=_performance(asked, draw)) for uav in asked.uavs))
+
+
+def _performance(asked: PlanRequest, draw: random.Random) -> Performance:
+    """Where the least energy is wished for, every UAV has a battery."""
+    batteries_wh = [IRIS_BATTERY_WH, 200.0]
+    return Performance(
+        battery_wh=draw.choice(batteries_wh if asked.objective is Objective.ENERGY else [None, None, *batteries_wh]),
+        max_airspeed_mps=draw.choice([None, None, IRIS_MAX_AIRSPEED_MPS, 15.0]),
+        reserve_percent=draw.choice([0.0, 20.0]),
+    )
 
 
 # --- the judge sees what is plain to see --------------------------------------------------------------------------------------

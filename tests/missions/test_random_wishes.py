@@ -66,7 +66,7 @@ def _mission(draw: random.Random, here: World) -> PlanRequest:
     )
     targets = tuple(_target(draw, here, uavs) for _ in range(draw.randint(2, 4)))
     bases = tuple(BaseRequest(str(number), LonLat(draw.uniform(9.998, 10.022), draw.uniform(55.997, 56.001))) for number in range(2))
-    asked = PlanRequest(uavs, targets, draw.choice(list(Objective)), draw.random() < 0.2, bases=bases)
+    asked = PlanRequest(uavs, targets, draw.choice([Objective.TOTAL, Objective.MAKESPAN]), draw.random() < 0.2, bases=bases)
     return replace(asked, locks=_locks(draw, asked)) if draw.random() < 0.5 else asked
 
 

@@ -8,6 +8,8 @@ import numpy as np
 
 from missions.routing.problem import Amounts, End, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
 
+BY_WAYS = (Objective.TOTAL, Objective.MAKESPAN, Objective.TIME)  # what can be asked for without knowing anything of energy
+
 
 def random_problem(
     seed: int,
