@@ -7,7 +7,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
-from inspection.graph.ways import BEND
+from inspection.graph.passed import BEND, passed_on
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import Edition, has_terrain_at
 from missions.flight_plan.duration import duration_s
@@ -100,7 +100,7 @@ class Drawing:
         if not ways:
             return []
         graph, flight = self.scene.graph, self.scene.flight
-        told = self.ways.travel.passed(np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
+        told = passed_on(self.ways.travel, np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
         is_node = told.node != BEND
         nodes = told.node[is_node]
         asset, agl_m = np.full(len(told.node), NONE, dtype=np.int64), np.full(len(told.node), flight.transit_agl_m)
