@@ -66,7 +66,7 @@ def value_of(problem: Problem, solution: Solution) -> float:
 def on_graph(name: str, options: argparse.Namespace) -> list[Row]:
     rows = []
     for number, total in enumerate(instances(name, options.instances, options.nodes)):
-        for objective in Objective:
+        for objective in RIVALS:
             problem = with_objective(total, objective)
             began_s = perf_counter()
             ours = solve(problem, search_s=options.search_s)

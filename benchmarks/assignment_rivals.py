@@ -78,7 +78,7 @@ def main() -> None:
     parser.add_argument("--cpu-s", type=float, default=120.0)
     parser.add_argument("--instances", type=int, default=5)
     parser.add_argument("--nodes", type=int, default=200_000)
-    every = [f"{name}:{objective}" for name in WORKLOADS for objective in Objective]
+    every = [f"{name}:{objective}" for name in WORKLOADS for objective in RIVALS]
     parser.add_argument("--only", nargs="+", choices=every, default=every)
     parser.add_argument("--methods", nargs="+", choices=["PyVRP", "OR-tools"], default=["PyVRP", "OR-tools"])
     parser.add_argument("--rivals", type=Path, default=KEPT, help="the file that keeps what they find")

@@ -54,9 +54,9 @@ def routes_by_ortools(problem: Problem, usable: BoolArray, cpu_s: float) -> Rout
         evaluator = routing.RegisterUnaryTransitVector(done)
         routing.AddDimensionWithVehicleCapacity(evaluator, 0, arcs.most.tolist(), True, "done")
     if arcs.is_makespan:
-        speeds = arcs.speed_mps.tolist()
-        durations = {speed: routing.RegisterTransitMatrix(_units(_seconds(metres, arcs, speed), UNITS_PER_S)) for speed in set(speeds)}
-        by_uav = [durations[speed] for speed in speeds]
+        kinds = list(zip(arcs.speed_mps.tolist(), arcs.ready_s.tolist(), strict=True))
+        durations = {kind: routing.RegisterTransitMatrix(_units(_seconds(metres, arcs, *kind), UNITS_PER_S)) for kind in set(kinds)}
+        by_uav = [durations[kind] for kind in kinds]
         routing.AddDimensionWithVehicleTransits(by_uav, 0, MOST_UNITS, True, "time")
         routing.GetDimensionOrDie("time").SetGlobalSpanCostCoefficient(SPAN_WEIGHT)
     lightest = float(arcs.weight.min())
@@ -95,16 +95,17 @@ def _square(arcs: Arcs) -> FloatArray:
     uavs, visits = arcs.first_m.shape
     metres = np.zeros((2 * uavs + visits, 2 * uavs + visits))
     metres[:uavs, uavs : uavs + visits] = arcs.first_m
-    metres[uavs : uavs + visits, uavs : uavs + visits] = arcs.onward_m
+    metres[uavs : uavs + visits, uavs : uavs + visits] = arcs.onward_m[0]
     metres[uavs : uavs + visits, uavs + visits :] = arcs.end_m.T
     np.fill_diagonal(metres, 0.0)
     return metres
 
 
-def _seconds(metres: FloatArray, arcs: Arcs, speed_mps: float) -> FloatArray:
+def _seconds(metres: FloatArray, arcs: Arcs, speed_mps: float, ready_s: float) -> FloatArray:
     uavs, visits = arcs.first_m.shape
     seconds = metres / speed_mps
     seconds[:, uavs : uavs + visits] += arcs.service_s
+    seconds[:uavs, uavs : uavs + visits] += ready_s  # of routes with a visit alone
     seconds[metres >= NO_WAY_M] = NO_WAY_M
     return seconds
 

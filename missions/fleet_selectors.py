@@ -4,6 +4,7 @@ from typing import Any
 
 from django.db.models import Count, Prefetch, Q, QuerySet
 
+from missions.flight_plan.performance import PERFORMANCE_KEYS, Performance, performance_from_json
 from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
 from workspace.models import AuditEntry, Organisation
 
@@ -81,3 +82,10 @@ def facts_when_deleted(organisation: Organisation, subject_type: str, subject_id
     if entry is None or entry.action != "delete" or entry.organisation_id != organisation.pk:
         return None
     return entry.before
+
+
+def performance_of(uav: Uav) -> Performance:
+    """Its type's; without a type its energy is not counted."""
+    if uav.uav_type is None:
+        return Performance()
+    return performance_from_json({name: getattr(uav.uav_type, name) for name in PERFORMANCE_KEYS})

@@ -52,7 +52,6 @@ class ScopedRate(ScopedRateThrottle):
         self.scope = getattr(view, self.scope_attr, None)
         if not self.scope:
             return True
-        self.num_requests, self.duration = _rate(self.THROTTLE_RATES[self.scope])
         return self.has_room(self.scope, self.get_cache_key(request, view))
 
     @classmethod
@@ -86,7 +85,8 @@ class ScopedRate(ScopedRateThrottle):
         return True
 
     def wait(self) -> float | None:
-        return self.duration - time.time() % self.duration
+        _, duration_s = _rate(self.THROTTLE_RATES[self.scope])
+        return None if duration_s is None else duration_s - time.time() % duration_s
 
     @classmethod
     def _note_absence(cls, error: Exception) -> None:

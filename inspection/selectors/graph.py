@@ -8,10 +8,8 @@ from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
 from datetime import datetime
-from typing import Any
+from typing import Any, Generic, TypeVar
 
-import numpy as np
-import shapely
 from django.conf import settings
 from django.db.models import QuerySet
 
@@ -30,12 +28,14 @@ from inspection.graph.snapshot_file import (
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import GraphSnapshot
 from inspection.selectors.ground import ground_edition
-from inspection.selectors.ground_data import zones_of_the_ground
+from inspection.selectors.zone_table import zone_table_of_edition
+from inspection.zones.reach import BoolArray, ZoneTable
 
 logger = logging.getLogger(__name__)
 
-KEPT_GRAPHS = 6  # per process: the sets of zones that plans under way hold, and those that come back
+KEPT = 6  # per process: the sets of zones that plans under way hold, and those that come back
 
+Made = TypeVar("Made")
 SnapshotRow = tuple[int, int, str]  # version, ground_revision, arrays_sha256
 
 
@@ -43,47 +43,48 @@ class NoGraph(Exception):
     """No snapshot has been built yet, or none of this version is kept."""
 
 
-class _KeptGraphs:
-    """The graphs used last. One thread makes a graph; others that want the same wait for it, others are not held up."""
+class _Kept(Generic[Made]):
+    """Those used last of what is costly to make. One thread makes it; others that want the same wait for it, others are not held up."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._made: OrderedDict[Hashable, InspectionGraph] = OrderedDict()
+        self._made: OrderedDict[Hashable, Made] = OrderedDict()
         self._under_way: dict[Hashable, threading.Lock] = {}
 
-    def get(self, key: Hashable, make: Callable[[], InspectionGraph]) -> InspectionGraph:
-        graph = self._look_up(key)
-        if graph is not None:
-            return graph
+    def get(self, key: Hashable, make: Callable[[], Made]) -> Made:
+        made = self._look_up(key)
+        if made is not None:
+            return made
         with self._lock:
             own = self._under_way.setdefault(key, threading.Lock())
         with own:
-            graph = self._look_up(key)
-            if graph is None:
+            made = self._look_up(key)
+            if made is None:
                 try:
-                    graph = make()
-                    self._keep(key, graph)
+                    made = make()
+                    self._keep(key, made)
                 finally:
                     with self._lock:
                         self._under_way.pop(key, None)
-        return graph
+        return made
 
-    def _look_up(self, key: Hashable) -> InspectionGraph | None:
+    def _look_up(self, key: Hashable) -> Made | None:
         with self._lock:
-            graph = self._made.get(key)
-            if graph is not None:
+            made = self._made.get(key)
+            if made is not None:
                 self._made.move_to_end(key)
-            return graph
+            return made
 
-    def _keep(self, key: Hashable, graph: InspectionGraph) -> None:
+    def _keep(self, key: Hashable, made: Made) -> None:
         with self._lock:
-            self._made[key] = graph
-            while len(self._made) > KEPT_GRAPHS:
+            self._made[key] = made
+            while len(self._made) > KEPT:
                 self._made.popitem(last=False)
 
 
-_graphs = _KeptGraphs()
-_zones: tuple[tuple[int, datetime | None], ZoneIndex] | None = None
+_graphs: _Kept[InspectionGraph] = _Kept()
+_indices: _Kept[ZoneIndex] = _Kept()
+_networks: _Kept[Network] = _Kept()
 
 
 def rules_of_snapshots() -> dict[str, Any]:
@@ -108,13 +109,18 @@ def zones_in_force() -> ZoneIndex:
 
 def zones_of_edition(key: tuple[int, datetime | None]) -> ZoneIndex:
     """The zones of an edition of the ground that has just been read: they are at least as new as that."""
-    global _zones
-    remembered = _zones
-    if remembered is None or remembered[0] != key:
-        zones = zones_of_the_ground()
-        polygons = shapely.from_wkb(np.array(zones.wkb, dtype=object))
-        _zones = remembered = key, ZoneIndex(polygons, zones.identifier, zones.name)
-    return remembered[1]
+    return zones_of_table(zone_table_of_edition(key))
+
+
+def zones_of_table(table: ZoneTable, chosen: BoolArray | None = None) -> ZoneIndex:
+    """All zones of a table, or those where the mask (z,) is true, each with the heights above ground that it may reach."""
+    if chosen is None or chosen.all():
+        return _indices.get((table, None), lambda: _index_of(table))
+    return _indices.get((table, chosen.tobytes()), lambda: zones_of_table(table).where(chosen))
+
+
+def _index_of(table: ZoneTable) -> ZoneIndex:
+    return ZoneIndex(table.polygons, table.ids, table.names, floor_agl_m=table.floor_agl_m, ceiling_agl_m=table.ceiling_agl_m)
 
 
 def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> InspectionGraph:
@@ -128,6 +134,17 @@ def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> Inspectio
         raise NoGraph
     key = (*row, zones.digest, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
     return _graphs.get(key, lambda: _load(row, zones))
+
+
+def network_for(row: SnapshotRow | None) -> Network:
+    """The network of a snapshot, as if there were no zones. Raises NoGraph for None, and for a version that is not kept."""
+    if row is None:
+        raise NoGraph
+    return _networks.get(row, lambda: _network(row))
+
+
+def _network(row: SnapshotRow) -> Network:
+    return read_network(settings.GRAPH_CACHE_DIR, content_sha256=row[2]) or from_bytes(_content(row), content_sha256=row[2])
 
 
 def prepare_graph(row: SnapshotRow, content: Callable[[], bytes], zones: ZoneIndex) -> None:

@@ -72,6 +72,18 @@ def ground_truth(positions: FloatArray) -> GroundTruth:
     return found
 
 
+def grids_around(box: tuple[float, float, float, float], most: int) -> list[HeightGrid] | None:
+    """The tiles that touch west, south, east, north [deg], or the gaps between them; None if they are more than `most`."""
+    index = _tile_index(ground_edition())
+    if not len(index.keys):
+        return []
+    wanted = np.sort(index.beside.query(shapely.box(*box)))
+    if len(wanted) > most:
+        return None
+    grids = [_grids.grid(index.keys, number, wanted) for number in wanted.tolist()]
+    return [grid for grid in grids if grid is not None]
+
+
 def _sample(index: _TileIndex, positions: FloatArray, found: GroundTruth) -> NDArray[np.bool_]:
     """Fills in what tiles tell by themselves; returns which positions lie in any tile."""
     places, tiles = index.within.query(shapely.points(positions), predicate="intersects")

@@ -24,7 +24,11 @@ class UavType(models.Model):
     max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = not limited")
     cruise_speed_mps = models.FloatField(default=12.0)
     battery_wh = models.FloatField(null=True, blank=True, help_text="watt-hours of a full battery")
-    mass_kg = models.FloatField(null=True, blank=True, help_text="kilograms at take-off")
+    mass_kg = models.FloatField(null=True, blank=True, help_text="kilograms at take-off; empty = 1.545, the Iris's")
+    reserve_percent = models.FloatField(default=20.0, db_default=20.0, help_text="of the battery, that no plan uses")
+    max_airspeed_mps = models.FloatField(null=True, blank=True, help_text="through the air; empty = not limited")
+    rotor_disk_m2 = models.FloatField(null=True, blank=True, help_text="area swept by all rotors; empty = 0.206, the Iris's")
+    hover_power_w = models.FloatField(null=True, blank=True, help_text="watts in a calm hover, if measured; empty = worked out")
     sensors = ArrayField(models.CharField(max_length=50), default=list, blank=True)
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
@@ -39,6 +43,10 @@ class UavType(models.Model):
             models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_type_speed_positive"),
             models.CheckConstraint(condition=Q(battery_wh=None) | Q(battery_wh__gt=0), name="uav_type_battery_positive"),
             models.CheckConstraint(condition=Q(mass_kg=None) | Q(mass_kg__gt=0), name="uav_type_mass_positive"),
+            models.CheckConstraint(condition=Q(reserve_percent__gte=0, reserve_percent__lt=100), name="uav_type_reserve_percent"),
+            models.CheckConstraint(condition=Q(max_airspeed_mps=None) | Q(max_airspeed_mps__gt=0), name="uav_type_airspeed_positive"),
+            models.CheckConstraint(condition=Q(rotor_disk_m2=None) | Q(rotor_disk_m2__gt=0), name="uav_type_disk_positive"),
+            models.CheckConstraint(condition=Q(hover_power_w=None) | Q(hover_power_w__gt=0), name="uav_type_hover_positive"),
         ]
 
     def __str__(self) -> str:

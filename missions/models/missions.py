@@ -29,6 +29,8 @@ class MissionState(models.TextChoices):
 class Objective(models.TextChoices):
     TOTAL = "total", "Fly least"
     MAKESPAN = "makespan", "Even routes"
+    TIME = "time", "Least flying time"
+    ENERGY = "energy", "Least energy"
 
 
 class Mission(models.Model):
@@ -41,6 +43,9 @@ class Mission(models.Model):
     state = models.CharField(max_length=20, choices=MissionState.choices, default=MissionState.DRAFT)
     objective = models.CharField(max_length=10, choices=Objective.choices, default=Objective.TOTAL)
     return_to_start = models.BooleanField(default=False)
+    departs_at = models.DateTimeField(null=True, blank=True, help_text="planned take-off; empty = at any time")
+    conditions = models.JSONField(default=dict, blank=True, help_text="wind by height and temperature; see flight_plan/conditions.py")
+    charging_w = models.FloatField(null=True, blank=True, help_text="watts of charging at towers on the way; empty = none")
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     planned_at = models.DateTimeField(null=True, blank=True)
     graph_version = models.BigIntegerField(null=True, blank=True, help_text="the graph that the routes were planned on")
@@ -48,6 +53,8 @@ class Mission(models.Model):
     flat_ground_assumed = models.BooleanField(null=True, blank=True)
     total_length_m = models.FloatField(null=True, blank=True)
     longest_route_m = models.FloatField(null=True, blank=True)
+    total_energy_wh = models.FloatField(null=True, blank=True, help_text="of the routes of UAVs with a battery; empty = none has one")
+    separation = models.JSONField(null=True, blank=True, help_text="how the routes are kept apart, and what could not be")
     last_plan = models.JSONField(null=True, blank=True, help_text="summary of the plan before the present one, to compare with")
     locks = models.JSONField(default=list, blank=True, help_text="runs of targets that one UAV flies in this order; targets by sequence")
     plan_quality = models.JSONField(null=True, blank=True, help_text="bound, gap and method of the plan, and what its locks cost")
@@ -81,7 +88,9 @@ class MissionUav(models.Model):
     cruise_speed_mps = models.FloatField()
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
     most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
+    sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
+    performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see flight_plan/performance.py")
 
     class Meta:
         ordering = ["sequence"]
@@ -147,6 +156,10 @@ class Route(models.Model):
     graph_version = models.BigIntegerField(help_text="equals the mission's: a mission is never mixed from two plans")
     length_m = models.FloatField()
     duration_s = models.FloatField()
+    departs_s = models.FloatField(default=0.0, db_default=0.0, help_text="seconds after the mission's departure")
+    energy_wh = models.FloatField(null=True, blank=True, help_text="empty without a battery")
+    charging = models.JSONField(default=list, blank=True, help_text="stops at towers to charge; see services/plan_json.py")
+    battery_percent = models.FloatField(null=True, blank=True, help_text="left at the end; empty without a battery")
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
@@ -163,6 +176,7 @@ class WaypointKind(models.TextChoices):
     PASS = "pass", "Pass"
     TARGET = "target", "Target"
     END = "end", "End"
+    BASE = "base", "Between two flights"
 
 
 class Waypoint(models.Model):
@@ -178,6 +192,10 @@ class Waypoint(models.Model):
     altitude_agl_m = models.FloatField()
     altitude_amsl_m = models.FloatField(null=True, blank=True, help_text="empty without terrain data")
     altitude_relative_m = models.FloatField()
+    arrival_s = models.FloatField(null=True, blank=True, help_text="seconds after the mission's departure; empty in older plans")
+    used_wh = models.FloatField(null=True, blank=True, help_text="since take-off; empty without a battery")
+    battery_left_percent = models.FloatField(null=True, blank=True)
+    is_by_hand = models.BooleanField(default=False, db_default=False, help_text="put in, moved or flown at another height by a person")
 
     class Meta:
         ordering = ["sequence"]

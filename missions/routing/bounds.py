@@ -1,6 +1,7 @@
 """Lower bounds: what no plan can do better than, if it leaves out as little as the best one does."""
 
 import random
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -8,8 +9,8 @@ import numpy as np
 from numba import njit
 
 from missions.routing import exact
-from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
-from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
+from missions.routing.arcs import NO_WAY_M, Arcs, no_burden
+from missions.routing.problem import BoolArray, FloatArray, IntArray, Objective, Problem, Routes
 from missions.routing.reach import least_ways
 
 SUBSET_TARGETS = 9
@@ -21,7 +22,7 @@ HAIR = 1e-9  # the share by which rounding could lift a bound
 
 
 def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, routes: Routes, *, seed: int) -> float:
-    """Metres for the total, seconds for the longest route; the routes are any plan that keeps the limits.
+    """In the unit of the objective; the routes are any plan that keeps the limits, needed_m (u, v) as of `needed_range_m`.
 
     The best plan leaves out no more by weight than this one: a target that weighs more than what this plan leaves out of the usable ones
     is certain to be in it. Over those targets, at metres measured over all others if that is shorter:
@@ -38,6 +39,8 @@ def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, route
     can_be_done[arcs.target[usable.any(axis=0)]] = True
     visited = {problem.visits[visit].target for route in routes for visit in route}
     missed = float(sum(arcs.weight[target] for target in np.flatnonzero(can_be_done).tolist() if target not in visited))
+    if problem.objective is not Objective.TOTAL and (not arcs.is_makespan or problem.seconds is not None):
+        needed_m = _needed(arcs)
     alone = _alone(arcs, usable, needed_m)
     bound = _farthest(alone, arcs.weight, can_be_done, missed)
     certain = np.flatnonzero(can_be_done & (arcs.weight > missed))
@@ -45,11 +48,12 @@ def lower_bound(problem: Problem, usable: BoolArray, needed_m: FloatArray, route
         return (bound + ready_s if bound else 0.0) * (1.0 - HAIR)
     closed = _over_others(arcs)
     ways = arcs if missed == 0 and can_be_done.all() else closed
-    along_m = np.array([visit.length_m for visit in problem.visits])
-    lengths_m = [problem.route_length_m(uav, route) for uav, route in enumerate(routes)]
-    bound = max(bound, _by_forest(ways, along_m, usable, certain, sum(lengths_m)))
+    is_plain = problem.seconds is None and problem.wh is None
+    shift_m = arcs.along_m / 2 if is_plain else np.stack([_shift(onward_m) for onward_m in ways.onward_m])
+    total_m = sum(problem.route_length_m(uav, route) for uav, route in enumerate(routes)) if is_plain else _total_m(arcs, routes)
+    bound = max(bound, _by_forest(ways, shift_m, usable, certain, total_m))
     if arcs.is_makespan:
-        value = max(problem.route_duration_s(uav, route) for uav, route in enumerate(routes))
+        value = max(problem.durations_s(routes))
         bound = _by_subsets(closed, usable, certain, alone, bound, value - ready_s, seed)
     return (bound + ready_s) * (1.0 - HAIR)
 
@@ -62,6 +66,35 @@ def _alone(arcs: Arcs, usable: BoolArray, needed_m: FloatArray) -> FloatArray:
     alone = np.full(len(arcs.weight), np.inf)
     np.minimum.at(alone, arcs.target, value.min(axis=0))
     return alone
+
+
+def _needed(arcs: Arcs) -> FloatArray:
+    """The least that a route with each visit takes in the unit of the arcs, (u, v)."""
+    over = _over_others(arcs)
+    return np.asarray(over.first_m + over.end_m, dtype=np.float64)
+
+
+def _total_m(arcs: Arcs, routes: Routes) -> float:
+    return float(sum(_length_m(arcs, uav, route) for uav, route in enumerate(routes)))
+
+
+def _length_m(arcs: Arcs, uav: int, route: Sequence[int]) -> float:
+    if not route:
+        return 0.0
+    onward_m = arcs.onward_m[arcs.class_of[uav]]
+    length_m = arcs.first_m[uav, route[0]] + arcs.end_m[uav, route[-1]] + sum(onward_m[left, right] for left, right in pairwise(route))
+    return float(length_m)
+
+
+def _shift(onward_m: FloatArray) -> FloatArray:
+    """What to move of the arcs to each visit to those from it, (v,), so that there and back come to be as alike as can be.
+
+    A route keeps its length, whatever is moved. Half of what lies along a stretch is moved so, and most of what an even wind does: by
+    that a way differs from its reverse by what lies between its ends in the wind's direction. The least squares over all pairs.
+    """
+    both = (onward_m < NO_WAY_M) & (onward_m.T < NO_WAY_M)
+    uneven_m = np.where(both, onward_m - onward_m.T, 0.0)
+    return np.asarray(-uneven_m.sum(axis=1) / (2 * np.maximum(both.sum(axis=1), 1)), dtype=np.float64)
 
 
 def _farthest(alone: FloatArray, weight: FloatArray, can_be_done: BoolArray, missed: float) -> float:
@@ -77,34 +110,29 @@ def _farthest(alone: FloatArray, weight: FloatArray, can_be_done: BoolArray, mis
 
 def _over_others(arcs: Arcs) -> Arcs:
     """The same with the least metres between all visits, over others if that is shorter."""
-    onward_m = np.minimum(least_ways(np.where(arcs.onward_m < NO_WAY_M, arcs.onward_m, np.inf)), NO_WAY_M)
-    return Arcs(
-        first_m=np.stack([(row[:, None] + onward_m).min(axis=0) for row in arcs.first_m]),
+    onward_m = np.stack([np.minimum(least_ways(np.where(ways_m < NO_WAY_M, ways_m, np.inf)), NO_WAY_M) for ways_m in arcs.onward_m])
+    class_of = arcs.class_of.tolist()
+    return replace(
+        arcs,
+        first_m=np.stack([(row[:, None] + onward_m[number]).min(axis=0) for number, row in zip(class_of, arcs.first_m, strict=True)]),
         onward_m=onward_m,
-        end_m=np.stack([(onward_m + row[None, :]).min(axis=1) for row in arcs.end_m]),
-        target=arcs.target,
-        service_s=arcs.service_s,
-        done=arcs.done,
-        limit_m=arcs.limit_m,
-        speed_mps=arcs.speed_mps,
-        ready_s=arcs.ready_s,
-        most=arcs.most,
-        allowed=arcs.allowed,
-        weight=arcs.weight,
-        is_makespan=arcs.is_makespan,
+        end_m=np.stack([(onward_m[number] + row[None, :]).min(axis=1) for number, row in zip(class_of, arcs.end_m, strict=True)]),
     )
 
 
-def _by_forest(arcs: Arcs, along_m: FloatArray, usable: BoolArray, certain: IntArray, total_m: float) -> float:
-    """The bound from spanning forests over the certain targets; total_m is that of a plan."""
-    apart_m, start_m, end_m, service_s = _between_targets(arcs, along_m, usable, certain)
+def _by_forest(arcs: Arcs, shift_m: FloatArray, usable: BoolArray, certain: IntArray, total_m: float) -> float:
+    """The bound from spanning forests over the certain targets; total_m is that of a plan, shift_m (c, v) see `_between_targets`."""
+    apart_m, start_m, end_m, service_s = _between_targets(arcs, shift_m, usable, certain)
     steps = int(np.clip(ARC_LOOKS // (len(certain) ** 2 + 1), LEAST_STEPS, MOST_STEPS))
     free_m, _ = _ascent(apart_m, start_m, end_m, max(total_m, 1.0), steps, False, arcs.speed_mps)
     if not arcs.is_makespan:
         return float(free_m)
-    speed_mps, slowest_mps = float(arcs.speed_mps.sum()), float(arcs.speed_mps.min())
+    is_first = np.diff(arcs.owner, prepend=arcs.owner[0] - 1) > 0
+    speed_mps, slowest_mps = float(arcs.speed_mps[is_first].sum()), float(arcs.speed_mps.min())
     work_m = slowest_mps * float(service_s.sum())
     mean_s = (free_m + work_m) / speed_mps
+    if arcs.has_sorties:
+        return mean_s
     all_m, reward_s = _ascent(apart_m, start_m, end_m, max(total_m, 1.0) * 1.2, steps, True, arcs.speed_mps)
     rest_m = all_m + work_m - reward_s * speed_mps
     all_s = (all_m + work_m) / speed_mps if rest_m >= 0 else reward_s + rest_m / slowest_mps
@@ -114,11 +142,11 @@ def _by_forest(arcs: Arcs, along_m: FloatArray, usable: BoolArray, certain: IntA
 
 
 def _between_targets(
-    arcs: Arcs, along_m: FloatArray, usable: BoolArray, certain: IntArray
+    arcs: Arcs, shift_m: FloatArray, usable: BoolArray, certain: IntArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Least metres between the certain targets either way round (n, n), from starts and to ends (u, n), and the service of each (n,).
 
-    An arc of `arcs` contains the way along the visit that it leads to; here the arcs on both sides of a visit contain half of it each.
+    An arc of `arcs` contains the way along the visit that it leads to; here shift_m (c, v), of it or more, goes to the arcs behind it.
     """
     number = np.full(len(arcs.weight), -1)
     number[certain] = np.arange(len(certain))
@@ -126,11 +154,13 @@ def _between_targets(
     of = number[arcs.target[visits]]
     n, uavs = len(certain), len(arcs.first_m)
     apart_m, start_m, end_m = np.full((n, n), NO_WAY_M), np.full((uavs, n), NO_WAY_M), np.full((uavs, n), NO_WAY_M)
-    half_m = along_m[visits] / 2
-    np.minimum.at(apart_m, (of[:, None], of[None, :]), arcs.onward_m[np.ix_(visits, visits)] + half_m[:, None] - half_m[None, :])
-    for uav in range(uavs):
-        np.minimum.at(start_m[uav], of, np.where(usable[uav, visits], arcs.first_m[uav, visits] - half_m, NO_WAY_M))
-        np.minimum.at(end_m[uav], of, np.where(usable[uav, visits], arcs.end_m[uav, visits] + half_m, NO_WAY_M))
+    moved_m = shift_m[:, visits]
+    for onward_m, out_m in zip(arcs.onward_m, moved_m, strict=True):
+        np.minimum.at(apart_m, (of[:, None], of[None, :]), onward_m[np.ix_(visits, visits)] + out_m[:, None] - out_m[None, :])
+    for uav, number in enumerate(arcs.class_of.tolist()):
+        out_m = moved_m[number]
+        np.minimum.at(start_m[uav], of, np.where(usable[uav, visits], arcs.first_m[uav, visits] - out_m, NO_WAY_M))
+        np.minimum.at(end_m[uav], of, np.where(usable[uav, visits], arcs.end_m[uav, visits] + out_m, NO_WAY_M))
     apart_m = np.minimum(apart_m, apart_m.T)
     service_s = np.full(n, np.inf)
     np.minimum.at(service_s, of, arcs.service_s[visits])
@@ -248,28 +278,29 @@ def _longest_s(arcs: Arcs, usable: BoolArray, targets: list[int]) -> float:
     number = np.full(len(arcs.weight), -1)
     number[targets] = np.arange(len(targets))
     visits = np.flatnonzero(number[arcs.target] >= 0)
-    few = Arcs(
+    few = replace(
+        arcs,
         first_m=np.ascontiguousarray(arcs.first_m[:, visits]),
-        onward_m=np.ascontiguousarray(arcs.onward_m[np.ix_(visits, visits)]),
+        onward_m=np.ascontiguousarray(arcs.onward_m[:, visits][:, :, visits]),
         end_m=np.ascontiguousarray(arcs.end_m[:, visits]),
         target=number[arcs.target[visits]],
         service_s=arcs.service_s[visits],
         done=arcs.done[visits],
-        limit_m=arcs.limit_m,
-        speed_mps=arcs.speed_mps,
-        ready_s=arcs.ready_s,
-        most=arcs.most,
         allowed=np.ascontiguousarray(usable[:, visits]),
         weight=np.ones(len(targets)),
-        is_makespan=True,
+        along_m=arcs.along_m[:, visits],
+        burden=no_burden(len(arcs.first_m), len(visits)),  # without it no plan gets longer
     )
     routes = exact.best_routes(few)
     if sum(len(route) for route in routes) < len(targets):
         return 0.0
-    longest_s = 0.0
+    longest_s = own_s = 0.0
     for uav, route in enumerate(routes):
+        is_later = uav > 0 and few.owner[uav] == few.owner[uav - 1]
+        if not is_later:
+            own_s = 0.0
         if route:
-            length_m = few.first_m[uav, route[0]] + few.end_m[uav, route[-1]]
-            length_m += sum(few.onward_m[left, right] for left, right in pairwise(route))
-            longest_s = max(longest_s, float(length_m / few.speed_mps[uav]) + float(few.service_s[list(route)].sum()))
+            flown_s = _length_m(few, uav, route) / float(few.speed_mps[uav]) + float(few.service_s[list(route)].sum())
+            own_s += flown_s + (float(few.turnaround_s[uav]) if is_later else 0.0)
+            longest_s = max(longest_s, own_s)
     return longest_s

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 from numba import njit
 
-from missions.routing.arcs import NO_WAY_M, IntArray
+from missions.routing.arcs import NO_WAY_M
 from missions.routing.plan_state import Ground, Plan, RandomState, draw, draw_below
+from missions.routing.problem import IntArray
 
 NEIGHBOURS = 12
 LONGEST_SEGMENT = 40
@@ -105,6 +106,10 @@ def added_m(ground: Ground, plan: Plan, move: Move) -> float:
         other_before, other_behind = _around(plan, other_uav, first, first)
         longer_m = _joined_m(ground, uav, before, other_behind) + _joined_m(ground, other_uav, other_before, behind)
         longer_m -= plan.gap_m[uav, move.slot] + plan.gap_m[other_uav, first] * (other_size > 0)
+        if ground.class_of[uav] != ground.class_of[other_uav]:
+            tail_m, own_tail_m, _, _, _ = _carried(ground, plan, other_uav, uav, move.slot, size, False)
+            other_tail_m, own_other_tail_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, other_size, False)
+            longer_m += own_tail_m - tail_m + own_other_tail_m - other_tail_m
         if behind >= 0:
             last = plan.visit[uav, size - 1]
             longer_m += ground.end_m[other_uav, last] - ground.end_m[uav, last]
@@ -116,9 +121,9 @@ def added_m(ground: Ground, plan: Plan, move: Move) -> float:
     longer_m = 0.0
     if move.is_turned:
         begin, last = ground.twin[last], ground.twin[begin]
-        if not ground.is_alike:
-            old_m, new_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, end, True)
-            longer_m = new_m - old_m
+    if (move.is_turned and not ground.is_alike) or ground.class_of[uav] != ground.class_of[other_uav]:
+        old_m, new_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, end, move.is_turned)
+        longer_m = new_m - old_m
     before, behind = _around(plan, other_uav, first, end)
     longer_m -= plan.gap_m[other_uav, first] + plan.gap_m[other_uav, end]
     if move.kind == TURN:
@@ -167,8 +172,8 @@ def measured(ground: Ground, plan: Plan, move: Move) -> Measured:
 def _with_other_tails(ground: Ground, plan: Plan, move: Move) -> Measured:
     uav, other_uav, cut, other_cut = move.uav, move.other_uav, move.slot, move.first
     size, other_size = plan.size[uav], plan.size[other_uav]
-    tail_m, _, tail_s, tail, may = _carried(ground, plan, other_uav, uav, cut, size, False)
-    other_tail_m, _, other_tail_s, other_tail, other_may = _carried(ground, plan, uav, other_uav, other_cut, other_size, False)
+    _, tail_m, tail_s, tail, may = _carried(ground, plan, other_uav, uav, cut, size, False)
+    _, other_tail_m, other_tail_s, other_tail, other_may = _carried(ground, plan, uav, other_uav, other_cut, other_size, False)
     if not (may and other_may):
         return Measured(NO_WAY_M, 0.0, 0, NO_WAY_M, 0.0, 0)
     before, behind = _around(plan, uav, cut, cut)
@@ -200,19 +205,23 @@ def _carried(
     """Metres inside a segment as it is and as the UAV that gets it would fly it, its service and targets, and whether that one may."""
     visit, gap_m, usable = plan.visit[uav], plan.gap_m[uav], ground.usable[to_uav]
     old_m, new_m, service_s, done = 0.0, 0.0, 0.0, 0
+    number, is_same = ground.class_of[to_uav], ground.class_of[to_uav] == ground.class_of[uav]
+    is_new = not is_same or (is_turned and not ground.is_alike)
     for place in range(first, end):
         here = visit[place]
         service_s += ground.service_s[here]
         done += ground.done[here]
         if is_turned:
             here = ground.twin[here]
-            if place > first and not ground.is_alike:
-                new_m += ground.onward_m[here, ground.twin[visit[place - 1]]]
+            if place > first and is_new:
+                new_m += ground.onward_m[number, here, ground.twin[visit[place - 1]]]
+        elif place > first and is_new:
+            new_m += ground.onward_m[number, visit[place - 1], here]
         if place > first:
             old_m += gap_m[place]
         if not usable[here]:
             return 0.0, 0.0, 0.0, 0, False
-    return old_m, new_m if is_turned and not ground.is_alike else old_m, service_s, done, True
+    return old_m, new_m if is_new else old_m, service_s, done, True
 
 
 @njit(cache=True, nogil=True)
@@ -227,7 +236,7 @@ def _around(plan: Plan, uav: int, first: int, end: int) -> tuple[int, int]:
 def _joined_m(ground: Ground, uav: int, left: int, right: int) -> float:
     if left < 0:
         return float(ground.first_m[uav, right]) if right >= 0 else 0.0
-    return float(ground.onward_m[left, right]) if right >= 0 else float(ground.end_m[uav, left])
+    return float(ground.onward_m[ground.class_of[uav], left, right]) if right >= 0 else float(ground.end_m[uav, left])
 
 
 @njit(cache=True, nogil=True)

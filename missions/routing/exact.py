@@ -3,8 +3,10 @@
 import numpy as np
 from numba import njit
 
-from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
-from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
+from missions.routing.arcs import Arcs
+from missions.routing.limited_tours import Tours, limited_tours
+from missions.routing.problem import BoolArray, FloatArray, IntArray, Problem, Routes
+from missions.routing.tours import shortest_tours, walk_back
 
 MAX_TARGETS = 12  # 4,096 sets and 531,441 pairs of a set and a part of it: about a millisecond per UAV
 
@@ -14,15 +16,23 @@ def best_plan(problem: Problem) -> Routes:
 
     Held and Karp's recursion (1962) gives each UAV's shortest route over every set of targets; the sets are then shared out among the
     UAVs, each share the best of all parts of a set. For the longest route this is done twice: for its least duration, then for the
-    least total among the plans that are not slower. The alternatives of a target must take equally long to serve.
+    least total among the plans that are not slower. The alternatives of a target must take equally long to serve. Where more is limited
+    than what the objective counts, see `limited_tours.py`; where UAVs fly several sorties, each set is first shared out among these.
     """
     return best_routes(Arcs.of(problem))
 
 
 def best_routes(arcs: Arcs) -> Routes:
+    return proven_routes(arcs)[0]
+
+
+def proven_routes(arcs: Arcs) -> tuple[Routes, bool]:
+    """The best routes, and whether that is proven: not if too many tours would have had to be weighed."""
     uavs = len(arcs.first_m)
     if not uavs or not len(arcs.target):
-        return ((),) * uavs
+        return ((),) * uavs, True
+    if len(arcs.burden) or arcs.has_sorties:
+        return _best_of_limited(arcs)
     length, order = _best(
         arcs.first_m,
         arcs.onward_m,
@@ -37,8 +47,86 @@ def best_routes(arcs: Arcs) -> Routes:
         arcs.allowed,
         arcs.weight,
         arcs.is_makespan,
+        arcs.class_of,
     )
-    return tuple(tuple(route[:count]) for route, count in zip(order.tolist(), length.tolist(), strict=True))
+    return tuple(tuple(route[:count]) for route, count in zip(order.tolist(), length.tolist(), strict=True)), True
+
+
+def _best_of_limited(arcs: Arcs) -> tuple[Routes, bool]:
+    """The same with a burden or with sorties: each kind of UAV has its own tours, and its sets shared out among its sorties."""
+    targets = len(arcs.weight)
+    rows = np.flatnonzero(np.diff(arcs.owner, prepend=arcs.owner[0] - 1))  # the first sortie of each UAV
+    sorties = np.diff(rows, append=len(arcs.owner))
+    counts, services_s = _sums(arcs.done, arcs.target, targets), _sums_s(arcs.service_s, arcs.target, targets)
+    number: dict[tuple[object, ...], int] = {}
+    kind = np.zeros(len(rows), dtype=np.int64)
+    tours: list[Tours] = []
+    length_m, duration_s = [], []
+    for uav, (row, most) in enumerate(zip(rows.tolist(), sorties.tolist(), strict=True)):
+        kind[uav] = number.setdefault((most, *_likeness(arcs, row)), len(tours))
+        if kind[uav] < len(tours):
+            continue
+        own = limited_tours(arcs, row, counts)
+        tours.append(own)
+        own_m = _shared_among_sorties(own.length_m, float(arcs.again_m[row]), most, int(sorties.max()))
+        own_m[:, counts > arcs.most[row]] = np.inf
+        flights = np.arange(1, len(own_m) + 1)[:, None]
+        own_s = own_m / arcs.speed_mps[row] + services_s + arcs.ready_s[row] * flights + arcs.turnaround_s[row] * (flights - 1)
+        own_s[:, 0] = 0.0
+        length_m.append(own_m)
+        duration_s.append(own_s)
+    weights = _sums_s(arcs.weight, np.arange(targets), targets)
+    sets, flown = _shared_out(kind, np.stack(length_m), np.stack(duration_s), weights, targets, arcs.is_makespan)
+    routes: list[tuple[int, ...]] = []
+    for uav, most in enumerate(sorties.tolist()):
+        own, again_m = tours[kind[uav]], float(arcs.again_m[rows[uav]])
+        parts = _parts(int(sets[uav]), int(flown[uav]), own.length_m, length_m[kind[uav]], again_m).tolist()
+        routes += [*(own.route(part) for part in parts), *((),) * (most - len(parts))]
+    return tuple(routes), all(own.is_whole for own in tours)
+
+
+def _likeness(arcs: Arcs, uav: int) -> tuple[object, ...]:
+    """UAVs that are alike in everything have the same."""
+    of_uav = (arcs.first_m, arcs.end_m, arcs.limit_m, arcs.speed_mps, arcs.ready_s, arcs.most, arcs.allowed, arcs.class_of)
+    more = (arcs.turnaround_s, arcs.again_m, *arcs.burden.first, *arcs.burden.end, *arcs.burden.limit)
+    return tuple(np.asarray(values[uav]).tobytes() for values in (*of_uav, *more))
+
+
+@njit(cache=True, nogil=True)
+def _shared_among_sorties(single_m: FloatArray, again_m: float, most: int, rows: int) -> FloatArray:
+    """The least of each set in just so many sorties, (rows, sets): one in the first row; inf beyond the most."""
+    sets = len(single_m)
+    shared_m = np.full((rows, sets), np.inf)
+    shared_m[0] = single_m
+    for number in range(1, most):
+        for members in range(1, sets):
+            lowest = members & -members
+            others = members ^ lowest
+            least_m, part = np.inf, others
+            while part:  # the rest flies later; the sortie with the lowest target comes first
+                least_m = min(least_m, single_m[members ^ part] + shared_m[number - 1, part])
+                part = (part - 1) & others
+            shared_m[number, members] = least_m + again_m
+    return shared_m
+
+
+@njit(cache=True, nogil=True)
+def _parts(members: int, flown: int, single_m: FloatArray, shared_m: FloatArray, again_m: float) -> IntArray:
+    """The set of each of so many sorties in the best share."""
+    parts = np.zeros(flown, dtype=np.int64)
+    for number in range(flown - 1, 0, -1):
+        others = members ^ (members & -members)
+        rest, least_m, part = 0, np.inf, others
+        while part:
+            here_m = single_m[members ^ part] + shared_m[number - 1, part]
+            if here_m < least_m:
+                rest, least_m = part, here_m
+            part = (part - 1) & others
+        parts[flown - 1 - number] = members ^ rest
+        members = rest
+    if flown:
+        parts[flown - 1] = members
+    return parts
 
 
 @njit(cache=True, nogil=True)
@@ -56,59 +144,91 @@ def _best(
     allowed: BoolArray,
     weight: FloatArray,
     is_makespan: bool,
+    class_of: IntArray,
 ) -> tuple[IntArray, IntArray]:
     """Visits in order of each UAV (u, t), and how many they are (u,)."""
     uavs, targets = len(first_m), len(weight)
     sets = 1 << targets
-    back_m = np.ascontiguousarray(onward_m.T)  # the arcs that lead to a visit lie in a row
-    kind = _kinds(first_m, end_m, limit_m, speed_mps, ready_s, most, allowed)
+    back_m = np.empty(onward_m.shape)  # the arcs that lead to a visit lie in a row
+    for number in range(len(onward_m)):
+        back_m[number] = onward_m[number].T
+    kind = _kinds(first_m, end_m, limit_m, speed_mps, ready_s, most, allowed, class_of)
     kinds = kind.max() + 1
     reach_m = np.empty((kinds, sets, len(target)))
-    length_m = np.empty((kinds, sets))
-    duration_s = np.empty((kinds, sets))
+    length_m = np.empty((kinds, 1, sets))
+    duration_s = np.empty((kinds, 1, sets))
     counts = _sums(done, target, targets)
     services_s = _sums_s(service_s, target, targets)
     for uav in range(uavs):
         number = kind[uav]
         if uav > 0 and number <= kind[:uav].max():
             continue
-        _tours(first_m[uav], back_m, end_m[uav], target, allowed[uav], reach_m[number], length_m[number])
+        own_m, own_s = length_m[number, 0], duration_s[number, 0]
+        shortest_tours(first_m[uav], back_m[class_of[uav]], end_m[uav], target, allowed[uav], reach_m[number], own_m)
         for members in range(sets):
-            if length_m[number, members] > limit_m[uav] or counts[members] > most[uav]:
-                length_m[number, members] = np.inf
-            duration_s[number, members] = length_m[number, members] / speed_mps[uav] + services_s[members] + ready_s[uav]
-        duration_s[number, 0] = 0.0
+            if own_m[members] > limit_m[uav] or counts[members] > most[uav]:
+                own_m[members] = np.inf
+            own_s[members] = own_m[members] / speed_mps[uav] + services_s[members] + ready_s[uav]
+        own_s[0] = 0.0
 
+    share, _ = _shared_out(kind, length_m, duration_s, _sums_s(weight, np.arange(targets), targets), targets, is_makespan)
+    order = np.empty((uavs, targets), dtype=np.int64)
+    length = np.zeros(uavs, dtype=np.int64)
+    for uav in range(uavs):
+        back = back_m[class_of[uav]]
+        length[uav] = walk_back(share[uav], reach_m[kind[uav]], first_m[uav], back, end_m[uav], target, allowed[uav], order[uav])
+    return length, order
+
+
+@njit(cache=True, nogil=True)
+def _shared_out(
+    kind: IntArray, length_m: FloatArray, duration_s: FloatArray, weights: FloatArray, targets: int, is_makespan: bool
+) -> tuple[IntArray, IntArray]:
+    """The set of each UAV, (u,), and in how many sorties, (u,), from length and duration of each (kinds, sorties - 1, sets)."""
+    kinds, _, sets = length_m.shape
     flying = _flying(kind, targets)
     last = len(flying)
-    weights = _sums_s(weight, np.arange(targets), targets)
     total_m = np.empty((last, sets))
     longest_s = np.empty((last, sets))
+    own_m, own_s = np.empty((kinds, sets)), np.empty((kinds, sets))
+    flown = np.ones((kinds, sets), dtype=np.int64)
     if is_makespan:
-        _share_by_longest(flying, kind, duration_s, longest_s)
+        _choose(duration_s, duration_s, np.inf, own_m, own_s, flown)
+        _share_by_longest(flying, kind, own_s, longest_s)
         members = _heaviest(weights, longest_s[last - 1], longest_s[last - 1])
-        cap_s = longest_s[last - 1, members]
-        for number in range(kinds):
-            for part in range(sets):
-                if duration_s[number, part] > cap_s:
-                    length_m[number, part] = np.inf
-        _share_by_total(flying, kind, length_m, duration_s, members if members == sets - 1 else -1, total_m, longest_s)
+        _choose(length_m, duration_s, longest_s[last - 1, members], own_m, own_s, flown)
+        _share_by_total(flying, kind, own_m, own_s, members if members == sets - 1 else -1, total_m, longest_s)
     else:
-        _share_by_total(flying, kind, length_m, duration_s, -1, total_m, longest_s)
+        _choose(length_m, duration_s, np.inf, own_m, own_s, flown)
+        _share_by_total(flying, kind, own_m, own_s, -1, total_m, longest_s)
         members = sets - 1
     if not np.isfinite(total_m[last - 1, members]) or members < sets - 1:  # of several sets that weigh the same the one of the least total
         members = _heaviest(weights, total_m[last - 1], longest_s[last - 1])
 
-    order = np.empty((uavs, targets), dtype=np.int64)
-    length = np.zeros(uavs, dtype=np.int64)
+    of_uav = np.zeros(len(kind), dtype=np.int64)
+    sorties = np.zeros(len(kind), dtype=np.int64)
     for place in range(last - 1, -1, -1):
         uav = flying[place]
         own = members
         if place > 0:
-            own = _own_part(members, total_m[place - 1], longest_s[place - 1], length_m[kind[uav]], duration_s[kind[uav]])
-        length[uav] = _walk_back(own, reach_m[kind[uav]], first_m[uav], back_m, end_m[uav], target, allowed[uav], order[uav])
+            own = _own_part(members, total_m[place - 1], longest_s[place - 1], own_m[kind[uav]], own_s[kind[uav]])
+        of_uav[uav] = own
+        sorties[uav] = flown[kind[uav], own] if own else 0
         members ^= own
-    return length, order
+    return of_uav, sorties
+
+
+@njit(cache=True, nogil=True)
+def _choose(least: FloatArray, duration_s: FloatArray, most_s: float, own_m: FloatArray, own_s: FloatArray, flown: IntArray) -> None:
+    """Fill in the least of each kind and set that takes no longer, over all numbers of sorties, the fewer first; inf if there is none."""
+    kinds, rows, sets = least.shape
+    for number in range(kinds):
+        for members in range(sets):
+            best_m, best_s, sorties = np.inf, duration_s[number, 0, members], 1
+            for row in range(rows):
+                if duration_s[number, row, members] <= most_s and least[number, row, members] < best_m:
+                    best_m, best_s, sorties = least[number, row, members], duration_s[number, row, members], row + 1
+            own_m[number, members], own_s[number, members], flown[number, members] = best_m, best_s, sorties
 
 
 @njit(cache=True, nogil=True)
@@ -120,6 +240,7 @@ def _kinds(
     ready_s: FloatArray,
     most: IntArray,
     allowed: BoolArray,
+    class_of: IntArray,
 ) -> IntArray:
     """UAVs that are alike in everything have the same number."""
     kind = np.empty(len(first_m), dtype=np.int64)
@@ -132,6 +253,7 @@ def _kinds(
                 and speed_mps[uav] == speed_mps[other]
                 and ready_s[uav] == ready_s[other]
                 and most[uav] == most[other]
+                and class_of[uav] == class_of[other]
                 and np.array_equal(first_m[uav], first_m[other])
                 and np.array_equal(end_m[uav], end_m[other])
                 and np.array_equal(allowed[uav], allowed[other])
@@ -180,42 +302,6 @@ def _sums_s(of_visit: FloatArray, target: IntArray, targets: int) -> FloatArray:
         for rest in range(1 << number):
             sums[rest | 1 << number] = sums[rest] + of_target[number]
     return sums
-
-
-@njit(cache=True, nogil=True)
-def _tours(
-    first_m: FloatArray,
-    back_m: FloatArray,
-    end_m: FloatArray,
-    target: IntArray,
-    allowed: BoolArray,
-    reach_m: FloatArray,
-    length_m: FloatArray,
-) -> None:
-    """Fill in one UAV's shortest routes: over a set, ending with a visit (sets, v), and over a set (sets,)."""
-    visits = len(target)
-    length_m[0] = 0.0
-    reach_m[0] = np.inf
-    for members in range(1, len(length_m)):
-        row = reach_m[members]
-        closed_m = np.inf
-        for visit in range(visits):
-            row[visit] = np.inf
-            bit = 1 << target[visit]
-            if members & bit == 0 or not allowed[visit]:
-                continue
-            rest = members ^ bit
-            if rest == 0:
-                least_m = first_m[visit]
-            else:
-                least_m = np.inf
-                before, arc_m = reach_m[rest], back_m[visit]
-                for other in range(visits):
-                    least_m = min(least_m, before[other] + arc_m[other])
-            if least_m < NO_WAY_M:
-                row[visit] = least_m
-                closed_m = min(closed_m, least_m + end_m[visit])
-        length_m[members] = closed_m if closed_m < NO_WAY_M else np.inf
 
 
 @njit(cache=True, nogil=True)
@@ -307,37 +393,3 @@ def _heaviest(weights: FloatArray, first: FloatArray, second: FloatArray) -> int
         ):
             best = members
     return best
-
-
-@njit(cache=True, nogil=True)
-def _walk_back(
-    members: int,
-    reach_m: FloatArray,
-    first_m: FloatArray,
-    back_m: FloatArray,
-    end_m: FloatArray,
-    target: IntArray,
-    allowed: BoolArray,
-    order: IntArray,
-) -> int:
-    """Write one UAV's shortest route over the set; returns how many visits it has."""
-    if members == 0:
-        return 0
-    visits = len(target)
-    last, least_m = 0, np.inf
-    for visit in range(visits):
-        if reach_m[members, visit] + end_m[visit] < least_m:
-            last, least_m = visit, reach_m[members, visit] + end_m[visit]
-    count = 0
-    for number in range(len(order)):
-        if members >> number & 1:
-            count += 1
-    for place in range(count - 1, -1, -1):
-        order[place] = last
-        members ^= 1 << target[last]
-        before, least_m = 0, np.inf
-        for other in range(visits):
-            if reach_m[members, other] + back_m[last, other] < least_m:
-                before, least_m = other, reach_m[members, other] + back_m[last, other]
-        last = before
-    return count

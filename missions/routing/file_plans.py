@@ -24,9 +24,9 @@ from inspection.graph.nearness import EARTH_RADIUS_M
 from inspection.graph.node_tree import NodeTree, tree_of
 from inspection.graph.route_index import RouteIndex
 from inspection.graph.ways import travel_of_legs
-from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
+from missions.routing.arcs import NO_WAY_M, Arcs, no_burden
 from missions.routing.exact import MAX_TARGETS, best_routes
-from missions.routing.problem import FloatArray, Objective, Problem, Routes, UavStart, Visit
+from missions.routing.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
 from missions.routing.solver import solve
 
 PHASES = ("nearest", "matrix", "assign", "expand")
@@ -154,11 +154,11 @@ def _routes(length_m: FloatArray, uavs: int, objective: Objective) -> Routes:
 
 def _arcs(first_m: FloatArray, onward_m: FloatArray, objective: Objective) -> Arcs:
     uavs, targets = first_m.shape
-    return Arcs(first_m=first_m, onward_m=onward_m, is_makespan=objective is Objective.MAKESPAN, **_plain(uavs, targets))
+    return Arcs(first_m=first_m, onward_m=onward_m[None], is_makespan=objective is Objective.MAKESPAN, **_plain(uavs, targets))
 
 
 @lru_cache(maxsize=64)
-def _plain(uavs: int, targets: int) -> dict[str, NDArray[Any]]:
+def _plain(uavs: int, targets: int) -> dict[str, Any]:
     """The arrays of a problem without limits, in which UAVs end anywhere. They are shared: nobody writes to them."""
     return {
         "end_m": np.zeros((uavs, targets)),
@@ -171,6 +171,13 @@ def _plain(uavs: int, targets: int) -> dict[str, NDArray[Any]]:
         "most": np.full(uavs, targets, dtype=np.int64),
         "allowed": np.ones((uavs, targets), dtype=np.bool_),
         "weight": np.ones(targets),
+        "class_of": np.zeros(uavs, dtype=np.int64),
+        "along_m": np.zeros((1, targets)),
+        "owner": np.arange(uavs),
+        "turnaround_s": np.zeros(uavs),
+        "again_m": np.zeros(uavs),
+        "burden": no_burden(uavs, targets),
+        "has_sorties": False,
     }
 
 

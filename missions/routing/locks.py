@@ -5,24 +5,37 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from missions.routing.problem import FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
+from missions.routing.problem import Amounts, FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
+
+MOST_WAYS = 16  # through a locked run between the same two visits, of which none beats another
 
 
 @dataclass(frozen=True)
 class _Run:
-    """One way of flying a locked run: its visits in order, and the metres from the first one's begin to the last one's end."""
+    """One way of flying a locked run: its visits in order, and what it takes from the first one's begin to the last one's end.
+
+    `taken` are metres, then seconds and Wh by class where the problem has them.
+    """
 
     visits: tuple[int, ...]
-    length_m: float
+    taken: tuple[float, ...]
+
+    @property
+    def length_m(self) -> float:
+        return self.taken[0]
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """A problem in which every lock is one target; `visits_of` and `targets_of` lead back to the visits and targets of the whole one."""
+    """A problem in which every lock is one target; `visits_of` and `targets_of` lead back to the visits and targets of the whole one.
+
+    `is_whole` tells whether every way through the locked runs that could be the best is in it.
+    """
 
     problem: Problem
     visits_of: tuple[tuple[int, ...], ...]
     targets_of: tuple[tuple[int, ...], ...]
+    is_whole: bool
 
     def expanded(self, routes: Routes) -> Routes:
         return tuple(tuple(visit for reduced in route for visit in self.visits_of[reduced]) for route in routes)
@@ -35,7 +48,8 @@ class Reduced:
 def reduced(problem: Problem) -> Reduced:
     """The problem without its locks: a run is a target of one visit for each pair of its first and its last visit.
 
-    Inside, stretches are flown in the directions that are shortest together. Leaving out what is locked weighs more than leaving out
+    Inside, stretches are flown in the directions that are shortest together; where seconds or Wh are not as the metres, each way that
+    takes less of something is a visit. Leaving out what is locked weighs more than leaving out
     everything free of its priority, and less than anything of a higher one. Raises InvalidProblem if the locks contradict each other.
     """
     _refuse_contradictions(problem)
@@ -47,11 +61,14 @@ def reduced(problem: Problem) -> Reduced:
     owner: list[Lock | None] = []
     for number, target in enumerate(free):
         for visit in visits_of_target[target]:
-            ways.append(_Run((visit,), problem.visits[visit].length_m))
+            ways.append(_Run((visit,), (problem.visits[visit].length_m,)))
             visits.append(replace(problem.visits[visit], target=number))
             owner.append(None)
+    is_whole = True
     for number, lock in enumerate(problem.locks, start=len(free)):
-        for run in _runs(problem, [visits_of_target[target] for target in lock.targets]):
+        runs, has_all = _runs(problem, [visits_of_target[target] for target in lock.targets])
+        is_whole = is_whole and has_all
+        for run in runs:
             ways.append(run)
             service_s = sum(problem.visits[visit].service_s for visit in run.visits)
             done = sum(problem.visits[visit].done for visit in run.visits)
@@ -62,10 +79,11 @@ def reduced(problem: Problem) -> Reduced:
     last = np.array([run.visits[-1] for run in ways], dtype=np.int64)
     between_m = problem.between_m[np.ix_(last, first)]
     allowed = np.ones((len(problem.uavs), len(problem.visits)), dtype=bool) if problem.allowed is None else problem.allowed
+    owner_of = np.array(problem.owner) if problem.owner else np.arange(len(problem.uavs))
     allowed = np.array([allowed[:, list(run.visits)].all(axis=1) for run in ways], dtype=bool).reshape(len(ways), len(problem.uavs)).T
     for index, wish in enumerate(owner):
         if wish is not None:
-            allowed[:, index] &= np.arange(len(problem.uavs)) == wish.uav
+            allowed[:, index] &= owner_of == owner_of[wish.uav]
             if wish.at_start:
                 between_m[:, index] = np.inf
             if wish.at_end:
@@ -81,13 +99,27 @@ def reduced(problem: Problem) -> Reduced:
             to_start_m=problem.to_start_m[last],
             to_base_m=None if problem.to_base_m is None else problem.to_base_m[last],
             allowed=allowed,
+            cannot_end=None if problem.cannot_end is None else problem.cannot_end[last],
             priorities=(),
             locks=(),
             weights=_weights(problem, targets_of, len(free)),
+            seconds=None if problem.seconds is None else _of_runs(problem.seconds, ways),
+            wh=None if problem.wh is None else _of_runs(problem.wh, ways),
         ),
         tuple(run.visits for run in ways),
         targets_of,
+        is_whole,
     )
+
+
+def _of_runs(amounts: Amounts, ways: Sequence[_Run]) -> Amounts:
+    """What whole runs take, along the ways between their visits too."""
+    inside = [
+        amounts.at_visit[:, list(run.visits)].sum(axis=1) + amounts.onward[:, list(run.visits[:-1]), list(run.visits[1:])].sum(axis=1)
+        for run in ways
+    ]
+    first, last = np.array([run.visits[0] for run in ways], dtype=np.int64), np.array([run.visits[-1] for run in ways], dtype=np.int64)
+    return amounts.taken(first, last, np.array(inside, dtype=np.float64).reshape(len(ways), len(amounts.onward)).T)
 
 
 def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int) -> FloatArray:
@@ -102,20 +134,44 @@ def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int)
     return np.array([weights[list(targets)].sum() for targets in targets_of])
 
 
-def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> list[_Run]:
-    """The shortest way through one visit of each target, for each first and each last visit that has one."""
-    runs = []
+def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> tuple[list[_Run], bool]:
+    """The best ways through one visit of each target, for each first and each last visit that has one, and whether these are all."""
+    runs: list[_Run] = []
+    is_whole = True
     for first in alternatives[0]:
-        ways = {first: _Run((first,), problem.visits[first].length_m)}
+        ways = {first: [_begun(problem, first)]}
         for visits in alternatives[1:]:
-            ways = {visit: min((_onward(problem, run, visit) for run in ways.values()), key=lambda run: run.length_m) for visit in visits}
-        runs += [run for run in ways.values() if np.isfinite(run.length_m)]
-    return runs
+            before = [run for found in ways.values() for run in found]
+            ways = {visit: _unbeaten([_onward(problem, run, visit) for run in before]) for visit in visits}
+            is_whole = is_whole and all(len(found) <= MOST_WAYS for found in ways.values())
+            ways = {visit: found[:MOST_WAYS] for visit, found in ways.items()}
+        runs += [run for found in ways.values() for run in found if np.isfinite(run.length_m)]
+    return runs, is_whole
+
+
+def _unbeaten(runs: Sequence[_Run]) -> list[_Run]:
+    """Those of which no other takes as little of everything, the shortest first."""
+    kept: list[_Run] = []
+    for run in sorted(runs, key=lambda run: run.taken):
+        if not any(all(own <= other for own, other in zip(better.taken, run.taken, strict=True)) for better in kept):
+            kept.append(run)
+    return kept
+
+
+def _begun(problem: Problem, visit: int) -> _Run:
+    more = [float(amount) for amounts in _amounts(problem) for amount in amounts.at_visit[:, visit]]
+    return _Run((visit,), (problem.visits[visit].length_m, *more))
 
 
 def _onward(problem: Problem, run: _Run, visit: int) -> _Run:
-    length_m = run.length_m + float(problem.between_m[run.visits[-1], visit]) + problem.visits[visit].length_m
-    return _Run((*run.visits, visit), length_m)
+    last = run.visits[-1]
+    length_m = run.length_m + float(problem.between_m[last, visit]) + problem.visits[visit].length_m
+    more = [float(amount) for amounts in _amounts(problem) for amount in amounts.onward[:, last, visit] + amounts.at_visit[:, visit]]
+    return _Run((*run.visits, visit), (length_m, *(own + added for own, added in zip(run.taken[1:], more, strict=True))))
+
+
+def _amounts(problem: Problem) -> list[Amounts]:
+    return [amounts for amounts in (problem.seconds, problem.wh) if amounts is not None]
 
 
 def _refuse_contradictions(problem: Problem) -> None:

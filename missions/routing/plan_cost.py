@@ -4,8 +4,8 @@ import math
 
 from numba import njit
 
-from missions.routing.crossing import Move, added_m, measured
-from missions.routing.plan_state import Ground, Plan, RandomState, draw, values
+from missions.routing.crossing import Measured, Move, added_m, measured
+from missions.routing.plan_state import Ground, Plan, RandomState, done_on_other_sorties, draw, duration_s, values
 
 HAIR_M = 1e-4  # by which a move stays within the limits: its metres are sums and differences
 EVENNESS = 1e-3  # what the mean route weighs beside the longest
@@ -42,12 +42,16 @@ def cost_of_routes(ground: Ground, plan: Plan, power: int, scale: float) -> floa
         for uav in range(len(plan.size)):
             total += plan.length_m[uav]
         return total
-    raised = 0.0
+    raised, own_s = 0.0, 0.0
     for uav in range(len(plan.size)):
-        duration = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
-        total += duration
-        raised += raised_to(duration / scale, power)
-    return float(scale * raised ** (1.0 / (1 << power)) + EVENNESS * total / len(plan.size))
+        if uav == ground.first_of[uav]:
+            own_s = duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav])
+        elif plan.size[uav]:
+            own_s += duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav])
+        if uav + 1 == ground.end_of[uav]:
+            total += own_s
+            raised += raised_to(own_s / scale, power)
+    return _mean_s(len(plan.size), raised, total, power, scale)
 
 
 @njit(cache=True, nogil=True)
@@ -64,19 +68,43 @@ def is_wanted(
         return False
     if new.done > ground.most[uav] or new.other_done > ground.most[other_uav]:
         return False
+    if ground.has_sorties and _do_too_many(ground, plan, move, new):
+        return False
     if not ground.is_makespan:
         return True
-    raised, total_s = 0.0, 0.0
+    raised, total_s, own_s = 0.0, 0.0, 0.0
     for number in range(len(plan.size)):
+        done = plan.done[number]
         if number == uav:
-            duration_s = new.length_m / ground.speed_mps[uav] + new.service_s
+            sortie_s, done = duration_s(new.length_m, ground.speed_mps[uav], new.service_s), new.done
         elif number == other_uav:
-            duration_s = new.other_length_m / ground.speed_mps[other_uav] + new.other_service_s
+            sortie_s, done = duration_s(new.other_length_m, ground.speed_mps[other_uav], new.other_service_s), new.other_done
         else:
-            duration_s = plan.length_m[number] / ground.speed_mps[number] + plan.service_s[number]
-        total_s += duration_s
-        raised += raised_to(duration_s / scale, power)
-    return bool(scale * raised ** (1.0 / (1 << power)) + EVENNESS * total_s / len(plan.size) < most_cost)
+            sortie_s = duration_s(plan.length_m[number], ground.speed_mps[number], plan.service_s[number])
+        if number == ground.first_of[number]:
+            own_s = sortie_s
+        elif done:
+            own_s += sortie_s
+        if number + 1 == ground.end_of[number]:
+            total_s += own_s
+            raised += raised_to(own_s / scale, power)
+    return _mean_s(len(plan.size), raised, total_s, power, scale) < most_cost
+
+
+@njit(cache=True, nogil=True)
+def _do_too_many(ground: Ground, plan: Plan, move: Move, new: Measured) -> bool:
+    """Whether a UAV would do more targets than it may on all its sorties."""
+    uav, other_uav = move.uav, move.other_uav
+    if ground.first_of[uav] == ground.first_of[other_uav]:
+        return False
+    own, others = done_on_other_sorties(ground, plan, uav), done_on_other_sorties(ground, plan, other_uav)
+    return bool(new.done + own > ground.most[uav] or new.other_done + others > ground.most[other_uav])
+
+
+@njit(cache=True, nogil=True)
+def _mean_s(uavs: int, raised: float, total_s: float, power: int, scale: float) -> float:
+    """From the sums of the durations, raised and not: what follows the longest the more the higher the power."""
+    return float(scale * raised ** (1.0 / (1 << power)) + EVENNESS * total_s / uavs)
 
 
 @njit(cache=True, nogil=True)
@@ -88,10 +116,13 @@ def raised_to(share: float, power: int) -> float:
 
 @njit(cache=True, nogil=True)
 def longest_of(ground: Ground, plan: Plan) -> int:
-    """The UAV that flies longest."""
-    longest, longest_s = 0, -1.0
+    """The UAV that flies longest; of its sorties the last."""
+    longest, longest_s, own_s = 0, -1.0, 0.0
     for uav in range(len(plan.size)):
-        duration_s = plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav]
-        if duration_s > longest_s and plan.size[uav]:
-            longest, longest_s = uav, duration_s
+        if uav == ground.first_of[uav]:
+            own_s = 0.0
+        if plan.size[uav]:
+            own_s += duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav])
+            if own_s > longest_s:
+                longest, longest_s = uav, own_s
     return longest

@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from missions.routing.arcs import NO_WAY_M, Arcs, IntArray
-from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
+from missions.routing.arcs import NO_WAY_M, Arcs
+from missions.routing.problem import BoolArray, FloatArray, IntArray, Problem, Routes
 
 RandomState = NDArray[np.uint64]  # one number
 
@@ -20,9 +20,12 @@ NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it 
 class Ground(NamedTuple):
     """What does not change. The first arrays are those of Arcs.
 
-    back_m   (v, v) the arcs that lead to a visit in one row
+    back_m   (c, v, v) the arcs that lead to a visit in one row
     twin     (v,) the same target the other way round; a visit that has none is its own
     is_alike whether an arc is as long as its reverse, and nothing has a twin
+    class_of (u,) the class of each UAV, of which the arcs are its own
+    more_*   what else is limited, as in Burden
+    first_of, end_of  (u,) the first of the sorties of the same UAV, and one past its last: a row of the plan is one sortie
     option   (v,) the visits of each target one after another, option_from (t + 1,) where each target's begin
     usable   (u, v) whether the UAV can and may fly the visit at all
     near     (t, k) the nearest targets of each, itself first
@@ -51,13 +54,22 @@ class Ground(NamedTuple):
     near: IntArray
     joined: IntArray
     far_m: FloatArray
+    class_of: IntArray
+    is_limited: bool
+    more_first: FloatArray
+    more_onward: FloatArray
+    more_end: FloatArray
+    more_limit: FloatArray
+    has_sorties: bool
+    first_of: IntArray
+    end_of: IntArray
 
 
 class Plan(NamedTuple):
     """Routes and what follows from them; `size` (u,) is how many visits each has, `uav_of` (t,) is -1 for a target that is left out.
 
     gap_m (u, t + 1) holds the arc that leads to each place of a route, and at last on to its end. service_s (u,) begins with what
-    take-off and landing take, also where there is no visit; all else is 0 there.
+    take-off and landing take, also where there is no visit; all else is 0 there. taken (u, r) is what the route takes of further limits.
     """
 
     visit: IntArray
@@ -68,6 +80,7 @@ class Plan(NamedTuple):
     done: IntArray
     uav_of: IntArray
     place: IntArray
+    taken: FloatArray
 
 
 class Workspace(NamedTuple):
@@ -81,6 +94,8 @@ class Workspace(NamedTuple):
     waiting: IntArray  # (t,) targets to be put in
     key: FloatArray  # (t,) their order
     random: RandomState
+    beside_s: FloatArray  # (u,) of the other sorties of the same UAV, and what an empty sortie begins with; 0 where each flies once
+    opened_s: FloatArray
 
 
 def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
@@ -89,7 +104,10 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     near = np.argsort(apart_m, axis=1, kind="stable")[:, : MOST_NEIGHBOURS + 1]
     far_m = np.full(len(arcs.weight), NO_WAY_M)
     twin = _twins(problem)
-    is_alike = np.allclose(arcs.onward_m, arcs.onward_m.T, rtol=0.0, atol=ALIKE_M)
+    turned_m = arcs.onward_m.transpose(0, 2, 1)
+    is_alike = np.allclose(arcs.onward_m, turned_m, rtol=0.0, atol=ALIKE_M)
+    first_of, end_of = np.searchsorted(arcs.owner, arcs.owner), np.searchsorted(arcs.owner, arcs.owner, side="right")
+    is_later = first_of < np.arange(len(first_of))
     if len(arcs.first_m):
         np.minimum.at(far_m, arcs.target, arcs.first_m.min(axis=0))
     return Ground(
@@ -101,11 +119,11 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         arcs.done,
         arcs.limit_m,
         arcs.speed_mps,
-        arcs.ready_s,
+        arcs.ready_s + np.where(is_later, arcs.turnaround_s, 0.0),
         arcs.most,
         arcs.weight,
         arcs.is_makespan,
-        arcs.onward_m if is_alike else np.ascontiguousarray(arcs.onward_m.T),
+        arcs.onward_m if is_alike else np.ascontiguousarray(turned_m),
         twin,
         is_alike and bool((twin == np.arange(len(twin))).all()),
         option,
@@ -114,6 +132,15 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         np.ascontiguousarray(near),
         _joined(apart_m),
         far_m,
+        arcs.class_of,
+        bool(len(arcs.burden)),
+        np.ascontiguousarray(arcs.burden.first),
+        np.ascontiguousarray(arcs.burden.onward),
+        np.ascontiguousarray(arcs.burden.end),
+        np.ascontiguousarray(arcs.burden.limit),
+        arcs.has_sorties,
+        first_of,
+        end_of,
     )
 
 
@@ -129,7 +156,7 @@ def _apart_m(arcs: Arcs) -> FloatArray:
     """Metres between targets, over their nearest visits and the better direction, (t, t); below 0 from each to itself."""
     targets = len(arcs.weight)
     apart_m = np.full((targets, targets), NO_WAY_M)
-    np.minimum.at(apart_m, (arcs.target[:, None], arcs.target[None, :]), arcs.onward_m)
+    np.minimum.at(apart_m, (arcs.target[:, None], arcs.target[None, :]), arcs.onward_m.min(axis=0))
     apart_m = np.asarray(np.minimum(apart_m, apart_m.T), dtype=np.float64)
     np.fill_diagonal(apart_m, -1.0)
     return apart_m
@@ -171,7 +198,8 @@ def _longest_between(apart_m: FloatArray) -> FloatArray:
     return longest_m
 
 
-def empty_plan(uavs: int, targets: int) -> Plan:
+def empty_plan(uavs: int, targets: int, limits: int = 0) -> Plan:
+    """Limits are those beside what the objective counts."""
     return Plan(
         np.zeros((uavs, targets), dtype=np.int64),
         np.zeros(uavs, dtype=np.int64),
@@ -181,19 +209,22 @@ def empty_plan(uavs: int, targets: int) -> Plan:
         np.zeros(uavs, dtype=np.int64),
         np.full(targets, -1, dtype=np.int64),
         np.zeros(targets, dtype=np.int64),
+        np.zeros((uavs, limits)),
     )
 
 
-def workspace(uavs: int, targets: int, seed: int) -> Workspace:
+def workspace(uavs: int, targets: int, seed: int, limits: int = 0) -> Workspace:
     return Workspace(
-        empty_plan(uavs, targets),
-        empty_plan(uavs, targets),
-        empty_plan(uavs, targets),
+        empty_plan(uavs, targets, limits),
+        empty_plan(uavs, targets, limits),
+        empty_plan(uavs, targets, limits),
         np.zeros(uavs, dtype=np.bool_),
         np.zeros(targets, dtype=np.bool_),
         np.zeros(targets, dtype=np.int64),
         np.zeros(targets),
         np.array([(seed * 2 + 1) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF], dtype=np.uint64),
+        np.zeros(uavs),
+        np.zeros(uavs),
     )
 
 
@@ -210,7 +241,7 @@ def settle(ground: Ground, plan: Plan, uav: int) -> None:
     if count:
         gap_m[0] = ground.first_m[uav, visit[0]]
         for place in range(1, count):
-            gap_m[place] = ground.onward_m[visit[place - 1], visit[place]]
+            gap_m[place] = ground.onward_m[ground.class_of[uav], visit[place - 1], visit[place]]
         gap_m[count] = ground.end_m[uav, visit[count - 1]]
         for place in range(count):
             length_m += gap_m[place]
@@ -220,6 +251,38 @@ def settle(ground: Ground, plan: Plan, uav: int) -> None:
             plan.place[ground.target[visit[place]]] = place
         length_m += gap_m[count]
     plan.length_m[uav], plan.service_s[uav], plan.done[uav] = length_m, service_s, done
+    if ground.is_limited:
+        for at in range(len(ground.more_limit)):
+            taken = 0.0
+            if count:
+                taken = ground.more_first[at, uav, visit[0]] + ground.more_end[at, uav, visit[count - 1]]
+                for place in range(1, count):
+                    taken += ground.more_onward[at, ground.class_of[uav], visit[place - 1], visit[place]]
+            plan.taken[uav, at] = taken
+
+
+@njit(cache=True, nogil=True)
+def keeps_further_limits(ground: Ground, plan: Plan, uav: int) -> bool:
+    """Whether a settled route keeps what is limited beside what the objective counts."""
+    keeps = True
+    for at in range(len(ground.more_limit)):
+        keeps = keeps and plan.taken[uav, at] <= ground.more_limit[at, uav]
+    return keeps
+
+
+@njit(cache=True, nogil=True)
+def done_on_other_sorties(ground: Ground, plan: Plan, uav: int) -> int:
+    """Targets that the same UAV does on its other sorties."""
+    done = -plan.done[uav]
+    for other in range(ground.first_of[uav], ground.end_of[uav]):
+        done += plan.done[other]
+    return int(done)
+
+
+@njit(cache=True, nogil=True)
+def duration_s(length_m: float, speed_mps: float, service_s: float) -> float:
+    """Seconds of a route; service_s has take-off and landing in it."""
+    return length_m / speed_mps + service_s
 
 
 @njit(cache=True, nogil=True)
@@ -239,6 +302,8 @@ def copy_route(source: Plan, copy: Plan, uav: int) -> None:
     copy.length_m[uav] = source.length_m[uav]
     copy.service_s[uav] = source.service_s[uav]
     copy.done[uav] = source.done[uav]
+    for at in range(source.taken.shape[1]):
+        copy.taken[uav, at] = source.taken[uav, at]
 
 
 @njit(cache=True, nogil=True)
@@ -251,14 +316,17 @@ def save(work: Workspace, uav: int) -> None:
 @njit(cache=True, nogil=True)
 def values(ground: Ground, plan: Plan) -> tuple[float, float, float]:
     """What is left out by weight, the total [m], the longest route [s]."""
-    missed, total_m, longest_s = 0.0, 0.0, 0.0
+    missed, total_m, longest_s, own_s = 0.0, 0.0, 0.0, 0.0
     for target in range(len(plan.uav_of)):
         if plan.uav_of[target] < 0:
             missed += ground.weight[target]
     for uav in range(len(plan.size)):
         total_m += plan.length_m[uav]
+        if uav == ground.first_of[uav]:
+            own_s = 0.0
         if plan.size[uav]:
-            longest_s = max(longest_s, plan.length_m[uav] / ground.speed_mps[uav] + plan.service_s[uav])
+            own_s += duration_s(plan.length_m[uav], ground.speed_mps[uav], plan.service_s[uav])
+            longest_s = max(longest_s, own_s)
     return missed, total_m, longest_s
 
 

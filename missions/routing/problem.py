@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum, StrEnum
 from functools import cached_property
 from itertools import pairwise
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 MAX_HOLD_S = 3_600.0
 # Legs are measured on the ellipsoid, a route's line is straight in lon/lat: on a leg of 10 km they differ by less than this share.
@@ -58,6 +59,8 @@ def default_task(asset_kind: str | None, *, is_path: bool) -> Task:
 class Objective(StrEnum):
     TOTAL = "total"  # the least distance flown by all
     MAKESPAN = "makespan"  # the longest route takes as little time as can be
+    TIME = "time"  # the least time in the air of all, changes of batteries among it
+    ENERGY = "energy"  # the least Wh of all
 
 
 class End(StrEnum):
@@ -78,17 +81,27 @@ class Priority(IntEnum):
 
 @dataclass(frozen=True)
 class UavStart:
-    """A UAV at its start: how far and how fast it can fly, where it ends, and how many targets it does at most."""
+    """A UAV at its start: how far and how fast it can fly, where it ends, how many targets it does at most, and in how many sorties.
+
+    What is limited by range and battery is one sortie, of targets all of them together. Only a UAV that returns can fly several.
+    """
 
     max_range_m: float | None = None
     end: End = End.OPEN
     speed_mps: float = 1.0  # without a speed, a second is a metre
     most_targets: int | None = None
     ready_s: float = 0.0  # of a route with any visit, beyond flying and serving: take-off and landing
+    usable_wh: float | None = None  # of its battery, the reserve taken off; None: nothing is known of its energy
+    sorties: int = 1  # how often it may fly at most
+    turnaround_s: float = 0.0  # from the landing of one sortie to the take-off for the next
 
     @property
     def limit_m(self) -> float:
         return math.inf if self.max_range_m is None else self.max_range_m * (1.0 - RANGE_RESERVE)
+
+    @property
+    def limit_wh(self) -> float:
+        return math.inf if self.usable_wh is None else self.usable_wh * (1.0 - RANGE_RESERVE)
 
     @property
     def most(self) -> int:
@@ -124,6 +137,53 @@ class InvalidProblem(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
+class Amounts:
+    """Seconds or Wh of u UAVs in c classes and v visits that do not follow from the metres; inf or nan where there is no way.
+
+    first   (u, v)     start of each UAV to where each visit begins
+    onward  (c, v, v)  where the row's visit ends to where the column's begins; wind makes the two directions differ
+    end     (v, u)     where each visit ends to where each UAV's route ends; 0 if it ends there
+    along   (c, v)     along the visit; without it 0
+    service (c, v)     of what is done at the visit, beyond its `service_s`; without it 0
+    ready   (u,)       of a route with any visit, beyond its UAV's `ready_s`; without it 0
+    """
+
+    first: FloatArray
+    onward: FloatArray
+    end: FloatArray
+    along: FloatArray | None = None
+    service: FloatArray | None = None
+    ready: FloatArray | None = None
+
+    @cached_property
+    def at_visit(self) -> FloatArray:
+        """Along each visit and for what is done there, (c, v)."""
+        at_visit = np.zeros(self.onward.shape[:2])
+        for part in (self.along, self.service):
+            if part is not None:
+                at_visit += part
+        return at_visit
+
+    def of_route(self, uav: int, of_class: int, route: Sequence[int]) -> float:
+        """Of the visits in order and on to where the UAV ends; 0 for no visit, inf without a way."""
+        if not route:
+            return 0.0
+        amount = float(self.first[uav, route[0]]) + sum(float(self.at_visit[of_class, visit]) for visit in route)
+        amount += sum(float(self.onward[of_class, left, right]) for left, right in pairwise(route)) + float(self.end[route[-1], uav])
+        amount += 0.0 if self.ready is None else float(self.ready[uav])
+        return math.inf if math.isnan(amount) else amount
+
+    def taken(self, first: IntArray, last: IntArray, at_visit: FloatArray) -> "Amounts":
+        """For runs of visits in place of visits: their first and last ones, and what each run takes from end to end (c, runs)."""
+        return Amounts(self.first[:, first], self.onward[:, last][:, :, first], self.end[last], along=at_visit, ready=self.ready)
+
+    def of_uavs(self, uavs: IntArray) -> "Amounts":
+        return replace(
+            self, first=self.first[uavs], end=self.end[:, uavs], ready=None if self.ready is None else np.asarray(self.ready)[uavs]
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class Problem:
     """u UAVs, v visits that do `target_count` targets; metres, inf where there is no way.
 
@@ -132,8 +192,13 @@ class Problem:
     to_start_m   (v, u)  where each visit ends to the start of each UAV
     to_base_m    (v, u)  where each visit ends to the nearest base that is open to each UAV; needed if one may end at any base
     allowed      (u, v)  which visits each UAV may fly; without it all
+    cannot_end   (v, u)  where a UAV's route must not end, though it may pass; without it nowhere
     priorities   one for each target; without them all alike
     weights      (targets,) what leaving out each target weighs, given by who knows better than the priorities (see `left_out_weights`)
+    seconds      of flying; without them metres over the speed
+    wh           of flying; needed if a battery is limited or the objective is energy
+    class_of     (u,) the class of each UAV in `seconds` and `wh`: those that fly alike share one; without it all are of class 0
+    owner        (u,) neighbours with the same number are sorties of one UAV (see `sorties.py`); without it each is a UAV of its own
     """
 
     uavs: tuple[UavStart, ...]
@@ -148,6 +213,36 @@ class Problem:
     priorities: tuple[Priority, ...] = ()
     locks: tuple[Lock, ...] = ()
     weights: FloatArray | None = None
+    seconds: Amounts | None = None
+    wh: Amounts | None = None
+    class_of: tuple[int, ...] = ()
+    owner: tuple[int, ...] = ()
+    cannot_end: BoolArray | None = None
+
+    def __post_init__(self) -> None:
+        uavs, visits = len(self.uavs), len(self.visits)
+        if len(self.class_of) not in (0, uavs) or len(self.owner) not in (0, uavs):
+            raise InvalidProblem("each UAV needs a class and an owner, or none has one")
+        if self.objective is Objective.ENERGY and (self.wh is None or any(uav.usable_wh is None for uav in self.uavs)):
+            raise InvalidProblem("the least energy is asked for, but of a UAV's energy nothing is known")
+        if self.wh is None and any(uav.limit_wh < math.inf for uav in self.uavs):
+            raise InvalidProblem("a battery is limited, but the Wh are missing")
+        if any(uav.sorties < 1 or uav.turnaround_s < 0 or (uav.sorties > 1 and uav.end is not End.RETURN) for uav in self.uavs):
+            raise InvalidProblem("only a UAV that returns can fly several sorties, and each flies one or more")
+        for amounts in (self.seconds, self.wh):
+            if amounts is None:
+                continue
+            classes = max(self.class_of, default=0) + 1
+            if (
+                amounts.first.shape != (uavs, visits)
+                or amounts.onward.shape[1:] != (visits, visits)
+                or len(amounts.onward) < classes
+                or amounts.end.shape != (visits, uavs)
+            ):
+                raise InvalidProblem("seconds or Wh do not fit the UAVs and visits")
+            parts = (amounts.first, amounts.onward, amounts.end, amounts.at_visit, *(() if amounts.ready is None else (amounts.ready,)))
+            if any((np.asarray(part) < 0).any() for part in parts):
+                raise InvalidProblem("seconds or Wh are below 0")
 
     def visits_of_target(self) -> list[list[int]]:
         """Indices of the visits that do each target."""
@@ -180,6 +275,8 @@ class Problem:
                 if self.to_base_m is None:
                     raise InvalidProblem("a UAV may end at any base, but the ways to the bases are missing")
                 end_m[:, uav] = self.to_base_m[:, uav]
+        if self.cannot_end is not None:
+            end_m[self.cannot_end] = np.inf
         return end_m
 
     def may_fly(self, uav: int, visit: int) -> bool:
@@ -198,15 +295,53 @@ class Problem:
         if not route:
             return 0.0
         service_s = sum(self.visits[visit].service_s for visit in route)
+        if self.seconds is not None:
+            return self.seconds.of_route(uav, self.class_number(uav), route) + service_s + self.uavs[uav].ready_s
         return self.route_length_m(uav, route) / self.uavs[uav].speed_mps + service_s + self.uavs[uav].ready_s
+
+    def route_wh(self, uav: int, route: Sequence[int]) -> float | None:
+        """Wh of the route, 0 for no visit; None if nothing is known of the UAV's energy."""
+        if self.wh is None or self.uavs[uav].usable_wh is None:
+            return None
+        return self.wh.of_route(uav, self.class_number(uav), route)
+
+    def class_number(self, uav: int) -> int:
+        return self.class_of[uav] if self.class_of else 0
+
+    def durations_s(self, routes: "Routes") -> list[float]:
+        """Seconds of each UAV, those between its sorties among them; in order of the owners."""
+        if not self.owner:
+            return [self.route_duration_s(uav, route) for uav, route in enumerate(routes)]
+        durations_s: dict[int, float] = dict.fromkeys(self.owner, 0.0)
+        for uav, route in enumerate(routes):
+            if route:
+                between_s = self.uavs[uav].turnaround_s if durations_s[self.owner[uav]] else 0.0
+                durations_s[self.owner[uav]] += self.route_duration_s(uav, route) + between_s
+        return list(durations_s.values())
+
+    def total_wh(self, routes: "Routes") -> float | None:
+        """Wh of the routes of which any are known; None if of none."""
+        known = [wh for uav, route in enumerate(routes) if (wh := self.route_wh(uav, route)) is not None]
+        return sum(known) if known else None
+
+    def value(self, routes: "Routes") -> float:
+        """What the objective counts: metres, seconds or Wh."""
+        if self.objective is Objective.TOTAL:
+            return sum(self.route_length_m(uav, route) for uav, route in enumerate(routes))
+        if self.objective is Objective.ENERGY:
+            return self.total_wh(routes) or 0.0
+        durations_s = self.durations_s(routes)
+        return sum(durations_s) if self.objective is Objective.TIME else max(durations_s, default=0.0)
 
     def keeps_limits(self, uav: int, route: Sequence[int]) -> bool:
         """Whether the UAV can and may fly the route."""
-        length_m = self.route_length_m(uav, route)
+        length_m, wh = self.route_length_m(uav, route), self.route_wh(uav, route)
         done = sum(self.visits[visit].done for visit in route)
         return (
             math.isfinite(length_m)
+            and math.isfinite(self.route_duration_s(uav, route))
             and length_m <= self.uavs[uav].limit_m
+            and (wh is None or wh <= self.uavs[uav].limit_wh)
             and done <= self.uavs[uav].most
             and all(self.may_fly(uav, visit) for visit in route)
         )
@@ -220,6 +355,7 @@ class Reason(StrEnum):
 
     NO_PATH = "no_path"
     BEYOND_RANGE = "beyond_range"
+    BEYOND_ENERGY = "beyond_energy"
     NOT_ALLOWED = "not_allowed"
     MOST_TARGETS = "most_targets"
 
@@ -229,14 +365,17 @@ class Unassigned:
     target: int
     reason: Reason
     message: str
+    missing_wh: float | None = None  # that the UAV which comes nearest to it lacks
 
 
 @dataclass(frozen=True)
 class Solution:
     """Visits in order for each UAV, and the targets that nobody visits, each with the reason.
 
-    `lower_bound` is in the objective's own unit, metres for the total and seconds for the longest route: no plan that leaves out as
-    little as the best one has less. `gap` is the share of this plan's value that lies above it.
+    `sorties` are the same visits by UAV and sortie; a UAV that stays on the ground has none. `longest_m` and `longest_s` are of all
+    sorties of a UAV, with what lies between them. `total_wh` is of the UAVs of whose energy anything is known, None if of none.
+    `lower_bound` is in the objective's own unit, metres for the total, seconds for the longest route and the time, Wh for the energy: no
+    plan that leaves out as little as the best one has less. `gap` is the share of this plan's value that lies above it.
     """
 
     routes: Routes
@@ -248,12 +387,24 @@ class Solution:
     gap: float
     is_proven: bool
     method: str
+    sorties: tuple[Routes, ...]
+    total_s: float
+    total_wh: float | None
 
 
 def merit(problem: Problem, routes: Routes) -> tuple[float, float, float]:
-    """Less is better: what is not visited by weight, then the objective, then the other: total metres and longest seconds."""
-    total_m = sum(problem.route_length_m(uav, route) for uav, route in enumerate(routes))
-    longest_s = max((problem.route_duration_s(uav, route) for uav, route in enumerate(routes)), default=0.0)
+    """Less is better: what is not visited by weight, then the objective, then another measure.
+
+    That is the longest seconds; for the longest route the total, of metres or of the seconds that the problem has for itself.
+    """
     weights = problem.left_out_weights
     missed = float(weights.sum()) - float(sum(weights[problem.visits[visit].target] for route in routes for visit in route))
-    return (missed, total_m, longest_s) if problem.objective is Objective.TOTAL else (missed, longest_s, total_m)
+    if problem.objective is not Objective.MAKESPAN:
+        return missed, problem.value(routes), max(problem.durations_s(routes), default=0.0)
+    if problem.seconds is not None:
+        return (
+            missed,
+            problem.value(routes),
+            sum(problem.seconds.of_route(uav, problem.class_number(uav), route) for uav, route in enumerate(routes)),
+        )
+    return missed, problem.value(routes), sum(problem.route_length_m(uav, route) for uav, route in enumerate(routes))

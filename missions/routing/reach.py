@@ -1,12 +1,13 @@
 """How far each target is for each UAV at best, and why a target has to be left out."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 from numba import njit
 
-from missions.routing.arcs import IntArray
-from missions.routing.problem import BoolArray, End, FloatArray, Problem, Reason, Routes, Unassigned
+from missions.routing.arcs import NO_WAY_M, Quantity, classes_of, quantities
+from missions.routing.problem import BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
 
 _THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
 
@@ -20,6 +21,8 @@ def needed_range_m(problem: Problem) -> FloatArray:
     needed_m = np.full((uavs, visits), np.inf)
     if not visits or not uavs:
         return needed_m
+    if problem.seconds is not None or problem.wh is not None:
+        return _needed(problem, quantities(problem)[0])
     along_m = np.array([visit.length_m for visit in problem.visits])
     first_m, end_m = problem.from_start_m + along_m, problem.end_m
     allowed = np.ones((uavs, visits), dtype=bool) if problem.allowed is None else problem.allowed
@@ -29,6 +32,29 @@ def needed_range_m(problem: Problem) -> FloatArray:
             out_m = (first_m[uav, flown][:, None] + onward_m).min(axis=0)
             needed_m[uav, flown] = out_m + (onward_m + end_m[flown, uav]).min(axis=1)
     return needed_m
+
+
+def needed_wh(problem: Problem) -> FloatArray | None:
+    """The least Wh (u, v) with which a UAV can fly a visit, and on to where it ends; as `needed_range_m`. None if none is limited."""
+    _, used = quantities(problem)
+    if used is None or not any(uav.limit_wh < math.inf for uav in problem.uavs):
+        return None
+    return _needed(problem, used)
+
+
+def _needed(problem: Problem, quantity: Quantity) -> FloatArray:
+    class_of = classes_of(problem)
+    needed = np.full(quantity.first.shape, np.inf)
+    allowed = np.ones(needed.shape, dtype=bool) if problem.allowed is None else problem.allowed
+    for number in range(len(quantity.onward)):
+        of_class = np.flatnonzero(class_of == number)
+        for flown, alike in _by_allowed_visits(allowed[of_class]):
+            onward = np.minimum(least_ways(quantity.onward[number][np.ix_(flown, flown)]), NO_WAY_M)
+            for uav in of_class[alike].tolist():
+                out = (quantity.first[uav, flown][:, None] + onward).min(axis=0)
+                needed[uav, flown] = out + (onward + quantity.end[uav, flown]).min(axis=1)
+    needed[needed >= NO_WAY_M] = np.inf
+    return needed
 
 
 def _by_allowed_visits(allowed: BoolArray) -> list[tuple[IntArray, list[int]]]:
@@ -62,10 +88,22 @@ def _shorten(ways_m: FloatArray) -> None:
 
 def reachable(problem: Problem, needed_m: FloatArray) -> BoolArray:
     """Whether each UAV can fly each visit within its limits, (u, v)."""
-    limit_m = np.array([uav.limit_m for uav in problem.uavs])
     most = np.array([uav.most for uav in problem.uavs])
     done = np.array([visit.done for visit in problem.visits])
-    within: BoolArray = np.isfinite(needed_m) & (needed_m <= limit_m[:, None]) & (done <= most[:, None])
+    within: BoolArray = _within(problem, needed_m) & (done <= most[:, None])
+    used_wh = needed_wh(problem)
+    return within if used_wh is None else within & _within_battery(problem, used_wh)
+
+
+def _within(problem: Problem, needed_m: FloatArray) -> BoolArray:
+    limit_m = np.array([uav.limit_m for uav in problem.uavs])
+    within: BoolArray = np.isfinite(needed_m) & (needed_m <= limit_m[:, None])
+    return within
+
+
+def _within_battery(problem: Problem, used_wh: FloatArray) -> BoolArray:
+    limit_wh = np.array([uav.limit_wh for uav in problem.uavs])
+    within: BoolArray = used_wh <= limit_wh[:, None]
     return within
 
 
@@ -75,16 +113,34 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
     left_out = [target for target in range(problem.target_count) if target not in visited]
     if not left_out:
         return ()
-    limit_m = np.array([uav.limit_m for uav in problem.uavs])
-    within_range = np.isfinite(needed_m) & (needed_m <= limit_m[:, None])
-    done = [sum(problem.visits[visit].done for visit in route) for route in routes]
+    within_range = _within(problem, needed_m)
+    used_wh = needed_wh(problem)
+    owner = problem.owner or tuple(range(len(routes)))
+    done_by = dict.fromkeys(owner, 0)
+    for uav, route in zip(owner, routes, strict=True):
+        done_by[uav] += sum(problem.visits[visit].done for visit in route)
+    done = [done_by[uav] for uav in owner]
     visits_of = problem.visits_of_target()
-    return tuple(Unassigned(target, *_reason(problem, needed_m, within_range, done, visits_of[target])) for target in left_out)
+    found = []
+    for target in left_out:
+        visits = visits_of[target]
+        reason = _beyond_reach(problem, needed_m, within_range, visits)
+        missing_wh = None
+        able = within_range[:, visits]
+        if reason is None and used_wh is not None:
+            able = able & _within_battery(problem, used_wh[:, visits])
+            if not able.any():
+                reason, missing_wh = _beyond_battery(problem, used_wh, within_range, visits)
+        if reason is None:
+            reason = _beyond_rest(problem, able, done, visits)
+            if reason[0] is Reason.BEYOND_ENERGY:
+                missing_wh = _missing_beside_others(problem, able, routes, visits)
+        found.append(Unassigned(target, *reason, missing_wh))
+    return tuple(found)
 
 
-def _reason(
-    problem: Problem, needed_m: FloatArray, within_range: BoolArray, done: Sequence[int], visits: Sequence[int]
-) -> tuple[Reason, str]:
+def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> tuple[Reason, str] | None:
+    """Why no UAV gets there at all; None if one does, if its battery lasts."""
     needed_m, within = needed_m[:, visits], within_range[:, visits]
     if not len(problem.uavs):
         return Reason.NO_PATH, "There is no UAV that can take off."
@@ -92,19 +148,54 @@ def _reason(
         return Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to."
     if not np.isfinite(needed_m).any():
         return Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone."
-    if not within.any():
-        limit_m = np.array([uav.limit_m for uav in problem.uavs])
-        missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
-        uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
-        there = _THERE[problem.uavs[uav].end]
-        needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
-        return Reason.BEYOND_RANGE, f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
-    able = np.flatnonzero(within.any(axis=1)).tolist()
-    if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able):
+    if within.any():
+        return None
+    limit_m = np.array([uav.limit_m for uav in problem.uavs])
+    missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
+    uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
+    there = _THERE[problem.uavs[uav].end]
+    needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
+    return Reason.BEYOND_RANGE, f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
+
+
+def _beyond_battery(
+    problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]
+) -> tuple[tuple[Reason, str], float]:
+    """Of the UAVs that have the range, the one that lacks least, and how much."""
+    limit_wh = np.array([uav.limit_wh for uav in problem.uavs])
+    within = within_range[:, visits]
+    missing_wh = np.where(within, used_wh[:, visits], np.inf) - np.where(within, limit_wh[:, None], 0.0)
+    uav, visit = np.unravel_index(np.argmin(missing_wh), missing_wh.shape)
+    needed, missing = used_wh[uav, visits[int(visit)]], float(missing_wh[uav, visit])
+    there = _THERE[problem.uavs[uav].end]
+    said = f"It takes {needed:,.1f} Wh {there}, {missing:,.1f} Wh more than the battery of the UAV that comes nearest to it may give."
+    return (Reason.BEYOND_ENERGY, said), missing
+
+
+def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> tuple[Reason, str]:
+    """Why it is left out though some UAV could do it alone."""
+    able_uavs = np.flatnonzero(able.any(axis=1)).tolist()
+    if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able_uavs):
         return Reason.MOST_TARGETS, "Each UAV that can do it has as many targets as it may have."
-    if any(problem.uavs[uav].max_range_m is not None for uav in able):
+    has_range = any(problem.uavs[uav].max_range_m is not None for uav in able_uavs)
+    if any(problem.uavs[uav].limit_wh < math.inf for uav in able_uavs):
+        alone = "within range and battery" if has_range else "within what the battery may give"
+        return Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets."
+    if has_range:
         return Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets."
     return Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV."
+
+
+def _missing_beside_others(problem: Problem, able: BoolArray, routes: Routes, visits: Sequence[int]) -> float | None:
+    """The least Wh that are missing to put it between the targets of a UAV as they are; None if the range is what is missing."""
+    missing_wh = math.inf
+    for uav, number in zip(*(part.tolist() for part in np.nonzero(able)), strict=True):
+        for place in range(len(routes[uav]) + 1):
+            route = (*routes[uav][:place], visits[number], *routes[uav][place:])
+            used_wh = problem.route_wh(uav, route)
+            if used_wh is not None and problem.route_length_m(uav, route) <= problem.uavs[uav].limit_m:
+                missing_wh = min(missing_wh, used_wh - problem.uavs[uav].limit_wh)
+    return missing_wh if 0.0 < missing_wh < math.inf else None
 
 
 def _km(length_m: float) -> str:

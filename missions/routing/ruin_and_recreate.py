@@ -12,7 +12,19 @@ from numba import njit
 from missions.routing.crossing import NONE, draw_move, make
 from missions.routing.insertion import recreate
 from missions.routing.plan_cost import cost_of, cost_of_routes, is_better, is_wanted, longest_of
-from missions.routing.plan_state import NO_LIMIT_M, Ground, Workspace, copy_plan, copy_route, draw, draw_below, save, settle, values
+from missions.routing.plan_state import (
+    NO_LIMIT_M,
+    Ground,
+    Workspace,
+    copy_plan,
+    copy_route,
+    draw,
+    draw_below,
+    keeps_further_limits,
+    save,
+    settle,
+    values,
+)
 from missions.routing.unowned import unowned
 
 MEAN_REMOVED = 10.0
@@ -76,6 +88,12 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
             make(ground, plan, work.saved, move)
             settle(ground, plan, move.uav)
             settle(ground, plan, move.other_uav)
+            if ground.is_limited and not (
+                keeps_further_limits(ground, plan, move.uav) and keeps_further_limits(ground, plan, move.other_uav)
+            ):
+                _take_back(ground, work, move.uav)
+                _take_back(ground, work, move.other_uav)
+                continue
             cost = cost_of_routes(ground, plan, power, scale)
             if (ground.is_makespan or missed < best_missed or cost < best_total_m) and is_better(ground, plan, work.best):
                 copy_plan(plan, work.best)
@@ -104,10 +122,17 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
                 plan.uav_of[work.waiting[place]] = -1
             for uav in range(len(plan.size)):
                 if work.is_saved[uav]:
-                    copy_route(work.saved, plan, uav)
-                    for place in range(plan.size[uav]):
-                        target = ground.target[plan.visit[uav, place]]
-                        plan.uav_of[target], plan.place[target] = uav, place
+                    _take_back(ground, work, uav)
+
+
+@njit(cache=True, nogil=True)
+def _take_back(ground: Ground, work: Workspace, uav: int) -> None:
+    """The route as it was saved."""
+    plan = work.plan
+    copy_route(work.saved, plan, uav)
+    for place in range(plan.size[uav]):
+        target = ground.target[plan.visit[uav, place]]
+        plan.uav_of[target], plan.place[target] = uav, place
 
 
 @njit(cache=True, nogil=True)
@@ -117,6 +142,8 @@ def _is_whole(ground: Ground, work: Workspace) -> bool:
         if work.is_saved[uav]:
             settle(ground, work.plan, uav)
             if work.plan.length_m[uav] > ground.limit_m[uav] or work.plan.done[uav] > ground.most[uav]:
+                return False
+            if ground.is_limited and not keeps_further_limits(ground, work.plan, uav):
                 return False
             for place in range(work.plan.size[uav]):
                 if not ground.usable[uav, work.plan.visit[uav, place]]:

@@ -39,7 +39,7 @@ class Chain:
 
     @classmethod
     def begin(cls, ground: Ground, seed: int, number: int) -> "Chain":
-        work = workspace(len(ground.first_m), len(ground.weight), seed + number)
+        work = workspace(len(ground.first_m), len(ground.weight), seed + number, len(ground.more_limit))
         construct(ground, work, POWERS[0], CONSTRUCTIONS)
         _, total_m, longest_s = values(ground, work.best)
         flown = max(1, int(work.best.size.sum()))

@@ -3,11 +3,14 @@
 from collections.abc import Callable
 
 from missions.routing import exact
+from missions.routing.arcs import Arcs
+from missions.routing.bounds import lower_bound
 from missions.routing.locks import reduced
 from missions.routing.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.reach import needed_range_m, reachable, reasons
 from missions.routing.search import Found, best_found
+from missions.routing.sorties import by_uav, joined, unfolded
 
 PROVEN_GAP = 1e-8  # the bound stays a hair below what it proves
 EXACT, SEARCH = "exact", "ruin and recreate"  # what Solution.method says
@@ -27,23 +30,31 @@ def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_
     """The best plan found: first it leaves out as little as possible, high priorities last, then the objective counts.
 
     Every route keeps its UAV's limits, and a locked run is flown as it is wished or left out whole. Up to 12 targets, a locked run being
-    one, the plan is the best there is. Beyond, the answer depends on the problem and the seed alone as long as `search_s` is 0; with it
-    the search takes about so many seconds. `stop` is asked several times a second; once it is true, the best plan so far is returned.
-    Raises InvalidProblem.
+    one, the plan is the best there is; only where battery or range leave too many tours to weigh (see `limited_tours.py`) the gap tells
+    what is not proven. Beyond, the answer depends on the problem and the seed alone as long as `search_s` is 0; with it the search takes
+    about so many seconds. `stop` is asked several times a second; once it is true, the best plan so far is returned. Progress tells the
+    visits of each UAV over all its sorties. Raises InvalidProblem.
     """
+    rows = unfolded(problem)
+
+    def of_uavs(routes: Routes) -> Routes:
+        return joined(by_uav(rows, routes)) if rows.owner else routes
+
     if problem.locks:
-        whole = reduced(problem)
+        whole = reduced(rows)
         routes, left_out, bound, method = _solved(
             whole.problem,
             stop=stop,
-            on_progress=lambda told: on_progress(_expanded(told, whole.expanded)),
+            on_progress=lambda told: on_progress(_expanded(told, lambda routes: of_uavs(whole.expanded(routes)))),
             seed=seed,
             search_s=search_s,
         )
         routes, left_out = whole.expanded(routes), whole.expanded_reasons(left_out)
+        bound = bound if whole.is_whole else 0.0  # nothing is known of the ways through the runs that were not looked at
     else:
-        routes, left_out, bound, method = _solved(problem, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
-    return _solution(problem, routes, left_out, bound, method)
+        tell = (lambda told: on_progress(_expanded(told, of_uavs))) if rows.owner else on_progress
+        routes, left_out, bound, method = _solved(rows, stop=stop, on_progress=tell, seed=seed, search_s=search_s)
+    return _solution(rows, routes, left_out, bound, method)
 
 
 def _solved(
@@ -51,10 +62,12 @@ def _solved(
 ) -> tuple[Routes, tuple[Unassigned, ...], float | None, str]:
     """Routes, what they leave out, a bound (none: the plan is the best there is), and the method."""
     if problem.target_count <= exact.MAX_TARGETS:
-        routes = exact.best_plan(problem)
-        if sum(len(route) for route in routes) == problem.target_count:
+        routes, is_proven = exact.proven_routes(Arcs.of(problem))
+        if is_proven and sum(len(route) for route in routes) == problem.target_count:
             return routes, (), None, EXACT
-        return routes, reasons(problem, needed_range_m(problem), routes), None, EXACT
+        needed_m = needed_range_m(problem)
+        bound = None if is_proven else lower_bound(problem, reachable(problem, needed_m), needed_m, routes, seed=seed)
+        return routes, reasons(problem, needed_m, routes), bound, EXACT
     needed_m = needed_range_m(problem)
     usable = reachable(problem, needed_m)
     if not usable.any():
@@ -82,28 +95,45 @@ def _expanded(told: Progress, expanded: Callable[[Routes], Routes]) -> Progress:
     return told if told.best_routes is None else Progress(told.share, told.message, expanded(told.best_routes), told.bound)
 
 
-def _solution(problem: Problem, routes: Routes, left_out: tuple[Unassigned, ...], bound: float | None, method: str) -> Solution:
-    lengths_m = [problem.route_length_m(uav, route) for uav, route in enumerate(routes)]
-    longest_s = max((problem.route_duration_s(uav, route) for uav, route in enumerate(routes)), default=0.0)
-    value = sum(lengths_m) if problem.objective is Objective.TOTAL else longest_s
-    lower_bound = value if bound is None else min(value, bound)
+def _solution(rows: Problem, routes: Routes, left_out: tuple[Unassigned, ...], bound: float | None, method: str) -> Solution:
+    """Of a problem with a row for each sortie."""
+    lengths_m = _lengths_m(rows, routes)
+    durations_s = rows.durations_s(routes)
+    value = rows.value(routes)
+    least = value if bound is None else min(value, bound)
+    sorties = by_uav(rows, routes)
     return Solution(
-        routes,
+        joined(sorties),
         left_out,
         total_m=sum(lengths_m),
         longest_m=max(lengths_m, default=0.0),
-        longest_s=longest_s,
-        lower_bound=lower_bound,
-        gap=(value - lower_bound) / value if value else 0.0,
-        is_proven=value - lower_bound <= PROVEN_GAP * value,
+        longest_s=max(durations_s, default=0.0),
+        lower_bound=least,
+        gap=(value - least) / value if value else 0.0,
+        is_proven=value - least <= PROVEN_GAP * value,
         method=method,
+        sorties=sorties,
+        total_s=sum(durations_s),
+        total_wh=rows.total_wh(routes),
     )
 
 
+def _lengths_m(rows: Problem, routes: Routes) -> list[float]:
+    """Metres of each UAV."""
+    lengths_m = [rows.route_length_m(uav, route) for uav, route in enumerate(routes)]
+    if not rows.owner:
+        return lengths_m
+    return [sum(lengths_m[row] for row, owner in enumerate(rows.owner) if owner == uav) for uav in dict.fromkeys(rows.owner)]
+
+
 def progress_message(problem: Problem, routes: Routes) -> str:
-    lengths_m = [problem.route_length_m(uav, route) for uav, route in enumerate(routes)]
     missed = problem.target_count - sum(len(route) for route in routes)
     left_out = f", {missed} not reached" if missed else ""
-    if problem.objective is Objective.TOTAL:
-        return f"{sum(lengths_m) / 1_000:,.1f} km in total{left_out}"
-    return f"longest route {max(lengths_m, default=0.0) / 1_000:,.1f} km{left_out}"
+    lengths_m = _lengths_m(problem, routes)
+    if problem.objective is Objective.MAKESPAN:
+        return f"longest route {max(lengths_m, default=0.0) / 1_000:,.1f} km{left_out}"
+    if problem.objective is Objective.TIME:
+        return f"{problem.value(routes) / 60:,.1f} min in total{left_out}"
+    if problem.objective is Objective.ENERGY:
+        return f"{problem.value(routes):,.0f} Wh in total{left_out}"
+    return f"{sum(lengths_m) / 1_000:,.1f} km in total{left_out}"

@@ -5,12 +5,12 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.fields import FiniteFloatField, PositionField
+from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
 from missions.models import Base, CredentialKind, UavCredential, UavType
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS, above_zero
+from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, LARGEST_DISK_M2, LARGEST_POWER_W, MOST_RESERVE_PERCENT
 
 MOST_SENSORS = 12
-LARGEST_BATTERY_WH = 1e6
-HEAVIEST_KG = 1e5
 
 
 class UavTypeSerializer(serializers.Serializer):
@@ -22,6 +22,14 @@ class UavTypeSerializer(serializers.Serializer):
     cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
     battery_wh = FiniteFloatField(allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery")
     mass_kg = FiniteFloatField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off")
+    reserve_percent = FiniteFloatField(required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses")
+    max_airspeed_mps = FiniteFloatField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: not limited")
+    rotor_disk_m2 = FiniteFloatField(
+        allow_null=True, required=False, max_value=LARGEST_DISK_M2, help_text="area swept by all rotors; null: the Iris's"
+    )
+    hover_power_w = FiniteFloatField(
+        allow_null=True, required=False, max_value=LARGEST_POWER_W, help_text="in a calm hover, as measured; null: worked out"
+    )
     sensors = serializers.ListField(child=serializers.CharField(max_length=50), required=False, max_length=MOST_SENSORS)
     uav_count = serializers.IntegerField(read_only=True)
     revision = serializers.IntegerField(read_only=True, help_text="the ETag")
@@ -38,6 +46,24 @@ class UavTypeSerializer(serializers.Serializer):
 
     def validate_mass_kg(self, value: float | None) -> float | None:
         return above_zero(value)
+
+    def validate_max_airspeed_mps(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_rotor_disk_m2(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_hover_power_w(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        """Figures that go together: the power of a hover and the mass and rotors that it holds up."""
+        stored = {} if self.instance is None else {key: getattr(self.instance, key) for key in PERFORMANCE_KEYS}
+        try:
+            performance_from_json(stored | {key: attrs[key] for key in PERFORMANCE_KEYS if key in attrs})
+        except InvalidPerformance as error:
+            raise serializers.ValidationError({error.place: error.message}) from error
+        return attrs
 
     def validate_sensors(self, value: list[str]) -> list[str]:
         return list(dict.fromkeys(value))
@@ -101,7 +127,8 @@ class UavMissionPageSerializer(serializers.Serializer):
 
 def uav_type_json(row: UavType) -> dict[str, Any]:
     names = (
-        "name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "sensors", "uav_count", "revision", "updated_at",
+        "name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2",
+        "hover_power_w", "sensors", "uav_count", "revision", "updated_at",
     )  # fmt: skip
     return {"id": row.pk} | {name: getattr(row, name) for name in names}
 

@@ -1,26 +1,42 @@
 """What comes in: UAVs, targets, options, plans and missions."""
 
+from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
+from django.utils import timezone
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import FiniteFloatField, PositionField
-from missions.fleet_selectors import uavs_of_organisation
+from missions.fleet_selectors import performance_of, uavs_of_organisation
+from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
+from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
 from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
 from missions.serializers.limits import (
     FARTHEST_RANGE_M,
     FASTEST_MPS,
+    HEAVIEST_KG,
+    HIGHEST_WIND_M,
+    LARGEST_BATTERY_WH,
+    LARGEST_DISK_M2,
     LARGEST_KEY,
+    LARGEST_POWER_W,
     LONGEST_SENSOR,
     LONGEST_UAV_NAME,
+    MOST_DAYS_AHEAD,
+    MOST_RESERVE_PERCENT,
     MOST_SENSORS_OF_UAV,
+    MOST_SORTIES,
     MOST_TARGETS,
+    MOST_WIND_LAYERS,
+    STRONGEST_WIND_MPS,
 )
 from missions.services import (
+    CALM,
     InvalidRequest,
     LockRequest,
     PlanRequest,
@@ -43,7 +59,60 @@ class TaskSerializer(serializers.Serializer):
         return Task(kind, value.get("hold_s", DEFAULT_HOLD_S[kind]))
 
 
-class UavInputSerializer(serializers.Serializer):
+class WindLayerSerializer(serializers.Serializer):
+    """Wind at a height above ground; between two heights it is interpolated, beyond them it stays."""
+
+    altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_WIND_M)
+    speed_mps = FiniteFloatField(min_value=0, max_value=STRONGEST_WIND_MPS)
+    from_deg = FiniteFloatField(min_value=0, max_value=359.999999, help_text="where it blows from, degrees from true north, clockwise")
+
+
+class ConditionsSerializer(serializers.Serializer):
+    """The air that is flown through; without wind it is calm."""
+
+    wind = WindLayerSerializer(many=True, required=False)
+    temperature_c = FiniteFloatField(min_value=-60, max_value=60, required=False, help_text="near the ground; missing: 15")
+
+    def to_internal_value(self, data: Any) -> Conditions:
+        if isinstance(data, dict) and isinstance(data.get("wind"), list):
+            _no_more_than(MOST_WIND_LAYERS, data["wind"], "heights of wind")
+        try:
+            return conditions_from_json(super().to_internal_value(data))
+        except InvalidConditions as error:
+            raise serializers.ValidationError({error.place: [error.message]}) from error
+
+
+class PerformanceFieldsSerializer(serializers.Serializer):
+    """Battery, mass and airspeed; missing: the stored UAV's type's."""
+
+    battery_wh = FiniteFloatField(
+        required=False, allow_null=True, max_value=LARGEST_BATTERY_WH, help_text="of a full battery; null: its energy is not counted"
+    )
+    mass_kg = FiniteFloatField(required=False, allow_null=True, max_value=HEAVIEST_KG, help_text="at take-off; null: the Iris's")
+    reserve_percent = FiniteFloatField(
+        required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="of the battery, that no plan uses"
+    )
+    max_airspeed_mps = FiniteFloatField(required=False, allow_null=True, max_value=FASTEST_MPS, help_text="null: not limited")
+    rotor_disk_m2 = FiniteFloatField(required=False, allow_null=True, max_value=LARGEST_DISK_M2, help_text="null: the Iris's")
+    hover_power_w = FiniteFloatField(required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="as measured; null: worked out")
+
+    def validate_battery_wh(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_mass_kg(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_max_airspeed_mps(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_rotor_disk_m2(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_hover_power_w(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+
+class UavInputSerializer(PerformanceFieldsSerializer):
     """A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position."""
 
     id = serializers.IntegerField(required=False, allow_null=True)
@@ -54,6 +123,12 @@ class UavInputSerializer(serializers.Serializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
     most_targets = serializers.IntegerField(
         required=False, allow_null=True, min_value=1, max_value=MOST_TARGETS, help_text="null or missing: not limited"
+    )
+    sorties = serializers.IntegerField(
+        required=False,
+        min_value=1,
+        max_value=MOST_SORTIES,
+        help_text="flights that it makes at most, each on a full battery; more than one only for a UAV that returns to its start",
     )
     sensors = serializers.ListField(
         child=serializers.CharField(max_length=LONGEST_SENSOR),
@@ -133,14 +208,39 @@ class LockSerializer(serializers.Serializer):
         list_serializer_class = LockListSerializer
 
 
+OBJECTIVES_IN_WORDS = "total: fewest metres; makespan: finish soonest; time: least flying time of all together; energy: least Wh"
+
+
 class OptionsSerializer(serializers.Serializer):
     """UAVs, targets and options, all optional: what a mission is made of."""
 
     uavs = UavInputSerializer(many=True, required=False)
     targets = TargetInputSerializer(many=True, required=False)
-    objective = serializers.ChoiceField(choices=Objective.choices, required=False, help_text="total: fly least; makespan: finish soonest")
+    objective = serializers.ChoiceField(
+        choices=Objective.choices,
+        required=False,
+        help_text="total: fly least; makespan: finish soonest; time: least flying time of all; energy: least Wh",
+    )
     return_to_start = serializers.BooleanField(required=False)
     locks = LockSerializer(many=True, required=False)
+    departs_at = serializers.DateTimeField(
+        required=False, allow_null=True, default_timezone=UTC, help_text="planned take-off; null: the plan keeps clear of zones at any time"
+    )
+    conditions = ConditionsSerializer(required=False, allow_null=True)
+    charging_w = FiniteFloatField(
+        required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="power of charging at towers on the way; null: there is none"
+    )
+
+    def validate_charging_w(self, value: float | None) -> float | None:
+        return above_zero(value)
+
+    def validate_departs_at(self, value: datetime | None) -> datetime | None:
+        if value is not None and abs((value - timezone.now()).days) > MOST_DAYS_AHEAD:
+            raise serializers.ValidationError(_("A departure lies within two years of today."))
+        return value
+
+    def validate_conditions(self, value: Conditions | None) -> Conditions:
+        return value or CALM
 
     def validate_uavs(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
         return _no_more_than(settings.ROUTING_RULES.max_uavs, value, "UAVs")
@@ -171,7 +271,7 @@ class OptionsSerializer(serializers.Serializer):
         }
         if faults:
             raise serializers.ValidationError({"uavs": faults})
-        return tuple(_uav_request(uav, stored.get(uav.get("id"))) for uav in uavs)
+        return tuple(_checked_uav(index, uav, stored.get(uav.get("id"))) for index, uav in enumerate(uavs))
 
 
 def _no_more_than(limit: int, value: list[Any], what: str) -> list[Any]:
@@ -182,6 +282,13 @@ def _no_more_than(limit: int, value: list[Any], what: str) -> list[Any]:
     return value
 
 
+def _checked_uav(index: int, uav: dict[str, Any], stored: Uav | None) -> UavRequest:
+    try:
+        return _uav_request(uav, stored)
+    except InvalidPerformance as error:
+        raise serializers.ValidationError({"uavs": {str(index): {error.place: [error.message]}}}) from error
+
+
 def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
     if stored is None:
         known = {
@@ -190,6 +297,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
             "end_action": EndAction.HOVER,
             "sensors": [],
         }
+        performance: dict[str, Any] = {}
     else:
         known = {
             "name": stored.name,
@@ -199,6 +307,8 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
             "end_action": stored.end_action,
             "sensors": stored.sensors,
         }
+        performance = performance_to_json(performance_of(stored))
+    performance |= {field: uav[field] for field in PERFORMANCE_KEYS if field in uav}
     values = known | {field: uav[field] for field in uav if field != "id"}
     return UavRequest(
         name=values["name"],
@@ -209,6 +319,8 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         uav=None if stored is None else stored.pk,
         most_targets=values.get("most_targets"),
         sensors=tuple(values["sensors"]),
+        performance=performance_from_json(performance),
+        sorties=values.get("sorties", 1),
     )
 
 
@@ -243,7 +355,7 @@ class PlanInputSerializer(OptionsSerializer):
         return attrs
 
     def to_request(self) -> PlanRequest:
-        return plan_request(self.validated_data)
+        return replace(plan_request(self.validated_data), organisation=self.context["organisation"].pk)
 
 
 class MissionInputSerializer(OptionsSerializer):
@@ -274,6 +386,9 @@ def plan_request(values: dict[str, Any]) -> PlanRequest:
         return_to_start=values.get("return_to_start", False),
         locks=values.get("locks", ()),
         bases=values.get("bases", ()),
+        departs_at=values.get("departs_at"),
+        conditions=values.get("conditions", CALM),
+        charging_w=values.get("charging_w"),
     )
 
 

@@ -3,6 +3,8 @@
 from typing import Any
 
 from inspection.selectors import asset_detail, asset_label
+from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
+from missions.flight_plan.performance import performance_from_json, performance_to_json
 from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
 from missions.selectors import open_plan_of_mission
@@ -20,6 +22,9 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "author": mission.author.username if mission.author else None,
         "objective": mission.objective,
         "return_to_start": mission.return_to_start,
+        "departs_at": mission.departs_at,
+        "conditions": conditions_to_json(conditions_from_json(mission.conditions)),
+        "charging_w": mission.charging_w,
         "revision": mission.revision,
         "created_at": mission.created_at,
         "updated_at": mission.updated_at,
@@ -75,6 +80,8 @@ def _uav(row: MissionUav) -> dict[str, Any]:
         "end_action": row.end_action,
         "most_targets": row.most_targets,
         "sensors": row.sensors,
+        "sorties": row.sorties,
+        **performance_to_json(performance_from_json(row.performance)),
     }
 
 
@@ -110,6 +117,11 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "return_to_start": mission.return_to_start,
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,
+        "total_duration_s": round(sum(route.duration_s for route in mission.routes.all()), 1),
+        "total_energy_wh": mission.total_energy_wh,
+        "departs_at": mission.departs_at,
+        "conditions": conditions_to_json(conditions_from_json(mission.conditions)),
+        "separation": mission.separation,
         "graph_version": mission.graph_version,
         "ground_revision": mission.ground_revision,
         "flat_ground_assumed": mission.flat_ground_assumed,
@@ -137,6 +149,14 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "base": route.base_name or None,
         "length_m": route.length_m,
         "duration_s": route.duration_s,
+        "departs_s": route.departs_s,
+        "energy_wh": route.energy_wh,
+        "battery_percent": route.battery_percent,
+        "arrival_s": [waypoint.arrival_s for waypoint in waypoints],
+        "used_wh": None if route.energy_wh is None else [waypoint.used_wh for waypoint in waypoints],
+        "battery_left_percent": None if route.energy_wh is None else [waypoint.battery_left_percent for waypoint in waypoints],
+        "charging": route.charging,
+        "by_hand": [place for place, waypoint in enumerate(waypoints) if waypoint.is_by_hand],
         "targets": targets,
         "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),
         "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,

@@ -28,6 +28,13 @@ class WaypointSerializer(serializers.Serializer):
     altitude_relative_m = serializers.FloatField(help_text="above the take-off point")
 
 
+class ChargingSerializer(serializers.Serializer):
+    waypoint = serializers.IntegerField(help_text="its place in the route; what is done there comes after")
+    charging_s = serializers.FloatField()
+    charged_wh = serializers.FloatField()
+    stopped_s = serializers.FloatField(help_text="with the way down to the tower and up again")
+
+
 class RouteSerializer(serializers.Serializer):
     """One UAV's part, in the order of the request's UAVs."""
 
@@ -36,7 +43,22 @@ class RouteSerializer(serializers.Serializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices)
     base = serializers.CharField(allow_null=True, help_text="the base at which it lands, where it ends at one")
     length_m = serializers.FloatField(help_text="metres flown")
-    duration_s = serializers.FloatField()
+    duration_s = serializers.FloatField(help_text="from its own take-off")
+    departs_s = serializers.FloatField(help_text="seconds after the plan's departure at which it takes off")
+    energy_wh = serializers.FloatField(allow_null=True, help_text="null without a battery")
+    battery_percent = serializers.FloatField(allow_null=True, help_text="left at the end; null without a battery")
+    arrival_s = serializers.ListField(
+        child=serializers.FloatField(allow_null=True),
+        help_text="for each waypoint the seconds after the plan's departure at which it is reached; null in plans of before",
+    )
+    used_wh = serializers.ListField(
+        child=serializers.FloatField(), allow_null=True, help_text="for each waypoint, since take-off; null without a battery"
+    )
+    battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="for each waypoint")
+    charging = ChargingSerializer(many=True, help_text="stops at towers on the way")
+    by_hand = serializers.ListField(
+        child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or flies at another height"
+    )
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
     locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
@@ -83,11 +105,47 @@ class QualitySerializer(serializers.Serializer):
     """How good a plan is: a bound that no plan can be better than, and how far above it this one is."""
 
     lower_bound_m = serializers.FloatField(allow_null=True, help_text="of the total; null where the longest route counts")
-    lower_bound_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time; null where the total counts")
+    lower_bound_s = serializers.FloatField(allow_null=True, help_text="of the longest route or of all flying time, whichever counts")
+    lower_bound_wh = serializers.FloatField(allow_null=True, help_text="of the energy of all; null where it does not count")
     gap = serializers.FloatField(allow_null=True, help_text="the share of the plan's value above the bound, 0 to 1; null: not known")
     is_proven = serializers.BooleanField(help_text="no plan is better")
     method = serializers.CharField(help_text="how it was found; empty: not known")
     wish = WishSerializer(allow_null=True, help_text="null where nothing is locked")
+
+
+class WindLayerOutputSerializer(serializers.Serializer):
+    altitude_agl_m = serializers.FloatField()
+    speed_mps = serializers.FloatField()
+    from_deg = serializers.FloatField()
+
+
+class ConditionsOutputSerializer(serializers.Serializer):
+    """The air that is flown through; without wind it is calm."""
+
+    wind = WindLayerOutputSerializer(many=True)
+    temperature_c = serializers.FloatField()
+
+
+class NearestSerializer(serializers.Serializer):
+    """Where two UAVs come nearest to each other."""
+
+    metres = serializers.FloatField()
+    vertical_m = serializers.FloatField()
+    seconds = serializers.FloatField()
+    uavs = serializers.ListField(child=serializers.CharField(), min_length=2, max_length=2)
+    position = PositionField()
+
+
+class SeparationSerializer(serializers.Serializer):
+    """How the routes are kept apart: two UAVs are nowhere nearer than this at the same time."""
+
+    lateral_m = serializers.FloatField()
+    vertical_m = serializers.FloatField()
+    time_s = serializers.FloatField()
+    delays = serializers.ListField(child=serializers.FloatField(), help_text="of each route's departure [s]")
+    layers = serializers.ListField(child=serializers.FloatField(), help_text="by which each route flies higher than it would alone [m]")
+    closest = NearestSerializer(allow_null=True)
+    unresolved = serializers.ListField(child=serializers.DictField(), help_text="conflicts that could not be solved")
 
 
 class PlanSerializer(QualitySerializer):
@@ -95,6 +153,11 @@ class PlanSerializer(QualitySerializer):
     return_to_start = serializers.BooleanField()
     total_length_m = serializers.FloatField()
     longest_route_m = serializers.FloatField()
+    total_duration_s = serializers.FloatField(help_text="of all routes together")
+    total_energy_wh = serializers.FloatField(allow_null=True, help_text="of all UAVs with a battery; null if none has one")
+    departs_at = serializers.DateTimeField(allow_null=True, help_text="null: the plan keeps clear of zones at any time")
+    conditions = ConditionsOutputSerializer()
+    separation = SeparationSerializer(allow_null=True, help_text="null in plans of before")
     graph_version = serializers.IntegerField()
     ground_revision = serializers.IntegerField()
     flat_ground_assumed = serializers.BooleanField()
@@ -158,6 +221,13 @@ class MissionUavSerializer(serializers.Serializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices)
     most_targets = serializers.IntegerField(allow_null=True)
     sensors = serializers.ListField(child=serializers.CharField())
+    sorties = serializers.IntegerField(help_text="flights that it makes at most")
+    battery_wh = serializers.FloatField(allow_null=True, help_text="null: its energy is not counted")
+    mass_kg = serializers.FloatField(allow_null=True)
+    reserve_percent = serializers.FloatField()
+    max_airspeed_mps = serializers.FloatField(allow_null=True)
+    rotor_disk_m2 = serializers.FloatField(allow_null=True)
+    hover_power_w = serializers.FloatField(allow_null=True)
 
 
 class MissionTargetSerializer(serializers.Serializer):
@@ -189,6 +259,15 @@ class StaleCauseSerializer(serializers.Serializer):
         child=serializers.CharField(allow_blank=True), allow_null=True, help_text="between which targets; empty for a flight's start or end"
     )
     position = PositionField(allow_null=True)
+    agl_m = serializers.ListField(
+        child=serializers.FloatField(), allow_null=True, help_text="where a zone is met: lowest and highest planned height above ground"
+    )
+    to = serializers.DateTimeField(allow_null=True)
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        return super().get_fields() | {
+            "from": serializers.DateTimeField(allow_null=True, help_text="when a zone is met; null: at any time")
+        }
 
 
 class MissionSerializer(serializers.Serializer):
@@ -198,6 +277,9 @@ class MissionSerializer(serializers.Serializer):
     author = serializers.CharField(allow_null=True)
     objective = serializers.ChoiceField(choices=Objective.choices)
     return_to_start = serializers.BooleanField()
+    departs_at = serializers.DateTimeField(allow_null=True, help_text="planned take-off; null: at any time")
+    conditions = ConditionsOutputSerializer()
+    charging_w = serializers.FloatField(allow_null=True)
     revision = serializers.IntegerField(help_text="the ETag")
     created_at = serializers.DateTimeField()
     updated_at = serializers.DateTimeField()

@@ -1,5 +1,6 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
+from missions.services.by_hand import HandPoint, change_route
 from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet import (
     change_base,
@@ -15,6 +16,8 @@ from missions.services.fleet_rows import FleetChanged, FleetRowInUse, NameTaken,
 from missions.services.mission_copies import duplicate_mission
 from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan, take_plan
 from missions.services.missions import (
+    Charging,
+    Departure,
     MissionChange,
     MissionChanged,
     MissionFrozen,
@@ -28,6 +31,7 @@ from missions.services.places import places_of
 from missions.services.plan_json import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
 from missions.services.planning import GraphOutdated, make_plan
 from missions.services.requests import (
+    CALM,
     BaseRequest,
     InvalidRequest,
     LockRequest,
@@ -46,13 +50,17 @@ from missions.services.why_target import explain_unreached_target
 from missions.services.wishes import refuse_contradictions, with_bases
 
 __all__ = [
+    "CALM",
     "FLAT_GROUND",
     "NO_QUALITY",
     "TERRAIN_MODEL",
     "BaseRequest",
+    "Charging",
+    "Departure",
     "FleetChanged",
     "FleetRowInUse",
     "GraphOutdated",
+    "HandPoint",
     "InvalidRequest",
     "LockRequest",
     "MissionChange",
@@ -67,6 +75,7 @@ __all__ = [
     "UavRequest",
     "change_base",
     "change_mission",
+    "change_route",
     "change_uav",
     "change_uav_type",
     "create_base",

@@ -10,7 +10,10 @@ from missions.models import Base, Uav, UavType
 from missions.services.fleet_rows import deleted, facts_to_restore, locked, stored
 from workspace.models import Organisation, User
 
-TYPE_FIELDS = ("name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "sensors")
+TYPE_FIELDS = (
+    "name", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2",
+    "hover_power_w", "sensors",
+)  # fmt: skip
 
 
 def create_uav_type(*, organisation: Organisation, actor: User, values: dict[str, Any]) -> UavType:
@@ -37,7 +40,7 @@ def delete_uav_type(*, uav_type: UavType, actor: User, expected_revision: int | 
 def restore_uav_type(*, organisation: Organisation, actor: User, key: int) -> UavType:
     """Raises NotDeleted or NameTaken."""
     facts = facts_to_restore(UavType, organisation=organisation, key=key)
-    values = {field: facts[field] for field in TYPE_FIELDS}
+    values = {field: facts[field] for field in TYPE_FIELDS if field in facts}  # it may have gone before a field was there
     row = UavType(pk=key, organisation=organisation, revision=facts["revision"] + 1, **values)
     return stored(row, actor=actor, action="restore", before=None, facts=_type_facts)
 

@@ -1,6 +1,6 @@
 """Storing a plan on its mission: all of it or nothing, and only on the mission that it was made for."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,15 @@ from workspace.models import Job, User
 from workspace.services import JobCancelled, finish_job, record_change
 
 PLANNING_TASK = "missions.tasks.solve_plan"
-QUALITY = ("lower_bound_m", "lower_bound_s", "gap", "is_proven", "method", "wish")  # of a plan's JSON, kept with its mission
+QUALITY = (
+    "lower_bound_m",
+    "lower_bound_s",
+    "lower_bound_wh",
+    "gap",
+    "is_proven",
+    "method",
+    "wish",
+)  # of a plan's JSON, kept with its mission
 
 
 class NothingToPlan(Exception):
@@ -57,10 +65,10 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
 
 
 def _that_counts(request: PlanRequest) -> PlanRequest:
-    """The request with those sensors alone that a target needs: a UAV of the fleet may have got others since the mission was stored."""
+    """The request with those sensors alone that a target needs, as a UAV may have got others since, and without whose it is."""
     needed = [target.sensor for target in request.targets if target.sensor]
     uavs = (replace(uav, sensors=tuple(sensor for sensor in needed if has_sensor(uav, sensor))) for uav in request.uavs)
-    return replace(request, uavs=tuple(uavs))
+    return replace(request, uavs=tuple(uavs), organisation=None, mission=None)
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:
@@ -68,7 +76,7 @@ def plannable_request(*, mission: Mission) -> PlanRequest:
     request = request_of_mission(mission=mission)
     if not request.uavs or not request.targets:
         raise NothingToPlan
-    return with_bases(request, mission.organisation)
+    return replace(with_bases(request, mission.organisation), organisation=mission.organisation_id, mission=str(mission.pk))
 
 
 def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], str]) -> None:
@@ -102,6 +110,8 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
         locked.flat_ground_assumed = plan["flat_ground_assumed"]
         locked.total_length_m = plan["total_length_m"]
         locked.longest_route_m = plan["longest_route_m"]
+        locked.total_energy_wh = plan.get("total_energy_wh")
+        locked.separation = plan.get("separation")
         locked.plan_warnings = plan["warnings"]
         locked.plan_quality = {name: plan.get(name) for name in QUALITY}
         locked.revision += 1
@@ -136,6 +146,10 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             graph_version=plan["graph_version"],
             length_m=route["length_m"],
             duration_s=route["duration_s"],
+            departs_s=route.get("departs_s", 0.0),
+            energy_wh=route.get("energy_wh"),
+            charging=route.get("charging", []),
+            battery_percent=route.get("battery_percent"),
             base_name=route.get("base") or "",
             lands_at=Point(*route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,
             geometry=LineString(route["geometry"]["coordinates"], srid=4326) if route["geometry"] else None,
@@ -155,12 +169,22 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
                 altitude_agl_m=waypoint["altitude_agl_m"],
                 altitude_amsl_m=waypoint["altitude_amsl_m"],
                 altitude_relative_m=waypoint["altitude_relative_m"],
+                arrival_s=arrival_s,
+                used_wh=used_wh,
+                battery_left_percent=percent,
             )
             for row, route in zip(routes, plan["routes"], strict=True)
-            for sequence, waypoint in enumerate(route["waypoints"])
+            for sequence, (waypoint, arrival_s, used_wh, percent) in enumerate(_timed(route))
         ),
         batch_size=1_000,
     )
+
+
+def _timed(route: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
+    """Each waypoint with its arrival, energy and battery; a plan of before, or of a UAV without a battery, has none."""
+    count = len(route["waypoints"])
+    columns = (route.get(name) or [None] * count for name in ("arrival_s", "used_wh", "battery_left_percent"))
+    return zip(route["waypoints"], *columns, strict=True)
 
 
 def _store_left_out(mission: Mission, plan: dict[str, Any]) -> None:

@@ -1,7 +1,8 @@
 """Missions from creation to deletion. Every write locks the mission's row, counts its revision and leaves an entry in its history."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from datetime import datetime
 from typing import Any
 from uuid import UUID
 
@@ -10,6 +11,8 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
+from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
+from missions.flight_plan.performance import performance_from_json, performance_to_json
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
@@ -21,6 +24,7 @@ from missions.services.requests import (
     UavRequest,
     lock_from_json,
     lock_to_json,
+    moment_to_json,
     priority_from_json,
     priority_to_json,
     task_from_json,
@@ -43,6 +47,20 @@ class MissionFrozen(Exception):
 
 
 @dataclass(frozen=True)
+class Departure:
+    """When to depart; None: at any time."""
+
+    at: datetime | None
+
+
+@dataclass(frozen=True)
+class Charging:
+    """The power of charging at towers [W]; None: there is none."""
+
+    power_w: float | None
+
+
+@dataclass(frozen=True)
 class MissionChange:
     """What is to be changed; None leaves a part as it is."""
 
@@ -52,10 +70,13 @@ class MissionChange:
     objective: Objective | None = None
     return_to_start: bool | None = None
     locks: tuple[LockRequest, ...] | None = None
+    departure: Departure | None = None
+    conditions: Conditions | None = None
+    charging: Charging | None = None
 
     @property
     def drops_plan(self) -> bool:
-        return any(part is not None for part in (self.uavs, self.targets, self.objective, self.return_to_start, self.locks))
+        return any(getattr(self, part.name) is not None for part in fields(self) if part.name != "name")
 
 
 def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
@@ -70,6 +91,9 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
             objective=request.objective,
             return_to_start=request.return_to_start,
             locks=[lock_to_json(lock) for lock in request.locks],
+            departs_at=request.departs_at,
+            conditions=conditions_to_json(request.conditions),
+            charging_w=request.charging_w,
         )
         _store_uavs(mission, request.uavs)
         _store_targets(mission, targets)
@@ -95,6 +119,12 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             locked.objective = change.objective
         if change.return_to_start is not None:
             locked.return_to_start = change.return_to_start
+        if change.departure is not None:
+            locked.departs_at = change.departure.at
+        if change.conditions is not None:
+            locked.conditions = conditions_to_json(change.conditions)
+        if change.charging is not None:
+            locked.charging_w = change.charging.power_w
         if change.locks is not None:
             locked.locks = [lock_to_json(lock) for lock in change.locks]
         elif targets is not None:
@@ -168,7 +198,8 @@ def drop_plan(*, mission: Mission) -> None:
     mission.targets.update(unassigned_reason="", unassigned_message="")
     mission.state = MissionState.DRAFT
     mission.planned_at = mission.graph_version = mission.ground_revision = mission.flat_ground_assumed = None
-    mission.total_length_m = mission.longest_route_m = None
+    mission.total_length_m = mission.longest_route_m = mission.total_energy_wh = None
+    mission.separation = None
     mission.plan_quality = None
     mission.plan_warnings = []
 
@@ -186,6 +217,8 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 uav=row.uav_id,
                 most_targets=row.most_targets,
                 sensors=tuple(row.sensors),
+                performance=performance_from_json(row.performance),
+                sorties=row.sorties,
             )
             for row in mission.mission_uavs.all()
         ),
@@ -204,6 +237,9 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
         objective=Objective(mission.objective),
         return_to_start=mission.return_to_start,
         locks=tuple(lock_from_json(lock) for lock in mission.locks),
+        departs_at=mission.departs_at,
+        conditions=conditions_from_json(mission.conditions),
+        charging_w=mission.charging_w,
     )
 
 
@@ -248,6 +284,8 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             end_action=uav.end_action,
             most_targets=uav.most_targets,
             sensors=list(uav.sensors),
+            performance=performance_to_json(uav.performance),
+            sorties=uav.sorties,
         )
         for sequence, uav in enumerate(uavs)
     )
@@ -265,6 +303,9 @@ def _summary(mission: Mission) -> dict[str, Any]:
         "revision": mission.revision,
         "objective": str(mission.objective),
         "return_to_start": mission.return_to_start,
+        "departs_at": moment_to_json(mission.departs_at),
+        "conditions": mission.conditions,
+        "charging_w": mission.charging_w,
         "locks": len(mission.locks),
         "total_length_m": mission.total_length_m,
         "graph_version": mission.graph_version,

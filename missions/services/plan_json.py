@@ -1,24 +1,27 @@
 """A plan in the shape of the API."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import repeat
 from typing import Any
 
 import numpy as np
 
+from missions.flight_plan.charging import ChargingStop
+from missions.flight_plan.conditions import conditions_to_json
 from missions.flight_plan.heights import FloatArray
+from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import KINDS, NONE, IntArray, Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
-from missions.services.requests import PlanRequest, lock_to_json, task_to_json
-from missions.services.waypoint_text import line_text, waypoints_text
+from missions.services.requests import PlanRequest, lock_to_json, moment_to_json, task_to_json
+from missions.services.waypoint_text import column_text, line_text, waypoints_text
 
 FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
 _KIND_NAMES = [kind.value for kind in KINDS]
 NO_QUALITY: dict[str, Any] = {
-    "lower_bound_m": None, "lower_bound_s": None, "gap": None, "is_proven": False, "method": "", "wish": None,
+    "lower_bound_m": None, "lower_bound_s": None, "lower_bound_wh": None, "gap": None, "is_proven": False, "method": "", "wish": None,
 }  # fmt: skip
 
 
@@ -34,6 +37,10 @@ class PlannedRoute:
     end_action: EndAction = EndAction.HOVER
     base: str | None = None  # where it lands
     is_flat: bool = False
+    departs_s: float = 0.0  # after the plan's departure
+    timing: Timing | None = None
+    charging: tuple[ChargingStop, ...] = ()
+    lacks_wh: float = 0.0  # however it charges on the way
 
 
 def plan_to_json(
@@ -46,10 +53,12 @@ def plan_to_json(
     ground_revision: int,
     has_terrain: bool,
     quality: Mapping[str, Any],
+    separation: Mapping[str, Any],
     as_text: bool = False,
 ) -> dict[str, Any]:
     """as_text: lines and waypoints are ready JSON, which orjson alone takes; it writes the same bytes as of plain lists."""
     coordinates, waypoints = (line_text, waypoints_text) if as_text else (np.ndarray.tolist, waypoints_to_json)
+    column = column_text if as_text else column_to_json
     lengths_m = [round(route.length_m, 3) for route in routes]
     flat_ground_assumed = not has_terrain or any(route.is_flat for route in routes)
     return {
@@ -57,6 +66,11 @@ def plan_to_json(
         "return_to_start": request.return_to_start,
         "total_length_m": round(sum(lengths_m), 3),
         "longest_route_m": max(lengths_m, default=0.0),
+        "total_duration_s": round(sum(route.duration_s for route in routes), 1),
+        "total_energy_wh": total_energy_wh(routes),
+        "departs_at": moment_to_json(request.departs_at),
+        "conditions": conditions_to_json(request.conditions),
+        "separation": separation,
         "graph_version": graph_version,
         "ground_revision": ground_revision,
         "flat_ground_assumed": flat_ground_assumed,
@@ -72,6 +86,9 @@ def plan_to_json(
                 "base": route.base,
                 "length_m": length_m,
                 "duration_s": round(route.duration_s, 1),
+                **timing_to_json(route, column),
+                "by_hand": [],
+                "charging": [charging_to_json(stop) for stop in route.charging],
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": coordinates(route.line)},
@@ -84,6 +101,44 @@ def plan_to_json(
             for item in sorted(left_out, key=lambda item: item.target)
         ],
     }
+
+
+def total_energy_wh(routes: Sequence[PlannedRoute]) -> float | None:
+    """Of the routes whose energy is counted; None if that is none of them."""
+    counted = [route.timing.total_wh for route in routes if route.timing is not None and route.timing.total_wh is not None]
+    return round(sum(counted), 2) if counted else None
+
+
+def timing_to_json(route: PlannedRoute, column: Callable[[FloatArray, int], Any]) -> dict[str, Any]:
+    """Arrival, energy and battery at each waypoint, column by column: they are as many as the waypoints."""
+    timing = route.timing
+    if timing is None:
+        return {
+            "departs_s": round(route.departs_s, 1), "energy_wh": None, "battery_percent": None, "arrival_s": [], "used_wh": None,
+            "battery_left_percent": None,
+        }  # fmt: skip
+    return {
+        "departs_s": round(route.departs_s, 1),
+        "energy_wh": None if timing.total_wh is None else round(timing.total_wh, 2),
+        "battery_percent": None if timing.end_percent is None else round(timing.end_percent, 1),
+        "arrival_s": column(timing.arrival_s + route.departs_s, 1),
+        "used_wh": None if timing.used_wh is None else column(timing.used_wh, 2),
+        "battery_left_percent": None if timing.battery_left_percent is None else column(timing.battery_left_percent, 1),
+    }
+
+
+def charging_to_json(stop: ChargingStop) -> dict[str, Any]:
+    return {
+        "waypoint": stop.place,
+        "charging_s": round(stop.charging_s, 1),
+        "charged_wh": round(stop.charged_wh, 2),
+        "stopped_s": round(stop.stopped_s, 1),
+    }
+
+
+def column_to_json(values: FloatArray, digits: int) -> list[float]:
+    shown: list[float] = np.round(values, digits).tolist()
+    return shown
 
 
 def locked_targets(flown: Sequence[int], runs: Iterable[Sequence[int]]) -> list[int]:

@@ -1,11 +1,17 @@
 """What is asked of the planner, as plain values; stored as JSON while a job waits."""
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 from inspection.geodesy import LonLat
+from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
+from missions.flight_plan.performance import Performance, performance_from_json, performance_to_json
 from missions.models import EndAction
 from missions.routing.problem import Objective, Priority, Task, TaskKind
+
+NO_BATTERY = Performance()  # whose energy is not counted
+CALM = Conditions()
 
 
 @dataclass(frozen=True)
@@ -18,6 +24,8 @@ class UavRequest:
     uav: int | None = None  # primary key of a stored UAV
     most_targets: int | None = None
     sensors: tuple[str, ...] = ()
+    performance: Performance = NO_BATTERY
+    sorties: int = 1  # flights that it makes at most; several only where it returns
 
 
 @dataclass(frozen=True)
@@ -56,7 +64,11 @@ class BaseRequest:
 
 @dataclass(frozen=True)
 class PlanRequest:
-    """`bases` are those of the organisation when the plan was asked for; only filled in where a UAV is to land at one."""
+    """`bases` are those of the organisation when the plan was asked for; only filled in where a UAV is to land at one.
+
+    `organisation` and `mission` are the keys of whose plan it is: other missions of the organisation that fly then are kept apart from.
+    Without `departs_at` the plan is for any time. `charging_w` is the power of charging at towers on the way, if that is wished.
+    """
 
     uavs: tuple[UavRequest, ...]
     targets: tuple[TargetRequest, ...]
@@ -64,6 +76,11 @@ class PlanRequest:
     return_to_start: bool
     locks: tuple[LockRequest, ...] = ()
     bases: tuple[BaseRequest, ...] = ()
+    departs_at: datetime | None = None
+    conditions: Conditions = CALM
+    charging_w: float | None = None
+    organisation: int | None = None
+    mission: str | None = None
 
     def end_action(self, uav: int) -> EndAction:
         """What the UAV does in the end: the wish that all return comes first."""
@@ -102,6 +119,14 @@ def lock_from_json(value: dict[str, Any]) -> LockRequest:
     return LockRequest(value["uav"], tuple(value["targets"]), value["at_start"], value["at_end"])
 
 
+def moment_to_json(moment: datetime | None) -> str | None:
+    return None if moment is None else moment.astimezone(UTC).isoformat().replace("+00:00", "Z")
+
+
+def moment_from_json(value: str | None) -> datetime | None:
+    return None if value is None else datetime.fromisoformat(value)
+
+
 def request_to_json(request: PlanRequest) -> dict[str, Any]:
     return {
         "uavs": [
@@ -114,6 +139,8 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "uav": uav.uav,
                 "most_targets": uav.most_targets,
                 "sensors": list(uav.sensors),
+                "performance": performance_to_json(uav.performance),
+                "sorties": uav.sorties,
             }
             for uav in request.uavs
         ],
@@ -133,11 +160,16 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
         "return_to_start": request.return_to_start,
         "locks": [lock_to_json(lock) for lock in request.locks],
         "bases": [{"name": base.name, "position": list(base.position)} for base in request.bases],
+        "departs_at": moment_to_json(request.departs_at),
+        "conditions": conditions_to_json(request.conditions),
+        "charging_w": request.charging_w,
+        "organisation": request.organisation,
+        "mission": request.mission,
     }
 
 
 def request_from_json(value: dict[str, Any]) -> PlanRequest:
-    """A job may have been stored before there were priorities, ties, sensors, limits, locks and bases."""
+    """A job may have been stored before there were priorities, ties, sensors, limits, locks, bases, departures and conditions."""
     return PlanRequest(
         uavs=tuple(
             UavRequest(
@@ -149,6 +181,8 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 uav=uav["uav"],
                 most_targets=uav.get("most_targets"),
                 sensors=tuple(uav.get("sensors", ())),
+                performance=performance_from_json(uav.get("performance", {})),
+                sorties=uav.get("sorties", 1),
             )
             for uav in value["uavs"]
         ),
@@ -168,4 +202,9 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
         return_to_start=value["return_to_start"],
         locks=tuple(lock_from_json(lock) for lock in value.get("locks", ())),
         bases=tuple(BaseRequest(base["name"], LonLat(*base["position"])) for base in value.get("bases", ())),
+        departs_at=moment_from_json(value.get("departs_at")),
+        conditions=conditions_from_json(value.get("conditions") or {}),
+        charging_w=value.get("charging_w"),
+        organisation=value.get("organisation"),
+        mission=value.get("mission"),
     )

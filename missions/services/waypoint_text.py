@@ -41,6 +41,11 @@ def line_text(line: FloatArray) -> orjson.Fragment:
     return orjson.Fragment(_text(line))
 
 
+def column_text(values: FloatArray, digits: int) -> orjson.Fragment:
+    """A column of numbers, so many digits behind the point."""
+    return orjson.Fragment(_text(np.round(values, digits)))
+
+
 def _heights(waypoints: Waypoints) -> list[bytes]:
     """The rest of each waypoint that does no target, and the beginning of the next one."""
     points = waypoints.points

@@ -87,7 +87,7 @@ class UavTypeDetail(APIView):
     )
     def patch(self, request: Request, type_id: int) -> Response:
         row, revision = _type(request.user, type_id), expected_revision(request)
-        serializer = UavTypeSerializer(data=request.data, partial=True)
+        serializer = UavTypeSerializer(row, data=request.data, partial=True)
         serializer.is_valid(raise_exception=True)
         with fleet_problems(lambda: _type_now(request.user, type_id)):
             services.change_uav_type(uav_type=row, actor=request.user, values=serializer.validated_data, expected_revision=revision)

@@ -18,7 +18,7 @@ from missions.list_selectors import counts_by_state, mission_rows, missions_foun
 from missions.models import Mission
 from missions.serializers import inputs, shapes
 from missions.serializers.representations import mission_json, mission_summary
-from missions.services import MissionChange
+from missions.services import Charging, Departure, MissionChange
 from missions.stale_selectors import bases_landed_at
 from missions.views.mission_filters import FILTER_PARAMETERS, asked_filter, asked_order
 from missions.views.plans import is_small, job_answer, planning_job
@@ -59,7 +59,7 @@ def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Respon
     return Response(mission_json(mission), status=status, headers=headers)
 
 
-def _expected_revision(request: Request) -> int | None:
+def expected_revision(request: Request) -> int | None:
     """The revision that If-Match names; None without the header or for any (*)."""
     text = request.headers.get("If-Match", "*").strip().removeprefix("W/").strip('"')
     if text == "*":
@@ -67,6 +67,15 @@ def _expected_revision(request: Request) -> int | None:
     if not (text.isascii() and text.isdigit() and len(text) < 10):
         raise ApiProblem(412, "mission_changed", "If-Match is not a mission's ETag.")
     return int(text)
+
+
+def _change(values: dict[str, Any]) -> MissionChange:
+    """A departure or charging of null is a change, too."""
+    if "departs_at" in values:
+        values["departure"] = Departure(values.pop("departs_at"))
+    if "charging_w" in values:
+        values["charging"] = Charging(values.pop("charging_w"))
+    return MissionChange(**values)
 
 
 def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int = 200, plan_of: UUID | None = None) -> Response:
@@ -159,7 +168,7 @@ class MissionDetail(_PlansWhenAsked):
     )
     def patch(self, request: Request, mission_id: UUID) -> Response:
         user = request.user
-        expected = _expected_revision(request)
+        expected = expected_revision(request)
         mission = mission_or_404(user, mission_id)
         serializer = inputs.MissionPatchSerializer(data=request.data, context={"organisation": user.organisation})
         serializer.is_valid(raise_exception=True)
@@ -167,7 +176,7 @@ class MissionDetail(_PlansWhenAsked):
         wants_plan, plan_of = values.pop("plan"), values.pop("plan_of", None)
         with api_problems(has_precondition=expected is not None), transaction.atomic():
             if values:
-                mission = services.change_mission(mission=mission, actor=user, change=MissionChange(**values), expected_revision=expected)
+                mission = services.change_mission(mission=mission, actor=user, change=_change(values), expected_revision=expected)
                 expected = mission.revision
             if wants_plan:
                 revision = mission.revision if expected is None else expected
@@ -181,7 +190,7 @@ class MissionDetail(_PlansWhenAsked):
         responses={204: None, **CHANGED},
     )
     def delete(self, request: Request, mission_id: UUID) -> Response:
-        expected = _expected_revision(request)
+        expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
             services.delete_mission(mission=mission, actor=request.user, expected_revision=expected)
@@ -198,7 +207,7 @@ class MissionPlan(_PlansWhenAsked):
     )
     @idempotent
     def post(self, request: Request, mission_id: UUID) -> Response:
-        expected = _expected_revision(request)
+        expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
             return _plan_and_answer(request.user, mission, revision=mission.revision if expected is None else expected)

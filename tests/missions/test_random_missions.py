@@ -21,8 +21,8 @@ from missions.routing.terminals import Terminal, Ways, access_legs, attachments,
 from missions.services import PlanRequest, make_plan
 from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene
 from missions.services.refusals import Scene
+from missions.services.scenes import current_scene
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.routing.random_problems import best_merit

@@ -28,6 +28,18 @@ function hatch(palette) {
   return pixels(pen);
 }
 
+/** The same in strokes with gaps: a zone that applies at times. */
+function timedHatch(palette) {
+  const pen = canvasOf(HATCH_PX);
+  pen.strokeStyle = palette.zone;
+  pen.lineWidth = 1.1;
+  pen.beginPath();
+  pen.moveTo(1, HATCH_PX - 1);
+  pen.lineTo(HATCH_PX / 2 + 1, HATCH_PX / 2 - 1);
+  pen.stroke();
+  return pixels(pen);
+}
+
 function arrow(palette, colour) {
   const pen = canvasOf(14);
   pen.fillStyle = colour;
@@ -47,6 +59,7 @@ function arrow(palette, colour) {
 
 function draw(id, palette) {
   if (id === "hatch") return hatch(palette);
+  if (id === "hatch-timed") return timedHatch(palette);
   const number = /^arrow-(\d+)$/.exec(id)?.[1];
   return number ? arrow(palette, palette.routes[number - 1] ?? palette.inkSecond) : null;
 }

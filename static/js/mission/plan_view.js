@@ -2,7 +2,7 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
-import { durationText, lengthText, numberText } from "../units.js";
+import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { basisOf, withoutWishes } from "./selection.js";
@@ -19,11 +19,17 @@ const REASONS = {
 };
 
 export const OBJECTIVES = [
-  { value: "makespan", words: t("Even routes"), meaning: t("The longest route as short as possible") },
+  { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },
   { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
+  { value: "time", words: t("Least flying time"), meaning: t("All UAVs together as few minutes in the air as possible") },
+  { value: "energy", words: t("Least energy"), meaning: t("All UAVs together with as little of their batteries as possible") },
 ];
 
-export const otherObjective = (objective) => (objective === "total" ? "makespan" : "total");
+/** The one to set beside another: the soonest end, beside which the fewest metres. */
+export const otherObjective = (objective) => (objective === "makespan" ? "total" : "makespan");
+
+/** A plan that counts no energy is of UAVs without a battery: least energy means nothing for them. */
+export const isWithoutBattery = (plan) => plan !== null && (plan.result.total_energy_wh ?? null) === null;
 
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
 export function routesOf(plan) {
@@ -60,11 +66,12 @@ export function unreachedOf(plan) {
   }));
 }
 
+/** From the mission's departure until the last UAV is done. */
 export function longestDuration_s(result) {
-  return Math.max(0, ...result.routes.map((route) => route.duration_s));
+  return Math.max(0, ...result.routes.map((route) => route.duration_s + (route.departs_s ?? 0)));
 }
 
-/** "Even routes 56 min, 79.5 km": what an objective gives, where it has been planned. */
+/** "56 min, 79.5 km": what an objective gives, where it has been planned. */
 export function figuresOf(result) {
   return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
 }
@@ -81,8 +88,10 @@ export function sentenceOf(plan) {
   const time = durationText(longestDuration_s(plan.result));
   const endsAfield = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start);
   const sentence = endsAfield ? t("Done in {time}", { time }) : t("All back in {time}", { time });
-  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m)].join(" · ") };
+  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m), ...energyFacts(plan.result)].join(" · ") };
 }
+
+const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)]);
 
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing

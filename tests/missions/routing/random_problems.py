@@ -6,7 +6,9 @@ from itertools import permutations, product
 
 import numpy as np
 
-from missions.routing.problem import End, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
+from missions.routing.problem import Amounts, End, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
+
+BY_WAYS = (Objective.TOTAL, Objective.MAKESPAN, Objective.TIME)  # what can be asked for without knowing anything of energy
 
 
 def random_problem(
@@ -94,6 +96,56 @@ def mixed_problem(seed: int, *, uavs: int = 2, targets: int = 4, locks: int = 0)
     )
 
 
+def windy_problem(seed: int, objective: Objective, *, uavs: int = 2, targets: int = 4, locks: int = 0, sorties: int = 1) -> Problem:
+    """A mixed problem with seconds and Wh of its own, of one or two classes: neither follows from the metres, nor is there as back.
+
+    Batteries and ranges are such that some of the targets fit. With sorties some UAVs that return may fly several times.
+    """
+    draw = np.random.default_rng((seed, 1))
+    plain = mixed_problem(seed, uavs=uavs, targets=targets, locks=locks)
+    classes = int(draw.integers(1, 3))
+    class_of = tuple(int(number) for number in draw.integers(0, classes, uavs))
+    visits = len(plain.visits)
+    along_m = np.array([visit.length_m for visit in plain.visits])
+
+    def uneven(shape: tuple[int, ...]) -> np.ndarray:
+        return draw.uniform(0.6, 1.8, shape)
+
+    def amounts(per_m: float, per_service: float, ready: float) -> Amounts:
+        return Amounts(
+            first=plain.from_start_m * per_m * uneven((uavs, visits)),
+            onward=plain.between_m * per_m * uneven((classes, visits, visits)),
+            end=plain.end_m * per_m * uneven((visits, uavs)),
+            along=along_m * per_m * uneven((classes, visits)),
+            service=per_service * uneven((classes, 1)) * np.ones((1, visits)),
+            ready=ready * uneven((uavs,)),
+        )
+
+    has_seconds = bool(draw.integers(0, 4))
+    knows_all = objective is Objective.ENERGY or bool(draw.integers(0, 2))
+    is_limited = bool(draw.integers(0, 4))
+    starts = []
+    for start in plain.uavs:
+        usable_wh = float(draw.uniform(10.0, 100.0)) if is_limited else np.inf
+        most_sorties = int(draw.integers(1, sorties + 1)) if start.end is End.RETURN else 1
+        starts.append(
+            replace(
+                start,
+                usable_wh=usable_wh if knows_all or draw.integers(0, 2) else None,
+                sorties=most_sorties,
+                turnaround_s=float(draw.uniform(0, 600)) * (most_sorties > 1),
+            )
+        )
+    return replace(
+        plain,
+        uavs=tuple(starts),
+        objective=objective,
+        seconds=amounts(1 / 12.0, 0.0, 30.0) if has_seconds else None,
+        wh=amounts(1e-3, 0.5, 1.0),
+        class_of=class_of,
+    )
+
+
 def _some_locks(draw: np.random.Generator, uavs: int, targets: int, locks: int) -> tuple[Lock, ...]:
     order = draw.permutation(targets).tolist()
     chosen: list[Lock] = []
@@ -120,7 +172,7 @@ def honours(problem: Problem, routes: Routes, lock: Lock) -> bool:
 
 
 def every_plan(problem: Problem) -> Iterator[Routes]:
-    """All plans that keep every UAV's limits. For up to five targets."""
+    """All plans that keep every UAV's limits, those over all its sorties too. For up to five targets."""
     choices: list[list[tuple[int, int] | None]] = [
         [None, *((uav, visit) for uav in range(len(problem.uavs)) for visit in visits)] for visits in problem.visits_of_target()
     ]
@@ -132,7 +184,18 @@ def every_plan(problem: Problem) -> Iterator[Routes]:
             if (uav, own) not in orders:
                 orders[uav, own] = [order for order in permutations(own) if problem.keeps_limits(uav, order)]
             flown.append(orders[uav, own])
-        yield from product(*flown)
+        if _keeps_most(problem, choice):
+            yield from product(*flown)
+
+
+def _keeps_most(problem: Problem, choice: tuple[tuple[int, int] | None, ...]) -> bool:
+    if not problem.owner:
+        return True
+    done = dict.fromkeys(problem.owner, 0)
+    for item in choice:
+        if item is not None:
+            done[problem.owner[item[0]]] += problem.visits[item[1]].done
+    return all(done[owner] <= problem.uavs[uav].most for uav, owner in enumerate(problem.owner))
 
 
 def best_merit(problem: Problem) -> tuple[float, float, float]:

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from missions.routing.arcs import NO_WAY_M, Arcs
 from missions.routing.crossing import NONE, added_m, draw_move, make, measured
 from missions.routing.plan_state import copy_plan, empty_plan, ground_of, settle, workspace
-from missions.routing.problem import Problem
+from missions.routing.problem import Objective, Problem
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.ruin_and_recreate import construct
-from tests.missions.routing.random_problems import mixed_problem, random_problem
+from tests.missions.routing.random_problems import mixed_problem, random_problem, windy_problem
 
 
 def alike(problem: Problem) -> Problem:
@@ -25,9 +25,9 @@ def moved_as_measured(problem: Problem, seed: int) -> int:
     """How many moves were made and found to change the plan by what had been measured; each is drawn for the plan before."""
     usable = reachable(problem, needed_range_m(problem))
     ground = ground_of(problem, Arcs.of(problem), usable)
-    work = workspace(len(problem.uavs), problem.target_count, seed)
+    work = workspace(len(problem.uavs), problem.target_count, seed, len(ground.more_limit))
     construct(ground, work, 3, 1)
-    plan, old, made = work.plan, empty_plan(len(problem.uavs), problem.target_count), 0
+    plan, old, made = work.plan, empty_plan(len(problem.uavs), problem.target_count, len(ground.more_limit)), 0
     for _ in range(300):
         move = draw_move(ground, plan, work.random, -1)
         if move.kind == NONE:
@@ -55,6 +55,12 @@ def moved_as_measured(problem: Problem, seed: int) -> int:
 @given(st.integers(0, 1_000_000), st.integers(1, 4), st.integers(2, 14))
 def test_a_move_changes_a_plan_by_what_was_measured(seed: int, uavs: int, targets: int) -> None:
     moved_as_measured(mixed_problem(seed, uavs=uavs, targets=targets), seed)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 1_000_000), st.sampled_from(list(Objective)), st.integers(1, 4), st.integers(2, 14))
+def test_so_it_does_in_the_wind_between_uavs_that_fly_otherwise(seed: int, objective: Objective, uavs: int, targets: int) -> None:
+    moved_as_measured(windy_problem(seed, objective, uavs=uavs, targets=targets), seed)
 
 
 def test_so_it_does_where_the_ways_back_are_as_long() -> None:

@@ -1,0 +1,164 @@
+"""When a zone applies, worked out from its schedule. It errs on the long side; what cannot be understood applies always."""
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from datetime import datetime
+from typing import Any, NamedTuple
+
+from inspection.zones.schedule import DAYS, Schedule
+from inspection.zones.sun import DAY_S, sun_event_s
+
+SUN_ALLOWANCE_S = 120.0  # what the equations, the air and an observer on a hill differ by
+BOX_STEP_DEG = 0.1  # the sun is looked at on the corners of such a grid, so that neighbouring zones ask the same; 24 s of the sun's way
+LONGEST_WINDOW_S = 400 * DAY_S  # over more days than that a zone that applies now and then counts as applying always
+EPOCH_WEEKDAY = DAYS.index("THU")  # of 1970-01-01
+_TIME = re.compile(r"(\d{2}):(\d{2}):(\d{2})Z")
+
+Box = tuple[float, float, float, float]  # west, south, east, north [deg]
+Place = tuple[float, float]
+
+
+class Span(NamedTuple):
+    """A stretch of time, its end not included; seconds since the epoch, UTC."""
+
+    from_s: float
+    to_s: float
+
+
+def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float, margin_s: float = 0.0) -> tuple[Span, ...]:
+    """When a zone in the box applies between two moments: apart from each other, in order, each wider by the margin on both sides.
+
+    schedule is in the form of checked_schedule; None applies always. Days and times of day are UTC. With the sun, "Monday" is Monday in
+    UTC as well as at the place, and the span reaches from the earliest start to the latest end in the box; where an event does not happen
+    at all the zone applies that whole day.
+    """
+    if not from_s < to_s:
+        return ()
+    always = (Span(from_s, to_s),)
+    if not schedule:
+        return always
+    try:
+        spans = [span for period in schedule for span in _of_period(period, box, from_s - margin_s, to_s + margin_s)]
+    except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError):
+        return always
+    return merged((Span(max(start - margin_s, from_s), min(end + margin_s, to_s)) for start, end in spans))
+
+
+def merged(spans: Iterable[Span]) -> tuple[Span, ...]:
+    """The same time in as few spans as possible, in order; empty ones are left out."""
+    joined: list[Span] = []
+    for span in sorted(span for span in spans if span.from_s < span.to_s):
+        if joined and span.from_s <= joined[-1].to_s:
+            joined[-1] = Span(joined[-1].from_s, max(joined[-1].to_s, span.to_s))
+        else:
+            joined.append(span)
+    return tuple(joined)
+
+
+def _of_period(period: dict[str, Any], box: Box, from_s: float, to_s: float) -> Iterator[Span]:
+    start, end = _moment_s(period["startDateTime"], -math.inf), _moment_s(period["endDateTime"], math.inf, is_end=True)
+    first, last = max(start, from_s), min(end, to_s)
+    if not first < last:
+        return
+    entries = period["schedule"]
+    if not entries:
+        yield Span(first, last)
+        return
+    if last - first > LONGEST_WINDOW_S:
+        raise ValueError("too many days to look at")
+    for entry in entries:
+        weekdays = _weekdays(entry["day"])
+        # An entry may begin half a day before its day in UTC, and last two days and a half.
+        for day in range(math.floor(first / DAY_S) - 3, math.floor(last / DAY_S) + 2):
+            if (day + EPOCH_WEEKDAY) % 7 in weekdays:
+                yield from (Span(max(span.from_s, first), min(span.to_s, last)) for span in _of_entry(entry, day, box))
+
+
+def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
+    start_s, end_s = _time_s(entry["startTime"]), _time_s(entry["endTime"], is_end=True)
+    start_event, end_event = entry["startEvent"], entry["endEvent"]
+    if (start_s is not None and start_event) or (end_s is not None and end_event):
+        raise ValueError("a time and an event at one end")
+    midnight = day * DAY_S
+    if not start_event and not end_event:
+        start = midnight + (start_s or 0.0)
+        yield Span(start, _after(start, midnight + (DAY_S if end_s is None else end_s)))
+        return
+    places = _places(box)
+    for starts in _starts(start_event, start_s, day, places):
+        known = [(place, start) for place, start in zip(places, starts, strict=True) if start is not None]
+        ends = [_end(end_event, end_s, place, start, day) for place, start in known]
+        if known:
+            early, late = SUN_ALLOWANCE_S if start_event else 0.0, SUN_ALLOWANCE_S if end_event else 0.0
+            yield Span(min(start for _place, start in known) - early, max(ends) + late)
+    for lon, lat in places:
+        if any(event and sun_event_s(event, day, lon, lat) is None for event in (start_event, end_event)):
+            yield Span(midnight + min(0.0, -_solar_s(lon)), midnight + DAY_S + max(0.0, -_solar_s(lon)))
+
+
+def _starts(event: str | None, time_s: float | None, day: int, places: list[Place]) -> Iterator[list[float | None]]:
+    """For each reading of "on that day" the start at each place: by UTC, and by the sun at the place."""
+    midnight = day * DAY_S
+    if event:
+        for solar_day in (day - 1, day, day + 1):
+            starts = [sun_event_s(event, solar_day, lon, lat) for lon, lat in places]
+            if solar_day == day or any(start is not None and math.floor(start / DAY_S) == day for start in starts):
+                yield starts
+        return
+    yield [midnight + (time_s or 0.0)] * len(places)
+    if time_s is None:
+        yield [midnight - _solar_s(lon) for lon, _lat in places]
+
+
+def _end(event: str | None, time_s: float | None, place: Place, start: float, day: int) -> float:
+    """The first end after a start; where the sun brings none, three days later."""
+    lon, lat = place
+    if event:
+        moments = (sun_event_s(event, solar_day, lon, lat) for solar_day in range(day - 2, day + 4))
+        return next((moment for moment in moments if moment is not None and moment > start), (day + 3) * DAY_S)
+    midnight = day * DAY_S
+    return _after(start, midnight + (DAY_S + max(0.0, -_solar_s(lon)) if time_s is None else time_s))
+
+
+def _after(start: float, end: float) -> float:
+    """The end on its day, or on the first day after, that lies behind the start."""
+    return end if end > start else end + DAY_S * (math.floor((start - end) / DAY_S) + 1)
+
+
+def _solar_s(lon_deg: float) -> float:
+    """How far a place's mean solar time is ahead of UTC."""
+    return lon_deg * DAY_S / 360.0
+
+
+def _places(box: Box) -> list[Place]:
+    """Corners and centre of the box, made wider to whole steps."""
+    west, south = (math.floor(edge / BOX_STEP_DEG) * BOX_STEP_DEG for edge in box[:2])
+    east, north = (math.ceil(edge / BOX_STEP_DEG) * BOX_STEP_DEG for edge in box[2:])
+    return [(west, south), (east, south), (west, north), (east, north), ((west + east) / 2, (south + north) / 2)]
+
+
+def _weekdays(days: list[str]) -> frozenset[int]:
+    return frozenset(range(7)) if "ANY" in days else frozenset(DAYS.index(day) for day in days)
+
+
+def _moment_s(value: str | None, otherwise: float, *, is_end: bool = False) -> float:
+    if value is None:
+        return otherwise
+    moment = datetime.fromisoformat(value.replace("Z", "+00:00"))
+    if moment.tzinfo is None:
+        raise ValueError("a moment without a time zone")
+    return moment.timestamp() + (1.0 if is_end and moment.second == 59 else 0.0)
+
+
+def _time_s(value: str | None, *, is_end: bool = False) -> float | None:
+    """Seconds after midnight. An end in the last second of a minute, or in a day's last minute, is meant to be the next one's start."""
+    if value is None:
+        return None
+    match = _TIME.fullmatch(value)
+    if match is None:
+        raise ValueError("no time of day")
+    hour, minute, second = int(match[1]), int(match[2]), int(match[3])
+    if is_end and (hour, minute) == (23, 59):
+        return DAY_S
+    return hour * 3600.0 + minute * 60.0 + second + (1.0 if is_end and second == 59 else 0.0)

@@ -1,0 +1,136 @@
+"""What a UAV's flight takes: its battery, weight, rotors and drag, by default those of the PX4 Iris."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+GRAVITY_MPS2 = 9.806_65
+STANDARD_DENSITY = 1.225  # kg/m3, ISO 2533 at sea level
+
+# The Iris of PX4's Gazebo models (iris.sdf.jinja, gazebo_motor_model.cpp): 1.5 kg, sensors and rotors 0.045 kg; rotors of 0.128 m radius.
+IRIS_MASS_KG = 1.545
+IRIS_ROTOR_DISK_M2 = 4 * math.pi * 0.128**2
+IRIS_MAX_AIRSPEED_MPS = 11.0  # where the tilt limit of 35 degrees leaves room for control; 12.9 m/s is all it can do
+IRIS_BATTERY_WH = 56.6  # 3S 5.1 Ah
+# Rotor drag 1.75e-4 N per rad/s and m/s, four rotors at 805 rad/s in the hover: 0.56 N per m/s, with 15.15 N of thrust.
+IRIS_ROTOR_DRAG = 0.0372
+
+MASSES_KG = (0.05, 1_000.0)
+BATTERIES_WH = (1.0, 100_000.0)
+AIRSPEEDS_MPS = (1.0, 100.0)
+ROTOR_DISKS_M2 = (0.001, 1_000.0)
+EFFICIENCIES = (0.1, 0.95)  # of a hover: a fault of units lies outside
+
+
+class InvalidPerformance(ValueError):
+    """Figures that no UAV has; `place` names the entry as the JSON does."""
+
+    def __init__(self, place: str, message: str) -> None:
+        super().__init__(f"{place}: {message}")
+        self.place = place
+        self.message = message
+
+
+@dataclass(frozen=True)
+class Performance:
+    """How a UAV turns a battery into flight. Raises InvalidPerformance.
+
+    battery_wh         energy of a full battery; None: seconds can be told, watt-hours left cannot
+    mass_kg            at take-off
+    reserve_percent    of the battery that no plan uses
+    max_airspeed_mps   the fastest it flies through the air; None: not limited
+    climb_speed_mps    straight up; None: as the plan's rules have it; likewise descent_speed_mps
+    rotor_disk_m2      the circles of all rotors together
+    hover_power_w      measured in a hover in calm air of 1.225 kg/m3; None: worked out with the efficiency
+    efficiency         share of electrical power that lifts in the hover: figure of merit x motors x speed controllers; the Iris flies
+                       20 minutes on 56.6 Wh with 0.52
+    avionics_w         autopilot, radio, camera
+    drag_area_m2       CdA of all but the rotors, along the rotors' plane
+    rotor_drag         drag of the rotors in their plane for each newton of thrust and m/s of air [s/m]
+    """
+
+    battery_wh: float | None = None
+    mass_kg: float = IRIS_MASS_KG
+    reserve_percent: float = 20.0
+    max_airspeed_mps: float | None = None
+    climb_speed_mps: float | None = None
+    descent_speed_mps: float | None = None
+    rotor_disk_m2: float = IRIS_ROTOR_DISK_M2
+    hover_power_w: float | None = None
+    efficiency: float = 0.52
+    avionics_w: float = 8.0
+    drag_area_m2: float = 0.012
+    rotor_drag: float = IRIS_ROTOR_DRAG
+
+    def __post_init__(self) -> None:
+        _check(self.battery_wh, *BATTERIES_WH, "battery_wh")
+        _check(self.mass_kg, *MASSES_KG, "mass_kg")
+        _check(self.reserve_percent, 0.0, 90.0, "reserve_percent")
+        _check(self.max_airspeed_mps, *AIRSPEEDS_MPS, "max_airspeed_mps")
+        _check(self.climb_speed_mps, 0.1, 30.0, "climb_speed_mps")
+        _check(self.descent_speed_mps, 0.1, 30.0, "descent_speed_mps")
+        _check(self.rotor_disk_m2, *ROTOR_DISKS_M2, "rotor_disk_m2")
+        _check(self.efficiency, *EFFICIENCIES, "efficiency")
+        _check(self.avionics_w, 0.0, 10_000.0, "avionics_w")
+        _check(self.drag_area_m2, 0.0, 100.0, "drag_area_m2")
+        _check(self.rotor_drag, 0.0, 1.0, "rotor_drag")
+        low, high = EFFICIENCIES
+        if self.hover_power_w is not None and not low <= self.hover_efficiency <= high:
+            least_w, most_w = (self.avionics_w + self._ideal_hover_w / share for share in (high, low))
+            raise InvalidPerformance("hover_power_w", f"must be from {least_w:.0f} to {most_w:.0f} for this mass and these rotors")
+
+    @property
+    def weight_n(self) -> float:
+        return self.mass_kg * GRAVITY_MPS2
+
+    @property
+    def usable_wh(self) -> float | None:
+        """What a plan may use of the battery."""
+        return None if self.battery_wh is None else self.battery_wh * (1.0 - self.reserve_percent / 100.0)
+
+    @property
+    def hover_efficiency(self) -> float:
+        """The efficiency that the measured hover shows, or else the one given."""
+        if self.hover_power_w is None:
+            return self.efficiency
+        return self._ideal_hover_w / (self.hover_power_w - self.avionics_w) if self.hover_power_w > self.avionics_w else math.inf
+
+    @property
+    def _ideal_hover_w(self) -> float:
+        """Momentum theory: T ** 1.5 / sqrt(2 rho A)."""
+        return float(self.weight_n**1.5 / math.sqrt(2.0 * STANDARD_DENSITY * self.rotor_disk_m2))
+
+
+# What the API and a UAV type hold; the rest is the same for all.
+PERFORMANCE_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
+
+
+def performance_to_json(performance: Performance) -> dict[str, Any]:
+    return {key: getattr(performance, key) for key in PERFORMANCE_KEYS}
+
+
+def performance_from_json(value: Any) -> Performance:
+    """A performance from the API's keys; what is null or left out is as it is by default. Raises InvalidPerformance."""
+    if value is None:
+        return Performance()
+    if not isinstance(value, Mapping):
+        raise InvalidPerformance("performance", "must be an object")
+    read: dict[str, Any] = {}
+    for key, entry in value.items():
+        if key not in PERFORMANCE_KEYS:
+            raise InvalidPerformance(key, "is not known")
+        if entry is None:
+            continue
+        if isinstance(entry, bool) or not isinstance(entry, int | float):
+            raise InvalidPerformance(key, "must be a number")
+        try:
+            read[key] = float(entry)
+        except OverflowError:
+            raise InvalidPerformance(key, "is too large") from None
+    return Performance(**read)
+
+
+def _check(value: float | None, low: float, high: float, place: str) -> None:
+    if value is not None and not low <= value <= high:
+        raise InvalidPerformance(place, f"must be from {low:g} to {high:g}")
