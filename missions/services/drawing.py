@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.inspection_graph import NodeKind
-from inspection.graph.ways import BEND
+from inspection.graph.passed import BEND, passed_on
 from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
 from missions.flight_plan.power import NoHeadway
@@ -153,7 +153,7 @@ class Drawing:
         if not ways:
             return []
         graph, flight = self.scene.graph, self.scene.flight
-        told = self.ways.travel.passed(np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
+        told = passed_on(self.ways.travel, np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
         is_node = told.node != BEND
         nodes = told.node[is_node]
         asset, agl_m = np.full(len(told.node), NONE, dtype=np.int64), np.full(len(told.node), flight.transit_agl_m)
