@@ -15,7 +15,7 @@ from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
-from missions.services.battery import battery_overruns
+from missions.services.battery import battery_overruns, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import keys_of_zones_met
 from missions.services.places import Place, places_of, whole_assets
@@ -50,6 +50,7 @@ class Finished:
     has_terrain: bool
     met: frozenset[int]
     worth: Worth
+    is_whole: bool  # the search could count on all of what the batteries hold
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,7 @@ class _Planner:
         scene = scene_on(ground, chosen)
         has_terrain = has_terrain_at(ground.edition)
         usable_share: dict[int, float] = {}
-        for last in range(MOST_TRIES):
+        for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
                 stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share, usable_share=usable_share,
@@ -119,11 +120,13 @@ class _Planner:
             over = battery_overruns(self.request, alone)
             if not over:
                 break
+            if number == MOST_TRIES - 1:
+                found, alone = without_overruns(self.request, found, alone, over)
             for uav, too_much in over.items():
-                usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if last < MOST_TRIES - 2 else 0.0
+                usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if number < MOST_TRIES - 2 else 0.0
         routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes))
+        return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
 
 
 def make_plan(
@@ -187,5 +190,5 @@ def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str
         plan.found.lock_cost,
         request.objective,
         value=value_of(request.objective, plan.routes),
-        share_of_freest=1.0 if plan is freest else share,
+        share_of_freest=None if not (plan.is_whole and freest.is_whole) else 1.0 if plan is freest else share,
     )

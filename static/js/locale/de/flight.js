@@ -74,7 +74,7 @@ export default {
   "Next waypoint": "Nächster Wegpunkt",
   "No departure is chosen: the plan keeps clear of all zones at all times.": "Kein Abflug ist gewählt: Der Plan meidet alle Zonen zu allen Zeiten.",
   "No route yet": "Noch keine Route",
-  "No UAV is chosen.": "Kein UAV ist gewählt.",
+  "No UAV has a battery.": "Kein UAV hat einen Akku.",
   "No-fly zone at times": "Zeitweise Flugverbotszone",
   "north": "Norden",
   "north-east": "Nordosten",
