@@ -18,6 +18,7 @@ from missions.services.attempts import Attempt, attempt
 from missions.services.battery import battery_overruns, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import keys_of_zones_met
+from missions.services.lost_link import lost_link_check
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -180,6 +181,7 @@ def make_plan(
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
         separation=separation_json(plan.separation, plan.others.untimed),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.whole_graph, has_terrain=plan.has_terrain),
         quality=_quality(request, plan, freest),
         as_text=as_text,
     )
