@@ -16,6 +16,8 @@ from django.contrib.gis.geos import Polygon
 
 from inspection.models import Asset, NoFlyZone
 from missions.services import PlanRequest
+from tests.missions.clock_judge import too_near, wrong_clocks
+from tests.missions.plane import EARTH_M, apart_m
 
 LATERAL_M = 4.7  # of the 5 m that are kept; the rest is what the plane is wrong by
 HEIGHT_M = 19.9  # of 10 m of margin and 10 m that a height may stray
@@ -25,7 +27,6 @@ DIRECT_M = 4_900.0  # of the 5 km that a UAV may fly straight
 ACCESS_M = 9_800.0  # of the 10 km that it may fly to the network
 OFF_NETWORK_FACTOR = 2.0  # what a metre away from infrastructure costs
 LONGEST_FLIGHT_S = 4 * 3_600.0
-EARTH_M = 6_371_008.8
 DAYS = ("MON", "TUE", "WED", "THU", "FRI", "SAT", "SUN")
 HIGHEST_AGL_M = 120.0
 TALLEST_M = 105.0  # an asset that is flown over with 15 m to spare
@@ -51,7 +52,8 @@ class Judge:
 
     def faults(self, request: PlanRequest, plan: dict[str, Any]) -> list[str]:
         """All that is wrong with a plan."""
-        return [*self._crossings(request, plan), *_wrong_routes(request, plan), *self._untrue(request, plan)]
+        of_zones = [*self._crossings(request, plan), *self._untrue(request, plan)]
+        return [*of_zones, *_wrong_routes(request, plan), *wrong_clocks(request, plan), *too_near(plan)]
 
     # --- no leg in a zone -----------------------------------------------------------------------------------------------------
 
@@ -100,7 +102,7 @@ class Judge:
         for item in plan["unassigned"]:
             course = _course_of(request, item["target"])
             yield from (f"target {item['target']} is not {item['reason']}: {why}" for why in self._untrue_reason(request, item, course))
-            if item["reason"] in {"no_path", "beyond_range", "too_far_from_network"} and course.geom_type == "Point":
+            if item["reason"] in {"no_path", "beyond_range", "beyond_energy", "too_far_from_network"} and course.geom_type == "Point":
                 yield from self._could_be_done(request, plan, course, item, grounded)
 
     def _untrue_reason(self, request: PlanRequest, item: dict[str, Any], course: Any) -> Iterator[str]:
@@ -113,7 +115,9 @@ class Judge:
             yield "it is not that tall"
         elif reason == "too_far_from_network" and course.geom_type == "Point" and self._network_near(course):
             yield "there is a free tower near it"
-        elif reason not in {"inside_zone", "beyond_range", "above_height_limit", "too_far_from_network", "no_path"}:
+        elif reason == "beyond_energy" and all(uav.performance.battery_wh is None for uav in request.uavs):
+            yield "no UAV has a battery"
+        elif reason not in {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path"}:
             yield "that is no reason here"
 
     def _bars(self, course: Any, request: PlanRequest, low_m: float, high_m: float) -> bool:
@@ -149,7 +153,8 @@ class Judge:
         """
         place = np.array([course.x, course.y])
         for number, (uav, route) in enumerate(zip(request.uavs, plan["routes"], strict=True)):
-            if route["targets"] or number in grounded or route["end_action"] == "base":
+            is_limited = uav.performance.battery_wh is not None or uav.performance.max_airspeed_mps is not None
+            if route["targets"] or number in grounded or route["end_action"] == "base" or is_limited:
                 continue
             start = np.array(uav.position)
             way_m = apart_m(start, place)
@@ -213,13 +218,6 @@ def _wrong_routes(request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
             course = _course_of(request, target)
             if course.geom_type == "Point" and apart_m(place, course.coords[0]) > 120.0:  # a place is taken to the line that it is on
                 yield f"target {target} is elsewhere"
-
-
-def apart_m(start: Any, end: Any) -> float:
-    """On the sphere of mean radius, by the haversine."""
-    (lon, lat), (to_lon, to_lat) = np.radians(start), np.radians(end)
-    share = math.sin((to_lat - lat) / 2) ** 2 + math.cos(lat) * math.cos(to_lat) * math.sin((to_lon - lon) / 2) ** 2
-    return 2 * EARTH_M * math.asin(math.sqrt(share))
 
 
 def _course_of(request: PlanRequest, target: int) -> Any:

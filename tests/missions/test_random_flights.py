@@ -13,6 +13,8 @@ from django.contrib.gis.db.models import Extent
 
 from inspection.models import Asset, NoFlyZone
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, make_plan
@@ -56,7 +58,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
         region, judge = Region(), Judge()
         departures = [None, *(A_MONDAY + timedelta(minutes=draw.randrange(7 * 24 * 60)) for _ in range(DEPARTURES))]
         for _ in range(missions // ZONE_SETS + 1):
-            asked = _hovering_at_last(replace(region.mission(draw), departs_at=draw.choice(departures)))
+            asked = _in_the_wind(replace(region.mission(draw), departs_at=draw.choice(departures)), draw)
             plan = make_plan(request=asked)
             assert judge.faults(asked, plan) == [], asked
             seen.update(item["reason"] for item in plan["unassigned"])
@@ -65,7 +67,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
         seen["before or after its time"] += judge.seen_beside_time
     print(path.name, dict(seen))
     assert seen["visited"] > missions
-    for reason in ("inside_zone", "beyond_range", "over or under a zone", "before or after its time"):
+    for reason in ("inside_zone", "beyond_range", "beyond_energy", "over or under a zone", "before or after its time"):
         assert seen[reason] > 0, reason
 
 
@@ -152,10 +154,21 @@ def _text(moment: datetime) -> str:
     return f"{moment:%Y-%m-%dT%H:%M:%SZ}"
 
 
-def _hovering_at_last(asked: PlanRequest) -> PlanRequest:
-    """Whoever would land at its last target hovers there: the planner does not yet look for a zone between the target and the ground."""
-    uavs = (replace(uav, end_action=EndAction.HOVER) if uav.end_action is EndAction.LAND else uav for uav in asked.uavs)
-    return replace(asked, uavs=tuple(uavs))
+def _in_the_wind(asked: PlanRequest, draw: random.Random) -> PlanRequest:
+    """Half of the missions in wind, half of the UAVs with a battery, some with a limit of airspeed that the wind stays below."""
+    wind = (WindLayer(10.0, draw.uniform(0, 6), draw.uniform(0, 359)), WindLayer(100.0, draw.uniform(0, 8), draw.uniform(0, 359)))
+    air = Conditions(wind if draw.random() < 0.5 else (), draw.uniform(-10, 35))
+    return replace(asked, conditions=air, uavs=tuple(replace(uav, performance=_performance(asked, draw)) for uav in asked.uavs))
+
+
+def _performance(asked: PlanRequest, draw: random.Random) -> Performance:
+    """Where the least energy is wished for, every UAV has a battery."""
+    batteries_wh = [IRIS_BATTERY_WH, 200.0]
+    return Performance(
+        battery_wh=draw.choice(batteries_wh if asked.objective is Objective.ENERGY else [None, None, *batteries_wh]),
+        max_airspeed_mps=draw.choice([None, None, IRIS_MAX_AIRSPEED_MPS, 15.0]),
+        reserve_percent=draw.choice([0.0, 20.0]),
+    )
 
 
 # --- the judge sees what is plain to see --------------------------------------------------------------------------------------
