@@ -3,12 +3,14 @@
     python -m benchmarks.reachability [--nodes 200000] [--zones 500] [--uavs 10] [--count 5] [--write]
 
 A network of make_graph.py, cleared of its zones and indexed before the clock starts, as planners have it. UAVs stand anywhere on it,
-a third of each kind of end; half of them have a range of 40 km. Measured is what a request costs beyond the database: the verdicts
+a third of each kind of end; half of them have a range of 40 km. All have the battery of one of two types, of 400 and 600 Wh, and there is
+wind of 5 m/s; with --calm there is neither. Measured is what a request costs beyond the database: the verdicts
 and the answer as JSON. With --write the table goes to docs/performance.md. Exits with 1 where the bar is missed.
 """
 
 import argparse
 import sys
+from collections.abc import Sequence
 from itertools import pairwise
 from statistics import median
 from time import perf_counter
@@ -28,7 +30,10 @@ from inspection.graph.network import Network
 from inspection.graph.route_index import route_index
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.ways_taken import FlightClass
 from missions.routing.problem import End
 from missions.routing.reachability import Flight, Reach, Verdict, reach
 from missions.routing.rules import RoutingRules
@@ -37,6 +42,9 @@ from missions.routing.terminals import AccessRules
 MOST_S = 1.0
 RANGE_M = 40_000.0
 SPANS_OF_A_LINE = 40
+TYPES = [FlightClass(Performance(battery_wh=wh, mass_kg=6.0, rotor_disk_m2=0.8), 12.0) for wh in (400.0, 600.0)]
+WIND = Conditions((WindLayer(60.0, 5.0, 250.0),))
+CALM_TYPES, CALM = [None], Conditions()
 
 
 def network_of(graph: dict[str, np.ndarray]) -> Network:
@@ -69,7 +77,9 @@ def answer(found: Reach) -> bytes:
     return orjson.dumps({name: column.tolist() for name, column in columns.items()})
 
 
-def measure(nodes: int, zone_count: int, uavs: int, count: int) -> tuple[list[float], Reach, int]:
+def measure(
+    nodes: int, zone_count: int, uavs: int, count: int, types: Sequence[FlightClass | None], wind: Conditions
+) -> tuple[list[float], Reach, int]:
     """Seconds of each run, the last verdicts, and the bytes of the answer."""
     made = make(nodes, polygons=zone_count)
     network, zones = network_of(made), zones_of(made)
@@ -87,9 +97,12 @@ def measure(nodes: int, zone_count: int, uavs: int, count: int) -> tuple[list[fl
         at = graph.position[generator.choice(graph.node_count, uavs + 3)] + generator.normal(0.0, 0.003, (uavs + 3, 2))
         places = [LonLat(lon, lat) for lon, lat in at.tolist()]
         ends = (End.OPEN, End.RETURN, End.ANY_BASE)
-        flights = [Flight(place, ends[number % 3], RANGE_M if number % 2 else np.inf) for number, place in enumerate(places[:uavs])]
+        flights = [
+            Flight(place, ends[number % 3], RANGE_M if number % 2 else np.inf, number % 3 > 0, types[number // 3 % len(types)])
+            for number, place in enumerate(places[:uavs])
+        ]
         began_s = perf_counter()
-        found = reach(network, whole, graph, zones, zones, flights, places[uavs:], rules)
+        found = reach(network, whole, graph, zones, zones, flights, places[uavs:], rules, conditions=wind)
         size = len(answer(found))
         if run:
             times.append(perf_counter() - began_s)
@@ -102,9 +115,12 @@ def main() -> int:
     parser.add_argument("--zones", type=int, default=500)
     parser.add_argument("--uavs", type=int, default=10)
     parser.add_argument("--count", type=int, default=5)
+    parser.add_argument("--calm", action="store_true", help="without batteries and wind")
     parser.add_argument("--write", action="store_true", help="into docs/performance.md")
     options = parser.parse_args()
-    times, found, size = measure(options.nodes, options.zones, options.uavs, options.count)
+    times, found, size = measure(
+        options.nodes, options.zones, options.uavs, options.count, *((CALM_TYPES, CALM) if options.calm else (TYPES, WIND))
+    )
     verdicts = ", ".join(f"{int((found.verdict == verdict).sum()):,} {verdict.name.lower().replace('_', ' ')}" for verdict in Verdict)
     head = [f"{options.nodes:,} nodes, {options.zones} zones, {options.uavs} UAVs", "median", "longest", "assets", "answer"]
     row = [

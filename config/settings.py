@@ -319,6 +319,8 @@ FLIGHT_RULES = FlightRules(
     transit_agl_m=_float("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
     max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
     cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
+    longest_flight_s=_float("SPANWISE_LONGEST_FLIGHT_S", FlightRules.longest_flight_s),
+    turnaround_s=_float("SPANWISE_TURNAROUND_S", FlightRules.turnaround_s),
 )
 ZONE_RULES = ZoneRules(
     time_margin_s=_float("SPANWISE_ZONE_TIME_MARGIN_S", ZoneRules.time_margin_s),

@@ -32,6 +32,7 @@ class OtherFlights:
 def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *, but: UUID | str | None = None) -> OtherFlights:
     """Routes of approved, dispatched and active missions that are in the air at any time of a window, in seconds since the epoch.
 
+    Those of a mission without a departure may be in the air at any time.
     `but` is a mission that does not count. Their own seconds count from from_s.
     A UAV that hovers at its end is taken to do so until the longest flight is over.
     """
@@ -59,10 +60,20 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
         )
         for route in flying
     }
+    whenever = _routes_without_departure(organisation_id, but)
     return OtherFlights(
         tuple(found for found in timed.values() if found is not None),
-        tuple((str(route.mission_id), route.mission_uav.name) for route, found in timed.items() if found is None),
+        tuple(
+            (str(route.mission_id), route.mission_uav.name)
+            for route in [*(route for route, found in timed.items() if found is None), *whenever]
+        ),
     )
+
+
+def _routes_without_departure(organisation_id: int, but: UUID | str | None) -> list[Route]:
+    missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at=None)
+    routes = Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), geometry__isnull=False)
+    return list(routes.select_related("mission_uav").order_by("mission_id", "mission_uav__sequence"))
 
 
 def routes_of_mission_in_time(mission: Mission) -> list[TimedRoute | None]:
@@ -104,6 +115,8 @@ def _timed_route(
         return None
     amsl_m, agl_m = (np.array([point[column] for point in points], dtype=np.float64) for column in (1, 2))
     hold_s = np.array([(task or {}).get("hold_s", 0.0) for *_, task in points], dtype=np.float64)
+    for stop in route.charging:
+        hold_s[stop["waypoint"]] += stop["stopped_s"]
     held_s = np.cumsum(hold_s) - hold_s
     flown_s = np.array([point[3] for point in points], dtype=np.float64) - held_s
     take_off_s = departure_s + route.departs_s

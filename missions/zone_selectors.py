@@ -44,6 +44,8 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
     arrival_s = np.array([np.nan if waypoint.arrival_s is None else waypoint.arrival_s for waypoint in waypoints], dtype=np.float64)
     is_timed = departs_s is not None and not np.isnan(arrival_s).all()
     began_s = 0.0 if departs_s is None else departs_s
+    lands = route.mission.return_to_start or route.mission_uav.end_action != EndAction.HOVER
+    lasts_s = route.duration_s if lands else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)  # who hovers stays
     return FlownRoute(
         position=np.array([waypoint.position.coords[:2] for waypoint in waypoints], dtype=np.float64).reshape(-1, 2),
         agl_m=np.array([waypoint.altitude_agl_m for waypoint in waypoints], dtype=np.float64),
@@ -51,9 +53,9 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
             [np.nan if waypoint.altitude_amsl_m is None else waypoint.altitude_amsl_m for waypoint in waypoints], dtype=np.float64
         ),
         arrival_s=began_s + arrival_s if is_timed else None,
-        departs_s=began_s + route.departs_s if is_timed else None,
-        ends_s=began_s + route.departs_s + route.duration_s if is_timed else None,
-        lands=route.mission_uav.end_action != EndAction.HOVER,
+        departs_s=None if departs_s is None else began_s + route.departs_s,
+        ends_s=None if departs_s is None else began_s + route.departs_s + lasts_s,
+        lands=lands,
     )
 
 

@@ -13,6 +13,7 @@ from shapely import STRtree
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import LonLat
+from inspection.graph.box_grid import BoxGrid
 from inspection.graph.inspection_graph import InspectionGraph
 
 # The fewest metres in a degree of latitude, and of longitude on the equator (WGS84): a clearance is never narrower than asked.
@@ -21,6 +22,8 @@ METRES_PER_DEGREE_LON = 111_319.0
 NEAREST_POLE_DEG = 89.9  # nearer to a pole a degree of longitude no longer shrinks here
 CORNER_SEGMENTS = 8  # per quarter circle of a widened corner
 CORNER_EXCESS = 1.005  # makes the chords of such a quarter circle clear the true one: 1 / cos(90 deg / 16) = 1.0048
+
+MANY = 5_000  # legs or positions from which on it is worth a coarse look at where they are
 
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
@@ -53,6 +56,7 @@ class ZoneIndex:
         self._has_bands = bool(np.isfinite(self.floor_agl_m).any() or np.isfinite(self.ceiling_agl_m).any())
         self._parts, self._zone_of_part = shapely.get_parts(self._polygons, return_index=True)
         self._widened: dict[float, tuple[NDArray[np.object_], STRtree]] = {}
+        self._grids: dict[float, BoxGrid] = {}
         self._one_thread = Lock()
 
     def __len__(self) -> int:
@@ -116,7 +120,7 @@ class ZoneIndex:
         start, end = _rows(start), _rows(end)
         met = np.zeros(max(len(start), len(end)) if len(start) and len(end) else 0, dtype=bool)
         if len(self._parts) and len(met) and self._may_meet(start, end, clearance_m):
-            leg_index, _ = self._meetings(_legs(start, end), clearance_m, low_m, high_m)
+            leg_index, _ = self._meetings_of_legs(start, end, clearance_m, low_m, high_m)
             met[leg_index] = True
         return met
 
@@ -132,7 +136,7 @@ class ZoneIndex:
         start, end = _rows(start), _rows(end)
         if not (len(self._parts) and len(start) and len(end)):
             return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
-        return self._meetings(_legs(start, end), clearance_m, low_m, high_m)
+        return self._meetings_of_legs(start, end, clearance_m, low_m, high_m)
 
     def contains(
         self, position: ArrayLike, clearance_m: float = 0.0, low_m: ArrayLike | None = None, high_m: ArrayLike | None = None
@@ -141,8 +145,11 @@ class ZoneIndex:
         position = _rows(position)
         inside = np.zeros(len(position), dtype=bool)
         if len(self._parts) and len(position):
-            point_index, _ = self._meetings(_points(position), clearance_m, low_m, high_m)
-            inside[point_index] = True
+            near = self._near(position, position, clearance_m)
+            some = slice(None) if near is None else near
+            low_m, high_m = _of_some(low_m, some, len(position)), _of_some(high_m, some, len(position))
+            point_index, _ = self._meetings(_points(position[some]), clearance_m, low_m, high_m)
+            inside[point_index if near is None else near[point_index]] = True
         return inside
 
     def zone_at(self, position: LonLat, low_m: float | None = None, high_m: float | None = None) -> tuple[int, str] | None:
@@ -167,6 +174,28 @@ class ZoneIndex:
 
     def _describe(self, zone: np.integer) -> tuple[int, str]:
         return int(self.ids[zone]), self.names[int(zone)]
+
+    def _meetings_of_legs(
+        self, start: FloatArray, end: FloatArray, clearance_m: float, low_m: ArrayLike | None, high_m: ArrayLike | None
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        near = self._near(np.minimum(start, end), np.maximum(start, end), clearance_m)
+        if near is None:
+            return self._meetings(_legs(start, end), clearance_m, low_m, high_m)
+        start, end = np.broadcast_arrays(start, end)
+        count = len(start)
+        leg_index, part_index = self._meetings(
+            _legs(start[near], end[near]), clearance_m, _of_some(low_m, near, count), _of_some(high_m, near, count)
+        )
+        return near[leg_index], part_index
+
+    def _near(self, low: FloatArray, high: FloatArray, clearance_m: float) -> NDArray[np.intp] | None:
+        """Of very many boxes those that a zone may lie in, so that the others need not become shapes; None for few: all may."""
+        if len(low) < MANY:
+            return None
+        with self._one_thread:
+            if clearance_m not in self._grids:
+                self._grids[clearance_m] = BoxGrid(shapely.bounds(self._widened_by(clearance_m)[0]))
+        return np.flatnonzero(self._grids[clearance_m].may_meet(low, high))
 
     def _meetings(
         self, shapes: NDArray[np.object_], clearance_m: float, low_m: ArrayLike | None, high_m: ArrayLike | None
@@ -226,6 +255,11 @@ def widen(polygons: NDArray[np.object_], clearance_m: float) -> NDArray[np.objec
     in_metres = _scaled(polygons, scale)
     wider = shapely.buffer(in_metres, clearance_m * CORNER_EXCESS, quad_segs=CORNER_SEGMENTS)
     return _scaled(wider, 1.0 / scale)
+
+
+def _of_some(limit_m: ArrayLike | None, some: NDArray[np.intp] | slice, count: int) -> FloatArray | None:
+    """The limits of some of `count` legs."""
+    return None if limit_m is None else np.broadcast_to(np.asarray(limit_m, dtype=np.float64), count)[some]
 
 
 def plane_scale(bounds: FloatArray) -> FloatArray:

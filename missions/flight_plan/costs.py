@@ -17,10 +17,10 @@ from inspection.geodesy.short_vector import short_vector_m
 from inspection.graph.along_ways import chain_arrays
 from inspection.graph.condensed import NumberArray
 from inspection.graph.inspection_graph import InspectionGraph
-from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
+from missions.flight_plan.conditions import Conditions, air_density
 from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, leg_taken
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.ways_taken import FlightClass, NodeGround, graph_taken, taken_on_ways
+from missions.flight_plan.ways_taken import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
 from missions.routing.problem import End
 from missions.routing.terminals import Ways
 
@@ -96,13 +96,14 @@ def flight_costs(
     own_class = np.array(class_of, dtype=np.int64)
     first, end = np.empty((2, uavs, visits)), np.empty((2, visits, uavs))
     onward, at_visit = np.empty((2, len(numbers), visits, visits)), np.empty((2, 2, len(numbers), visits))
+    bends = bends_of_ways(travel, float(rules.transit_agl_m))
     for flying, number in numbers.items():
         taken = graph_taken(graph, flying, conditions, rules, ground)
         _fill(
             number, own_class, ends, ways.nearest_base, course, course_first, stands, flown, source_m, sink_m, float(rules.transit_agl_m),
             travel.way, travel.entry_leg, travel.entry_label, travel.leg_node, *chain_arrays(travel.index),
             taken.sums.place, taken.sums.label, graph.position, taken.passed_m, taken.ground_m,
-            taken.air.wind, taken.air.temperature_c, taken.air.own, taken.air.table, first, onward, end, at_visit,
+            *bends, taken.air.wind, taken.air.temperature_c, taken.air.own, taken.air.table, first, onward, end, at_visit,
         )  # fmt: skip
     seconds, wh = (Taken(first[part], onward[part], end[part], *at_visit[part]) for part in range(2))
     usable_wh = [flying.performance.usable_wh for flying in classes]
@@ -143,6 +144,9 @@ def _fill(
     node_position: FloatArray,
     passed_m: FloatArray,
     node_ground_m: FloatArray,
+    bend: FloatArray,
+    bend_first: IntArray,
+    direct_number: NumberArray,
     wind: FloatArray,
     temperature_c: float,
     own: Speeds,
@@ -169,7 +173,7 @@ def _fill(
         source[:, 3], sink[:, 3] = source_ground_m, sink_ground_m
     taken = taken_on_ways(
         way, entry_leg, entry_label, leg_node, node_chain, node_place, chain_first, place_sum, label_sum,
-        node_position, passed_m, node_ground_m, source, sink, wind, temperature_c, own, table,
+        node_position, passed_m, node_ground_m, source, sink, bend, bend_first, direct_number, wind, temperature_c, own, table,
     )  # fmt: skip
     parts, columns = _at_visits(course, course_first, flown, source[:, 3], transit_m, wind, temperature_c, own, table)
     for part in range(2):
@@ -218,20 +222,17 @@ def _at_visits(
         low_m = min(level_m, transit_m)
         known_m = ground_m[uavs + visit]
         density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, temperature_c)
-        east_mps, north_mps = wind_in_table(wind, level_m)
-        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = hold_taken(flown[1, visit], east_mps, north_mps, density, own, table)
+        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = hold_taken(flown[1, visit], level_m, wind, density, own, table)
         for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
             east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
             length_m = math.hypot(east, north)
             if length_m > 0.0:
-                along = leg_taken(length_m, east / length_m, north / length_m, 0.0, east_mps, north_mps, density, own, table)
+                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, wind, density, own, table)
                 parts[0, ALONG, visit] += along[0]
                 parts[1, ALONG, visit] += along[1]
-        east_mps, north_mps = wind_in_table(wind, 0.5 * (low_m + transit_m))
-        down = leg_taken(0.0, 0.0, 0.0, low_m - transit_m, east_mps, north_mps, density, own, table)
-        up = leg_taken(0.0, 0.0, 0.0, transit_m - low_m, east_mps, north_mps, density, own, table)
-        east_mps, north_mps = wind_in_table(wind, 0.5 * level_m)
-        landing = leg_taken(0.0, 0.0, 0.0, -level_m, east_mps, north_mps, density, own, table)
+        down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
+        up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
+        landing = leg_taken(0.0, 0.0, 0.0, level_m, 0.0, -level_m, wind, density, own, table)
         for part in range(2):
             parts[part, SERVICE, visit] += down[part]
             parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part]
@@ -240,9 +241,8 @@ def _at_visits(
         if not math.isnan(ground_m[uav]):
             highest_m = max(highest_m, ground_m[uav])
     density = air_density(highest_m, temperature_c)
-    east_mps, north_mps = wind_in_table(wind, 0.5 * transit_m)
-    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, transit_m, east_mps, north_mps, density, own, table)
-    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, -transit_m, east_mps, north_mps, density, own, table)
+    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
+    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
     parts[1] /= J_PER_WH
     columns[1] /= J_PER_WH
     return parts, columns

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from inspection.geodesy import LonLat
 from missions.flight_plan.closest_approach import NOTHING, box_tree, nearest, shared_places
 from missions.flight_plan.rules import FlightRules, SeparationRules
-from missions.flight_plan.waypoints import END, NONE, TARGET, RoutePoints, Waypoints
+from missions.flight_plan.waypoints import BASE, END, NONE, TARGET, RoutePoints, Waypoints
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -122,7 +122,7 @@ def raised_agl_m(points: RoutePoints, layer_m: float, *, lands: bool, rules: Fli
     Targets, and the points between two ends of one, are flown as high as before; likewise the end of a route that
     hovers over its last, or lands there.
     """
-    is_transit = (points.kind != TARGET) & (points.target == NONE)
+    is_transit = (points.kind != TARGET) & (points.kind != BASE) & (points.target == NONE)
     ends_at_target = not lands or len(points) < 2 or (points.position[-1] == points.position[-2]).all()
     if ends_at_target:
         is_transit &= points.kind != END

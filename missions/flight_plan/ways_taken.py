@@ -4,6 +4,7 @@ import math
 from collections import OrderedDict
 from collections.abc import Hashable
 from dataclasses import dataclass
+from itertools import accumulate
 from threading import Lock
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
@@ -19,8 +20,8 @@ from inspection.graph.flyable import node_heights_m
 from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.route_index import route_index
-from inspection.graph.ways import DIRECT
-from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
+from inspection.graph.ways import DIRECT, Travel
+from missions.flight_plan.conditions import Conditions, air_density
 from missions.flight_plan.heights import pass_agl_m
 from missions.flight_plan.leg_taken import J_PER_WH, Speeds, leg_taken, speeds, table_of
 from missions.flight_plan.performance import Performance
@@ -106,6 +107,31 @@ def graph_taken(
     return kept
 
 
+class Bends(NamedTuple):
+    """As taken_on_ways has them."""
+
+    bend: FloatArray
+    bend_first: IntArray
+    direct_number: NumberArray
+
+
+_STRAIGHT = Bends(np.zeros((0, 3)), np.zeros(0, dtype=np.int64), np.zeros((0, 0), dtype=np.int32))
+
+
+def bends_of_ways(travel: Travel, agl_m: float) -> Bends:
+    """The bends of the legs and direct ways of a travel, all flown at this height above ground."""
+    if not (travel.leg_bends or travel.direct_bends):
+        return _STRAIGHT
+    of_legs = travel.leg_bends or (np.zeros((0, 2)),) * len(travel.leg_node)
+    together = [*of_legs, *travel.direct_bends.values()]
+    direct_number = np.full(travel.way.shape[:2], -1, dtype=np.int32)
+    for number, (source, sink) in enumerate(travel.direct_bends, start=len(of_legs)):
+        direct_number[source, sink] = number
+    position = np.concatenate(together)
+    first = np.array([0, *accumulate(map(len, together))], dtype=np.int64)
+    return Bends(np.column_stack([position, np.full(len(position), agl_m)]), first, direct_number)
+
+
 @njit(cache=True, nogil=True)
 def _rise_and_density(
     lower_agl_m: float, lower_ground_m: float, upper_agl_m: float, upper_ground_m: float, temperature_c: float
@@ -136,22 +162,18 @@ def _steps_taken(
     taken = np.zeros((len(place_node), 2, 2))
     is_known = len(ground_m) > 0
     density = air_density(0.0, temperature_c)
-    wind_agl_m = -1.0
-    east_mps = north_mps = 0.0
     for chain_number in range(len(chain_first) - 1):
         for place in range(chain_first[chain_number] + 1, chain_first[chain_number + 1]):
             before, node = place_node[place - 1], place_node[place]
-            rise_m, middle_m = passed_m[node] - passed_m[before], 0.5 * (passed_m[node] + passed_m[before])
+            rise_m = passed_m[node] - passed_m[before]
             if is_known:
                 rise_m, density = _rise_and_density(passed_m[before], ground_m[before], passed_m[node], ground_m[node], temperature_c)
-            if middle_m != wind_agl_m:
-                wind_agl_m = middle_m
-                east_mps, north_mps = wind_in_table(wind, middle_m)
             for way in range(2):
                 sign = 1.0 - 2.0 * way
                 seconds, joules = leg_taken(
-                    length_m[place], sign * east[place], sign * north[place], sign * rise_m, east_mps, north_mps, density, own, table
-                )
+                    length_m[place], sign * east[place], sign * north[place], passed_m[before], passed_m[node], sign * rise_m,
+                    wind, density, own, table,
+                )  # fmt: skip
                 taken[place, way, 0], taken[place, way, 1] = min(seconds, NO_HEADWAY), min(joules, NO_HEADWAY)
     return taken
 
@@ -172,6 +194,9 @@ def taken_on_ways(
     node_ground_m: FloatArray,
     source: FloatArray,
     sink: FloatArray,
+    bend: FloatArray,
+    bend_first: IntArray,
+    direct_number: NumberArray,
     wind: FloatArray,
     temperature_c: float,
     own: Speeds,
@@ -180,24 +205,32 @@ def taken_on_ways(
     """Seconds and Wh of the way from each source to each sink, (2, s, t); inf where there is none, or the wind closes it.
 
     source (s, 4) and sink (t, 4): lon, lat [deg], the height above ground at which it is left or come to, and the ground above sea level
-    there, NaN where not known.
+    there, NaN where not known. bend (b, 3): lon, lat [deg] and height above ground of the bends of legs, from their place on; those of
+    leg i begin at bend_first[i], where any has some. Direct ways with bends are numbered on after the legs by direct_number (s, t).
     """
     legs = len(leg_node)
     out, back = np.full((legs, 2), np.nan), np.full((legs, 2), np.nan)
     direct = np.full((len(source), len(sink), 2), np.inf)
     node_at = np.empty(4)
+    none = bend[:0]
     for start in range(len(source)):
         for end in range(len(sink)):
             if way[start, end, 0] == DIRECT:
-                direct[start, end, 0], direct[start, end, 1] = _straight(source[start], sink[end], wind, temperature_c, own, table)
+                over = none
+                if len(direct_number):
+                    leg = direct_number[start, end]
+                    over = none if leg < 0 else bend[bend_first[leg] : bend_first[leg + 1]]
+                direct[start, end, 0], direct[start, end, 1] = _over(source[start], over, sink[end], wind, temperature_c, own, table)
                 continue
             left, right = leg_of_way(way[start, end, 0], entry_leg), leg_of_way(way[start, end, 1], entry_leg)
             if left >= 0 and math.isnan(out[left, 0]):
                 _put_node(node_at, leg_node[left], node_position, passed_m, node_ground_m)
-                out[left, 0], out[left, 1] = _straight(source[start], node_at, wind, temperature_c, own, table)
+                over = bend[bend_first[left] : bend_first[left + 1]] if len(bend) else none
+                out[left, 0], out[left, 1] = _over(source[start], over, node_at, wind, temperature_c, own, table)
             if right >= 0 and math.isnan(back[right, 0]):
                 _put_node(node_at, leg_node[right], node_position, passed_m, node_ground_m)
-                back[right, 0], back[right, 1] = _straight(node_at, sink[end], wind, temperature_c, own, table)
+                over = bend[bend_first[right] : bend_first[right + 1]][::-1] if len(bend) else none[::-1]
+                back[right, 0], back[right, 1] = _over(node_at, over, sink[end], wind, temperature_c, own, table)
     taken = quantities_of_pairs(
         way, leg_node, entry_leg, entry_label, out, back, direct, place_sum, label_sum, node_chain, node_place, chain_first
     )
@@ -217,6 +250,26 @@ def _put_node(at: FloatArray, node: int, node_position: FloatArray, passed_m: Fl
 
 
 @njit(cache=True, nogil=True)
+def _over(
+    start: FloatArray, bend: FloatArray, end: FloatArray, wind: FloatArray, temperature_c: float, own: Speeds, table: FloatArray
+) -> tuple[float, float]:
+    """Seconds and joules from place to place over bends, under which the ground is taken to be that of the start."""
+    if len(bend) == 0:
+        return _straight(start, end, wind, temperature_c, own, table)
+    seconds = joules = 0.0
+    here, there = start.copy(), start.copy()
+    for number in range(len(bend) + 1):
+        if number < len(bend):
+            there[:3] = bend[number]
+        else:
+            there[:] = end
+        one_s, one_j = _straight(here, there, wind, temperature_c, own, table)
+        seconds, joules = seconds + one_s, joules + one_j
+        here[:] = there
+    return seconds, joules
+
+
+@njit(cache=True, nogil=True)
 def _straight(
     start: FloatArray, end: FloatArray, wind: FloatArray, temperature_c: float, own: Speeds, table: FloatArray
 ) -> tuple[float, float]:
@@ -226,5 +279,4 @@ def _straight(
     if length_m > 0.0:
         east, north = east / length_m, north / length_m
     rise_m, density = _rise_and_density(start[2], start[3], end[2], end[3], temperature_c)
-    east_mps, north_mps = wind_in_table(wind, 0.5 * (start[2] + end[2]))
-    return leg_taken(length_m, east, north, rise_m, east_mps, north_mps, density, own, table)
+    return leg_taken(length_m, east, north, start[2], end[2], rise_m, wind, density, own, table)

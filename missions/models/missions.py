@@ -88,6 +88,7 @@ class MissionUav(models.Model):
     cruise_speed_mps = models.FloatField()
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
     most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
+    sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
     performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see flight_plan/performance.py")
 
@@ -157,6 +158,7 @@ class Route(models.Model):
     duration_s = models.FloatField()
     departs_s = models.FloatField(default=0.0, db_default=0.0, help_text="seconds after the mission's departure")
     energy_wh = models.FloatField(null=True, blank=True, help_text="empty without a battery")
+    charging = models.JSONField(default=list, blank=True, help_text="stops at towers to charge; see services/plan_json.py")
     battery_percent = models.FloatField(null=True, blank=True, help_text="left at the end; empty without a battery")
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
@@ -174,6 +176,7 @@ class WaypointKind(models.TextChoices):
     PASS = "pass", "Pass"
     TARGET = "target", "Target"
     END = "end", "End"
+    BASE = "base", "Between two flights"
 
 
 class Waypoint(models.Model):

@@ -1,7 +1,7 @@
 """Which assets can be inspected from where UAVs stand, one flight for each, and why the others cannot.
 
-A node is judged as a plan with this node as its only target would be: by the way of least cost there and on to where the flight ends.
-Without wind and batteries a way takes the same in both directions.
+A node is judged as a plan with this node as its only target would be: by the way of least cost there and on to where the flight ends,
+its metres, and what it takes of the battery in the wind.
 """
 
 from collections.abc import Sequence
@@ -27,13 +27,21 @@ from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.route_index import node_tree, route_index
 from inspection.graph.spread import Crossroads, crossroads, spread
 from inspection.graph.zone_index import ZoneIndex
-from missions.routing.problem import End
+from missions.flight_plan.conditions import Conditions
+from missions.flight_plan.leg_taken import J_PER_WH
+from missions.flight_plan.nodes_taken import DONE, LANDING, LANDING_THERE, TAKE_OFF, UP, at_nodes, both_ways
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.ways_taken import NO_HEADWAY, FlightClass, GraphTaken, graph_taken
+from missions.routing.problem import DEFAULT_HOLD_S, End, TaskKind
 from missions.routing.terminals import AccessRules, Terminal, access_legs, direct_legs
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
+CALM = Conditions()
+USUAL = FlightRules()
+FARTHEST_M, MOST_WH = 1e12, 1e12  # stand for no limit where what is missing is worked out
 SAME_PLACE_M = 1.0  # nodes nearer than that have become one
 NEAREST_LEGS = 24  # of a node that no flight gets to over the network, as `clear_legs` gives a target
 MOST_ROUND = 40  # nodes from which legs round zones are looked for
@@ -46,36 +54,47 @@ class Verdict(IntEnum):
     REACHABLE = 0
     PARTLY = 1  # a line or railway of which some spans can be inspected
     BEYOND_RANGE = 2
-    CUT_OFF = 3  # no way keeps clear of zones, or there is none
-    ABOVE_HEIGHT_LIMIT = 4
-    INSIDE_ZONE = 5
+    BEYOND_ENERGY = 3  # the range does, the battery does not
+    WIND = 4  # there is a way, but not against this wind
+    CUT_OFF = 5  # no way keeps clear of zones, or there is none
+    ABOVE_HEIGHT_LIMIT = 6
+    INSIDE_ZONE = 7
 
 
 @dataclass(frozen=True)
 class Flight:
-    """A UAV that could take off at a place."""
+    """A UAV that could take off at a place. Without a class of flight neither battery nor wind are looked at."""
 
     position: LonLat
     end: End
     limit_m: float
+    lands: bool = False
+    flying: FlightClass | None = None
+
+    @property
+    def usable_wh(self) -> float:
+        usable_wh = None if self.flying is None else self.flying.performance.usable_wh
+        return np.inf if usable_wh is None else usable_wh
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
     """A verdict for each of a assets, sorted by their primary keys.
 
-    asset      int64 (a,)
-    verdict    int8 (a,)     see Verdict
-    flight     int16 (a,)    of the flights that can do it the one that flies least; -1 for none, or for a way that takes several
-    missing_m  float64 (a,)  by how much the range is too short at best; 0 unless that is the verdict
-    zone       int32 (a,)    the number of the zone that it is in; -1 for none
-    box        float64 (a, 4)  west, south, east, north of its nodes
+    asset       int64 (a,)
+    verdict     int8 (a,)     see Verdict
+    flight      int16 (a,)    of the flights that can do it the one that flies least; -1 for none, or for a way that takes several
+    missing_m   float64 (a,)  by how much the range is too short at best; 0 unless that is the verdict
+    missing_wh  float64 (a,)  the same of the battery
+    zone        int32 (a,)    the number of the zone that it is in; -1 for none
+    box         float64 (a, 4)  west, south, east, north of its nodes
     """
 
     asset: IntArray
     verdict: NDArray[np.int8]
     flight: NDArray[np.int16]
     missing_m: FloatArray
+    missing_wh: FloatArray
     zone: NDArray[np.int32]
     box: FloatArray
 
@@ -89,20 +108,24 @@ def reach(
     flights: Sequence[Flight],
     bases: Sequence[LonLat],
     rules: AccessRules,
+    *,
+    conditions: Conditions = CALM,
+    flight_rules: FlightRules = USUAL,
 ) -> Reach:
     """whole_graph is the network cleared of the zones, graph the part of it that can be flown over; bases are outside zones.
 
-    leg_zones are those of the zones that reach the heights between targets.
+    leg_zones are those of the zones that reach the heights between targets. At a tower or bridge a photo is taken, elsewhere a look.
     """
     on_whole = _nodes_of(network.position, network.node_asset, whole_graph.position, whole_graph.node_asset)
     on_graph = _nodes_of(network.position, network.node_asset, graph.position, graph.node_asset)
     verdict, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
-    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules)
+    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules, conditions, flight_rules)
     is_on = on_graph >= 0
-    verdict[is_on] = found.verdict[on_graph[is_on]]
-    flight, missing_m = np.full(network.node_count, -1, dtype=np.int16), np.zeros(network.node_count)
-    flight[is_on], missing_m[is_on] = found.flight[on_graph[is_on]], found.missing_m[on_graph[is_on]]
-    return _of_assets(network, graph, on_graph, _Nodes(verdict, flight, missing_m, zone))
+    count, at = network.node_count, on_graph[is_on]
+    flight, missing_m, missing_wh = np.full(count, -1, dtype=np.int16), np.zeros(count), np.zeros(count)
+    verdict[is_on], flight[is_on] = found.verdict[at], found.flight[at]
+    missing_m[is_on], missing_wh[is_on] = found.missing_m[at], found.missing_wh[at]
+    return _of_assets(network, graph, on_graph, _Nodes(verdict, flight, missing_m, missing_wh, zone))
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,6 +133,7 @@ class _Nodes:
     verdict: NDArray[np.int8]
     flight: NDArray[np.int16]
     missing_m: FloatArray
+    missing_wh: FloatArray
     zone: NDArray[np.int32]
 
 
@@ -172,33 +196,60 @@ def _zones_at(zones: ZoneIndex, position: FloatArray, clearance_m: float) -> NDA
 
 
 def _reach_of_nodes(
-    graph: InspectionGraph, zones: ZoneIndex, flights: Sequence[Flight], bases: Sequence[LonLat], rules: AccessRules
+    graph: InspectionGraph,
+    zones: ZoneIndex,
+    flights: Sequence[Flight],
+    bases: Sequence[LonLat],
+    rules: AccessRules,
+    conditions: Conditions,
+    flight_rules: FlightRules,
 ) -> _Nodes:
     count = graph.node_count
     able_m, flight = np.full(count, np.inf), np.full(count, -1, dtype=np.int16)
-    missing_m = np.full(count, np.inf)
+    missing_m, missing_wh, has_way = np.full(count, np.inf), np.full(count, np.inf), np.zeros(count, dtype=bool)
     places = list(dict.fromkeys(flight.position for flight in flights))
-    legs = [access_legs(graph, zones, Terminal(place), rules) for place in places]
-    base_legs = (
-        [access_legs(graph, zones, Terminal(base), rules) for base in bases] if any(one.end is End.ANY_BASE for one in flights) else []
-    )
-    islands = _Islands.of(graph, zones, joined(legs), joined(base_legs), rules)
-    scene = _Scene(graph, zones, rules, islands, crossroads(route_index(graph).condensed))
-    to_base_m = scene.least_m(bases, joined(base_legs)) if base_legs else np.full(count, np.inf)
-    for place, its_legs in zip(places, legs, strict=True):
-        there_m = scene.least_m([place], its_legs)
-        for number, one in enumerate(flights):
-            if one.position != place:
-                continue
-            needed_m = there_m if one.end is End.OPEN else 2.0 * there_m if one.end is End.RETURN else there_m + to_base_m
-            can = (needed_m <= one.limit_m) & (needed_m < able_m)
+    legs = {place: access_legs(graph, zones, Terminal(place), rules) for place in places}
+    landed_at = bases if any(one.end is End.ANY_BASE for one in flights) else []
+    base_legs = [access_legs(graph, zones, Terminal(base), rules) for base in landed_at]
+    islands = _Islands.of(graph, zones, joined(list(legs.values())), joined(base_legs), rules)
+    scene = _Scene(graph, zones, rules, islands, crossroads(route_index(graph).condensed), conditions, flight_rules)
+    to_base: dict[FlightClass | None, _Ways] = {}
+    for (place, flying), alike in _alike(flights).items():
+        there = scene.ways([place], [legs[place]], flying)
+        for number in alike:
+            one = flights[number]
+            if one.end is End.ANY_BASE and flying not in to_base:
+                to_base[flying] = scene.ways(landed_at, base_legs, flying)
+            back = there if one.end is End.RETURN else to_base[flying] if one.end is End.ANY_BASE else None
+            needed_m = there.length_m if back is None else there.length_m + back.length_m
+            needed_wh = scene.needed_wh(there, back, one)
+            can = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh) & (needed_m < able_m)
             able_m[can], flight[can] = needed_m[can], number
-            if np.isfinite(one.limit_m):
-                np.minimum(missing_m, needed_m - one.limit_m, out=missing_m)
+            has_way |= np.isfinite(needed_m)
+            against = np.isfinite(needed_m) & np.isfinite(needed_wh)
+            np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, FARTHEST_M), np.inf), out=missing_m)
+            enough = against & (needed_m <= one.limit_m)
+            np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MOST_WH), np.inf), out=missing_wh)
     verdict = np.full(count, Verdict.CUT_OFF, dtype=np.int8)
+    verdict[has_way] = Verdict.WIND
     verdict[np.isfinite(missing_m)] = Verdict.BEYOND_RANGE
+    verdict[np.isfinite(missing_wh)] = Verdict.BEYOND_ENERGY
     verdict[flight >= 0] = Verdict.REACHABLE
-    return _Nodes(verdict, flight, np.where(verdict == Verdict.BEYOND_RANGE, missing_m, 0.0), np.full(count, -1, dtype=np.int32))
+    return _Nodes(
+        verdict,
+        flight,
+        np.where(verdict == Verdict.BEYOND_RANGE, missing_m, 0.0),
+        np.where(verdict == Verdict.BEYOND_ENERGY, missing_wh, 0.0),
+        np.full(count, -1, dtype=np.int32),
+    )
+
+
+def _alike(flights: Sequence[Flight]) -> dict[tuple[LonLat, FlightClass | None], list[int]]:
+    """Flights by the place that they start at and how they fly, so that ways are found once for all of them."""
+    alike: dict[tuple[LonLat, FlightClass | None], list[int]] = {}
+    for number, one in enumerate(flights):
+        alike.setdefault((one.position, one.flying), []).append(number)
+    return alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +285,8 @@ class _Islands:
                 if not len(waiting) or len(nodes) <= tried:
                     break
         if len(zones):
-            found += look.legs_round(np.setdiff1d(left, np.concatenate([node for node, _, _ in found])), known, component)
+            served = np.concatenate([node[met[component[other]]] for node, other, _ in found])
+            found += look.legs_round(np.setdiff1d(left, served), known, component)
         return cls(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
@@ -257,7 +309,7 @@ class _Look:
     def legs(
         self, nodes: IntArray, others: IntArray, count: int, known: BoolArray, component: NDArray[np.int32]
     ) -> tuple[IntArray, IntArray, FloatArray]:
-        """Clear legs from each node to those of the others nearest to it that are on a part which counts, and not on its own."""
+        """Clear legs from each node to those of the others nearest to it that are on a part which counts."""
         if not len(nodes):
             return nodes, nodes, np.zeros(0)
         tree = cKDTree(self.point[others], balanced_tree=False, compact_nodes=False)
@@ -266,7 +318,7 @@ class _Look:
         near = near.reshape(len(nodes), -1)
         row, column = np.nonzero(near < len(others))
         node, other = nodes[row], others[near[row, column]]
-        counts = known[component[other]] & (component[other] != component[node])
+        counts = known[component[other]]
         node, other = node[counts], other[counts]
         position = self.graph.position
         length_m = distance_m(position[node], position[other])
@@ -289,7 +341,7 @@ class _Look:
         for node in nodes[:MOST_ROUND].tolist():
             place = Terminal(LonLat(*self.graph.position[node].tolist()))
             legs = access_legs(self.graph, self.zones, place, self.rules)
-            counts = known[component[legs.node]] & (component[legs.node] != component[node])
+            counts = known[component[legs.node]]
             other = legs.node[counts].astype(np.int64)
             found.append((np.full(len(other), node, dtype=np.int64), other, legs.length_m[counts]))
         return found
@@ -304,32 +356,94 @@ def components_of_nodes(graph: InspectionGraph) -> NDArray[np.int32]:
 
 
 @dataclass(frozen=True, eq=False)
+class _Ways:
+    """Between each node and the place, of some, that is nearest to it by cost.
+
+    cost, length_m (n,), inf where there is no way; taken (n, 2, 2): from the place to the node and back, seconds and joules.
+    """
+
+    cost: FloatArray
+    length_m: FloatArray
+    taken: FloatArray | None
+
+
+@dataclass(frozen=True, eq=False)
 class _Scene:
     graph: InspectionGraph
     zones: ZoneIndex
     rules: AccessRules
     islands: _Islands
     at_core: Crossroads
+    conditions: Conditions
+    flight_rules: FlightRules
 
-    def least_m(self, places: Sequence[LonLat], legs: Attachments) -> FloatArray:
-        """Metres along the way of least cost between each node and the place that is nearest to it by cost; inf where there is none."""
-        found = spread(self.graph, legs, self.at_core)
-        cost, length_m = found.cost, found.length_m
-        islands, factor = self.islands, self.rules.off_network_factor
+    def ways(self, places: Sequence[LonLat], legs: Sequence[Attachments], flying: FlightClass | None) -> _Ways:
+        """legs are those of each place."""
+        all_legs = joined(list(legs))
+        graph, islands = self.graph, self.islands
+        if flying is None:
+            found = spread(graph, all_legs, self.at_core)
+            ways = _Ways(found.cost, found.length_m, None)
+        else:
+            kept = self._taken(flying)
+            start = np.repeat(np.array(places, dtype=np.float64).reshape(-1, 2), [len(some) for some in legs], axis=0)
+            leg_taken = self._legs_taken(start, all_legs.node, all_legs.length_m, flying)
+            found = spread(graph, all_legs, self.at_core, place_sum=kept.sums.place, leg_taken=leg_taken)
+            ways = _Ways(found.cost, found.length_m, found.taken)
         if len(islands.node):
-            over_cost = factor * islands.length_m + cost[islands.other]
+            over_cost = self.rules.off_network_factor * islands.length_m + ways.cost[islands.other]
             order = np.lexsort((over_cost, islands.node))
             first = order[np.unique(islands.node[order], return_index=True)[1]]
-            first = first[over_cost[first] < cost[islands.node[first]]]
+            first = first[over_cost[first] < ways.cost[islands.node[first]]]
             over, onto = islands.node[first], islands.other[first]
-            cost[over], length_m[over] = over_cost[first], islands.length_m[first] + length_m[onto]
+            ways.cost[over], ways.length_m[over] = over_cost[first], islands.length_m[first] + ways.length_m[onto]
+            if ways.taken is not None and flying is not None:
+                passed_m = self._taken(flying).passed_m
+                position = graph.position
+                last = both_ways(
+                    position[onto], passed_m[onto], position[over], passed_m[over], islands.length_m[first], self._taken(flying).air
+                )
+                ways.taken[over] = ways.taken[onto] + last
         for place in places:
-            self._straight(place, cost, length_m)
-        return length_m
+            self._straight(place, ways, flying)
+        return ways
 
-    def _straight(self, place: LonLat, cost: FloatArray, length_m: FloatArray) -> None:
+    def needed_wh(self, there: _Ways, back: _Ways | None, one: Flight) -> FloatArray:
+        """Of the battery, from take-off to the end; inf where the wind is too strong, or there is no way; 0 where nothing is counted."""
+        if there.taken is None or one.flying is None:
+            return np.where(np.isfinite(there.length_m), 0.0, np.inf)
+        done, columns = self._at_nodes(one.flying)
+        taken = there.taken[:, 0] + columns[TAKE_OFF] + done[:, DONE]
+        is_open = ~np.isfinite(there.length_m)
+        if back is not None and back.taken is not None:
+            taken = taken + done[:, UP] + back.taken[:, 1]
+            is_open |= ~np.isfinite(back.length_m)
+            if one.lands:
+                taken = taken + columns[LANDING]
+        elif one.lands:
+            taken = taken + done[:, LANDING_THERE]
+        needed_wh: FloatArray = np.where(is_open | (taken >= NO_HEADWAY / 2.0).any(axis=1), np.inf, taken[:, 1] / J_PER_WH)
+        return needed_wh
+
+    def _taken(self, flying: FlightClass) -> GraphTaken:
+        return graph_taken(self.graph, flying, self.conditions, self.flight_rules, None)
+
+    def _at_nodes(self, flying: FlightClass) -> tuple[FloatArray, FloatArray]:
+        heights_m = asset_heights_m(self.graph.node_kind, self.graph.node_height_m)
+        level_m = np.where(heights_m > 0, heights_m + self.flight_rules.clearance_m, self.flight_rules.transit_agl_m)
+        photo = np.isin(self.graph.node_kind, (NodeKind.SUPPORT, NodeKind.BRIDGE))
+        hold_s = np.where(photo, DEFAULT_HOLD_S[TaskKind.PHOTO], DEFAULT_HOLD_S[TaskKind.LOOK])
+        return at_nodes(level_m, self.flight_rules.transit_agl_m, hold_s, self._taken(flying).air)
+
+    def _legs_taken(self, start: FloatArray, node: NDArray[np.integer], length_m: FloatArray, flying: FlightClass) -> FloatArray:
+        """Of legs from places (k, 2), at transit height, to nodes: (k, 2, 2)."""
+        kept = self._taken(flying)
+        transit_m = np.full(len(start), self.flight_rules.transit_agl_m)
+        return np.minimum(both_ways(start, transit_m, self.graph.position[node], kept.passed_m[node], length_m, kept.air), NO_HEADWAY)
+
+    def _straight(self, place: LonLat, ways: _Ways, flying: FlightClass | None) -> None:
         """Nodes that are flown to straight, where that costs no more."""
-        position, rules = self.graph.position, self.rules
+        position, rules, cost = self.graph.position, self.rules, ways.cost
         frame = LocalFrame.around(place.lon, place.lat)
         within = np.flatnonzero(np.abs(position[:, 1] - place.lat) * frame.metres_per_degree_north <= 1.02 * rules.direct_leg_m)
         east, north = frame.to_metres(position[within]).T
@@ -344,16 +458,22 @@ class _Scene:
             clear = ~self.zones.meets(
                 [place], position[within], rules.zone_clearance_m, *band_of_legs(self.graph, within, rules.heights, 0.0)
             )
-            self._round(place, within[~clear & np.isinf(cost[within])], cost, length_m)
+            self._round(place, within[~clear & np.isinf(cost[within])], ways, flying)
             within, straight_m = within[clear], straight_m[clear]
-        cost[within], length_m[within] = rules.off_network_factor * straight_m, straight_m
+        self._put(place, within, straight_m, rules.off_network_factor * straight_m, ways, flying)
 
-    def _round(self, place: LonLat, nodes: IntArray, cost: FloatArray, length_m: FloatArray) -> None:
+    def _put(self, place: LonLat, nodes: IntArray, length_m: FloatArray, cost: FloatArray, ways: _Ways, flying: FlightClass | None) -> None:
+        ways.cost[nodes], ways.length_m[nodes] = cost, length_m
+        if ways.taken is not None and flying is not None:
+            start = np.broadcast_to(np.array(place), (len(nodes), 2)).copy()
+            ways.taken[nodes] = self._legs_taken(start, nodes, length_m, flying)
+
+    def _round(self, place: LonLat, nodes: IntArray, ways: _Ways, flying: FlightClass | None) -> None:
         """Nodes that nothing else reaches, round the zones that stand before them."""
         for node in nodes[:MOST_ROUND].tolist():
             target = Terminal(LonLat(*self.graph.position[node].tolist()))
             for leg in direct_legs([Terminal(place)], [target], self.zones, self.rules):
-                cost[node], length_m[node] = leg.cost, leg.length_m
+                self._put(place, np.array([node]), np.array([leg.length_m]), np.array([leg.cost]), ways, flying)
 
 
 def _of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, nodes: _Nodes) -> Reach:
@@ -370,7 +490,7 @@ def _of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, nod
     node = ends[np.arange(len(ends)), worst]
     why = np.where(~reached & (nodes.verdict[node] == Verdict.REACHABLE), Verdict.INSIDE_ZONE, nodes.verdict[node]).astype(np.int8)
     # Of all spans of a way the first that can be had most easily.
-    order = np.lexsort((nodes.missing_m[node], why, of_span))
+    order = np.lexsort((nodes.missing_m[node] + nodes.missing_wh[node], why, of_span))
     first = order[np.searchsorted(of_span[order], np.arange(len(way)))]
     way_verdict = np.where(done == count, Verdict.REACHABLE, np.where(done > 0, Verdict.PARTLY, why[first])).astype(np.int8)
     least, most = np.full(len(way), 32_767, dtype=np.int16), np.full(len(way), -1, dtype=np.int16)
@@ -382,7 +502,7 @@ def _of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, nod
         for axis in range(2):
             np.minimum.at(box[:, axis], of_span, network.position[ends[:, end], axis])
             np.maximum.at(box[:, 2 + axis], of_span, network.position[ends[:, end], axis])
-    is_short, is_inside = way_verdict == Verdict.BEYOND_RANGE, way_verdict == Verdict.INSIDE_ZONE
+    is_short, is_inside = np.isin(way_verdict, (Verdict.BEYOND_RANGE, Verdict.BEYOND_ENERGY)), way_verdict == Verdict.INSIDE_ZONE
 
     asset = np.concatenate([network.node_asset[single], way])
     order = np.argsort(asset, kind="stable")
@@ -392,6 +512,7 @@ def _of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, nod
         verdict=np.concatenate([nodes.verdict[single], way_verdict])[order],
         flight=np.concatenate([nodes.flight[single], np.where(least == most, least, -1).astype(np.int16)])[order],
         missing_m=np.concatenate([nodes.missing_m[single], np.where(is_short, nodes.missing_m[node[first]], 0.0)])[order],
+        missing_wh=np.concatenate([nodes.missing_wh[single], np.where(is_short, nodes.missing_wh[node[first]], 0.0)])[order],
         zone=np.concatenate([nodes.zone[single], np.where(is_inside, nodes.zone[node[first]], -1).astype(np.int32)])[order],
         box=np.concatenate([np.hstack([position, position]), box])[order],
     )

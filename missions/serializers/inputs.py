@@ -30,6 +30,7 @@ from missions.serializers.limits import (
     MOST_DAYS_AHEAD,
     MOST_RESERVE_PERCENT,
     MOST_SENSORS_OF_UAV,
+    MOST_SORTIES,
     MOST_TARGETS,
     MOST_WIND_LAYERS,
     STRONGEST_WIND_MPS,
@@ -122,6 +123,12 @@ class UavInputSerializer(PerformanceFieldsSerializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
     most_targets = serializers.IntegerField(
         required=False, allow_null=True, min_value=1, max_value=MOST_TARGETS, help_text="null or missing: not limited"
+    )
+    sorties = serializers.IntegerField(
+        required=False,
+        min_value=1,
+        max_value=MOST_SORTIES,
+        help_text="flights that it makes at most, each on a full battery; more than one only for a UAV that returns to its start",
     )
     sensors = serializers.ListField(
         child=serializers.CharField(max_length=LONGEST_SENSOR),
@@ -313,6 +320,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         most_targets=values.get("most_targets"),
         sensors=tuple(values["sensors"]),
         performance=performance_from_json(performance),
+        sorties=values.get("sorties", 1),
     )
 
 

@@ -81,7 +81,7 @@ class ReachabilityReasonSerializer(serializers.Serializer):
 
 
 class ReachableAssetsSerializer(serializers.Serializer):
-    """Columns of equal length, sorted by id: of 200,000 assets a map then reads four lists of small numbers and no objects."""
+    """Columns of equal length, sorted by id: of 200,000 assets a map then reads five lists of small numbers and no objects."""
 
     ids = serializers.ListField(child=serializers.IntegerField())
     code = serializers.ListField(child=serializers.IntegerField(), help_text="0: can be inspected; n: the n-th of the reasons, from 1 on")
@@ -89,6 +89,7 @@ class ReachableAssetsSerializer(serializers.Serializer):
         child=serializers.IntegerField(), help_text="index of the flight that flies least for it; -1: none, or several for a line"
     )
     missing_m = serializers.ListField(child=serializers.IntegerField(), help_text="metres of range that are missing at best; else 0")
+    missing_wh = serializers.ListField(child=serializers.IntegerField(), help_text="Wh of battery that are missing at best; else 0")
 
 
 class ReachabilitySerializer(serializers.Serializer):

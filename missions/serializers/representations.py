@@ -80,6 +80,7 @@ def _uav(row: MissionUav) -> dict[str, Any]:
         "end_action": row.end_action,
         "most_targets": row.most_targets,
         "sensors": row.sensors,
+        "sorties": row.sorties,
         **performance_to_json(performance_from_json(row.performance)),
     }
 
@@ -154,6 +155,7 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "arrival_s": [waypoint.arrival_s for waypoint in waypoints],
         "used_wh": None if route.energy_wh is None else [waypoint.used_wh for waypoint in waypoints],
         "battery_left_percent": None if route.energy_wh is None else [waypoint.battery_left_percent for waypoint in waypoints],
+        "charging": route.charging,
         "by_hand": [place for place, waypoint in enumerate(waypoints) if waypoint.is_by_hand],
         "targets": targets,
         "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),

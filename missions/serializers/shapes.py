@@ -28,6 +28,13 @@ class WaypointSerializer(serializers.Serializer):
     altitude_relative_m = serializers.FloatField(help_text="above the take-off point")
 
 
+class ChargingSerializer(serializers.Serializer):
+    waypoint = serializers.IntegerField(help_text="its place in the route; what is done there comes after")
+    charging_s = serializers.FloatField()
+    charged_wh = serializers.FloatField()
+    stopped_s = serializers.FloatField(help_text="with the way down to the tower and up again")
+
+
 class RouteSerializer(serializers.Serializer):
     """One UAV's part, in the order of the request's UAVs."""
 
@@ -48,6 +55,7 @@ class RouteSerializer(serializers.Serializer):
         child=serializers.FloatField(), allow_null=True, help_text="for each waypoint, since take-off; null without a battery"
     )
     battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="for each waypoint")
+    charging = ChargingSerializer(many=True, help_text="stops at towers on the way")
     by_hand = serializers.ListField(
         child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or flies at another height"
     )
@@ -213,6 +221,7 @@ class MissionUavSerializer(serializers.Serializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices)
     most_targets = serializers.IntegerField(allow_null=True)
     sensors = serializers.ListField(child=serializers.CharField())
+    sorties = serializers.IntegerField(help_text="flights that it makes at most")
     battery_wh = serializers.FloatField(allow_null=True, help_text="null: its energy is not counted")
     mass_kg = serializers.FloatField(allow_null=True)
     reserve_percent = serializers.FloatField()

@@ -7,8 +7,9 @@ from datetime import datetime
 from django.conf import settings
 
 from inspection.zones.reach import ZoneTable
+from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.separation import Separation, TimedRoute, keep_apart, raised_agl_m, timed_route
-from missions.flight_plan.timing import timing
+from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
 from missions.flight_plan.waypoints import RoutePoints, Waypoints
 from missions.models import EndAction
 from missions.services.last_look import keys_of_zones_met
@@ -46,7 +47,13 @@ def routes_apart(
 def _timed(request: PlanRequest, number: int, route: PlannedRoute) -> TimedRoute:
     assert route.waypoints is not None and route.timing is not None  # noqa: S101 - only routes that are flown
     lands_s = None if route.end_action is EndAction.HOVER else route.timing.total_s
-    return timed_route(request.uavs[number].name, route.waypoints, route.timing.arrival_s, lands_s=lands_s)
+    timed = timed_route(request.uavs[number].name, route.waypoints, route.timing.arrival_s, lands_s=lands_s)
+    if not route.charging:
+        return timed
+    hold_s = timed.hold_s.copy()
+    for stop in route.charging:
+        hold_s[stop.place] += stop.stopped_s
+    return replace(timed, hold_s=hold_s)
 
 
 def _raised(
@@ -58,7 +65,7 @@ def _raised(
     lands = route.end_action is not EndAction.HOVER
     points = route.waypoints.points
     agl_m = raised_agl_m(points, layer_m, lands=lands, rules=flight)
-    if agl_m is None:
+    if agl_m is None or route.charging:
         return None
     more_m = agl_m - points.agl_m
     amsl_m = route.waypoints.amsl_m
@@ -67,16 +74,19 @@ def _raised(
         None if amsl_m is None else amsl_m + more_m,
         agl_m if route.waypoints.relative_m is points.agl_m else route.waypoints.relative_m + more_m,
     )
-    clock = timing(
-        waypoints,
-        cruise_speed_mps=asked.cruise_speed_mps,
-        performance=asked.performance,
-        conditions=request.conditions,
-        lands=lands,
-        rules=flight,
-    )
+    try:
+        clock = timing_of_route(
+            waypoints,
+            cruise_speed_mps=asked.cruise_speed_mps,
+            performance=asked.performance,
+            conditions=request.conditions,
+            lands=lands,
+            rules=flight,
+        )
+    except NoHeadway:
+        return None
     usable_wh = asked.performance.usable_wh
-    if usable_wh is not None and clock.total_wh is not None and clock.total_wh > usable_wh:
+    if usable_wh is not None and max(wh_of_sorties(clock), default=0.0) > usable_wh:
         return None
     higher = replace(route, waypoints=waypoints, duration_s=clock.total_s, timing=clock)
     return None if keys_of_zones_met([higher], departs_at, table) else higher

@@ -11,15 +11,17 @@ from missions.flight_plan.duration import ready_s
 from missions.flight_plan.rules import FlightRules
 from missions.models import EndAction
 from missions.routing.exact import MAX_TARGETS
-from missions.routing.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit, merit
+from missions.routing.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import PROVEN_GAP, Stop, solve
+from missions.routing.sorties import merit_of
 from missions.routing.terminals import Ways
 from missions.services.places import Place
 from missions.services.refusals import Grounding
 from missions.services.requests import LockRequest, PlanRequest, UavRequest
 from missions.services.wishes import may_do
 
+CHARGED_WH = 1e6
 COUNTED_CLOSE = 1e-4  # by less of the battery do what is counted and what is drawn differ over ground that is known
 NOTHING_TAKEN_OFF: Mapping[int, float] = {}
 # What a finished route takes beyond what the search counted, in the objective's unit, and still is rounding.
@@ -60,6 +62,7 @@ def assignment(
     costs: FlightCosts | None = None,
     usable_share: Mapping[int, float] = NOTHING_TAKEN_OFF,
     no_landing: Collection[int] = (),
+    turnaround_s: float = 0.0,
 ) -> Assignment:
     """uavs: those that fly, by their places in the request; visits: of the places, by their numbers; ready [s]: of each UAV's route.
 
@@ -79,7 +82,9 @@ def assignment(
                 asked.cruise_speed_mps,
                 asked.most_targets,
                 own_ready_s,
-                usable_wh=_usable_wh(asked, usable_share.get(uav, 1.0)),
+                usable_wh=_usable_wh(asked, usable_share.get(uav, 1.0), request.charging_w),
+                sorties=asked.sorties,
+                turnaround_s=turnaround_s,
             )
             for uav, asked, own_ready_s in ((uav, request.uavs[uav], own_ready_s) for uav, own_ready_s in zip(uavs, ready, strict=True))
         ),
@@ -109,8 +114,11 @@ def _cannot_end(request: PlanRequest, uavs: Sequence[int], visits: Sequence[Visi
     return np.array([visit.target in no_landing for visit in visits], dtype=bool)[:, None] & lands
 
 
-def _usable_wh(asked: UavRequest, share: float) -> float | None:
+def _usable_wh(asked: UavRequest, share: float, charging_w: float | None) -> float | None:
+    """What the search may count on; where a UAV charges on the way, and nothing has shown yet that it cannot, as much as it likes."""
     usable_wh = asked.performance.usable_wh
+    if usable_wh is not None and charging_w is not None and share == 1.0 and asked.sorties == 1:
+        return CHARGED_WH
     return None if usable_wh is None else usable_wh * share * (1.0 - COUNTED_CLOSE)
 
 
@@ -185,7 +193,7 @@ def solve_assignment(
 
 def _cost(problem: Problem, solution: Solution, free: Solution) -> LockCost:
     """The plan with the locks is one without them, too: where the search without them finds nothing better, they cost nothing."""
-    if merit(problem, solution.routes) <= merit(problem, free.routes):
+    if merit_of(problem, solution.sorties) <= merit_of(problem, free.sorties):
         free = solution
     left_out = len(solution.unassigned) - len(free.unassigned)
     is_comparable = {item.target for item in solution.unassigned} == {item.target for item in free.unassigned}

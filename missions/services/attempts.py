@@ -36,15 +36,15 @@ class Attempt:
 
     def routes(self, request: PlanRequest, ground: GroundHeights | None) -> list[PlannedRoute]:
         """Drawn over this ground, one for each UAV of the request."""
-        flown = self.drawing.routes(self.uavs, self.solution.routes, ground)
+        flown = self.drawing.routes(self.uavs, self.solution.sorties, ground)
         return [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
 
     def weights(self, request: PlanRequest) -> list[float]:
         """What the ways of each UAV's route cost for each metre: 1 along infrastructure, more away from it."""
         weights = [1.0] * len(request.uavs)
-        for start, (uav, order) in enumerate(zip(self.uavs, self.solution.routes, strict=True)):
-            if order:
-                weights[uav] = self.drawing.weight(start, uav, order)
+        for start, (uav, orders) in enumerate(zip(self.uavs, self.solution.sorties, strict=True)):
+            if orders:
+                weights[uav] = self.drawing.weight(start, uav, orders)
         return weights
 
 
@@ -87,7 +87,7 @@ def attempt(
     costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
     ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
     no_landing = _no_landing(request, uavs, places, scene)
-    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing)
+    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s)
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )

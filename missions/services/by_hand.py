@@ -11,13 +11,14 @@ from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.utils.translation import gettext as _
 
-from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.selectors import ground_heights_m, has_terrain
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
-from missions.flight_plan.timing import Timing, timing
+from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
+from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.models import EndAction, Mission, Route, Waypoint
 from missions.services.last_look import flown_route
@@ -31,6 +32,7 @@ from workspace.models import User
 MOVED_M = 0.1  # less is rounding
 HIGHER_M = 0.05
 MOST_WAYPOINTS = 5_000
+LONGEST_M = 1_000_000.0
 
 
 @dataclass(frozen=True)
@@ -53,12 +55,15 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
         route = locked.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
         if route is None:
             raise InvalidRequest({"uav": _("This UAV flies no route.")})
+        if route.charging:
+            raise InvalidRequest({"uav": _("A route with stops to charge cannot be changed by hand.")})
         until_now = list(route.waypoints.select_related("asset", "target"))
         _refuse(_shape_faults(points, until_now))
         wished = _route_points(points, until_now)
-        flown = _flown(request_of_mission(mission=locked), uav, wished)
+        request = request_of_mission(mission=locked)
+        flown = _flown(request, uav, wished, route.departs_s)
         _refuse(_zone_faults(flown, locked))
-        _refuse(_battery_faults(flown, request_of_mission(mission=locked), uav))
+        _refuse(_reach_faults(flown, request, uav))
         _store(locked, route, flown, until_now, points)
         locked.total_length_m = sum(own.length_m for own in locked.routes.all())
         locked.longest_route_m = max(own.length_m for own in locked.routes.all())
@@ -87,6 +92,8 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
     fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
     if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
         return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
+    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": f"{LONGEST_M / 1_000:.0f}"}}
     faults: dict[str, str] = {}
     flight = settings.FLIGHT_RULES
     for number, point in enumerate(points):
@@ -131,21 +138,22 @@ def _route_points(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
     return RoutePoints.of(drawn)
 
 
-def _flown(request: PlanRequest, uav: int, points: RoutePoints) -> PlannedRoute:
+def _flown(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float) -> PlannedRoute:
     flight, action = settings.FLIGHT_RULES, request.end_action(uav)
     points, length_m = with_short_legs(points, flight.longest_leg_m)
     waypoints, is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)
     clock = _clock(waypoints, request, uav)
     return PlannedRoute(
         waypoints=waypoints, line=line_of(waypoints.points), length_m=length_m, duration_s=clock.total_s, end_action=action,
-        is_flat=is_flat, timing=clock,
+        is_flat=is_flat, departs_s=departs_s,
+        timing=clock,
     )  # fmt: skip
 
 
 def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
     asked = request.uavs[uav]
     try:
-        return timing(
+        return timing_of_route(
             waypoints,
             cruise_speed_mps=asked.cruise_speed_mps,
             performance=asked.performance,
@@ -167,11 +175,16 @@ def leg_of(meeting: MetZone) -> int:
     return max(meeting.breach.leg, TAKE_OFF + 1)
 
 
-def _battery_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[str, str]:
-    usable_wh, total_wh = request.uavs[uav].performance.usable_wh, flown.timing.total_wh if flown.timing else None
-    if usable_wh is None or total_wh is None or total_wh <= usable_wh:
+def _reach_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[str, str]:
+    asked = request.uavs[uav]
+    if asked.max_range_m is not None and flown.length_m > asked.max_range_m:
+        values = {"length": f"{flown.length_m / 1_000:.1f}", "range": f"{asked.max_range_m / 1_000:.1f}", "uav": asked.name}
+        return {"waypoints": _("This is %(length)s km; the range of %(uav)s is %(range)s km.") % values}
+    usable_wh = asked.performance.usable_wh
+    most_wh = max(wh_of_sorties(flown.timing), default=0.0) if flown.timing else 0.0
+    if usable_wh is None or most_wh <= usable_wh:
         return {}
-    missing = {"missing": f"{total_wh - usable_wh:.1f}", "uav": request.uavs[uav].name}
+    missing = {"missing": f"{most_wh - usable_wh:.1f}", "uav": asked.name}
     return {"waypoints": _("The battery of %(uav)s lacks %(missing)s Wh for this.") % missing}
 
 

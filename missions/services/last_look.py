@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from datetime import datetime
 
+from django.conf import settings
+
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
@@ -17,7 +19,7 @@ def keys_of_zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | Non
 
 
 def flown_route(route: PlannedRoute, departs_at: datetime | None) -> FlownRoute:
-    """As the last look takes it; the route is one that is flown."""
+    """As the last look takes it; the route is one that is flown. Who hovers at the end does so until the longest flight is over."""
     assert route.waypoints is not None and route.timing is not None  # noqa: S101 - only routes that are flown
     points, lands = route.waypoints.points, route.end_action is not EndAction.HOVER
     if departs_at is None:
@@ -29,6 +31,6 @@ def flown_route(route: PlannedRoute, departs_at: datetime | None) -> FlownRoute:
         route.waypoints.amsl_m,
         arrival_s=start_s + route.timing.arrival_s,
         departs_s=start_s,
-        ends_s=start_s + route.duration_s,
+        ends_s=start_s + (route.duration_s if lands else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)),
         lands=lands,
     )

@@ -148,6 +148,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             duration_s=route["duration_s"],
             departs_s=route.get("departs_s", 0.0),
             energy_wh=route.get("energy_wh"),
+            charging=route.get("charging", []),
             battery_percent=route.get("battery_percent"),
             base_name=route.get("base") or "",
             lands_at=Point(*route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,

@@ -218,6 +218,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 most_targets=row.most_targets,
                 sensors=tuple(row.sensors),
                 performance=performance_from_json(row.performance),
+                sorties=row.sorties,
             )
             for row in mission.mission_uavs.all()
         ),
@@ -284,6 +285,7 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             most_targets=uav.most_targets,
             sensors=list(uav.sensors),
             performance=performance_to_json(uav.performance),
+            sorties=uav.sorties,
         )
         for sequence, uav in enumerate(uavs)
     )

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from missions.flight_plan.charging import ChargingStop
 from missions.flight_plan.conditions import conditions_to_json
 from missions.flight_plan.heights import FloatArray
 from missions.flight_plan.timing import Timing
@@ -38,6 +39,8 @@ class PlannedRoute:
     is_flat: bool = False
     departs_s: float = 0.0  # after the plan's departure
     timing: Timing | None = None
+    charging: tuple[ChargingStop, ...] = ()
+    lacks_wh: float = 0.0  # however it charges on the way
 
 
 def plan_to_json(
@@ -85,6 +88,7 @@ def plan_to_json(
                 "duration_s": round(route.duration_s, 1),
                 **timing_to_json(route, column),
                 "by_hand": [],
+                "charging": [charging_to_json(stop) for stop in route.charging],
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": coordinates(route.line)},
@@ -120,6 +124,15 @@ def timing_to_json(route: PlannedRoute, column: Callable[[FloatArray, int], Any]
         "arrival_s": column(timing.arrival_s + route.departs_s, 1),
         "used_wh": None if timing.used_wh is None else column(timing.used_wh, 2),
         "battery_left_percent": None if timing.battery_left_percent is None else column(timing.battery_left_percent, 1),
+    }
+
+
+def charging_to_json(stop: ChargingStop) -> dict[str, Any]:
+    return {
+        "waypoint": stop.place,
+        "charging_s": round(stop.charging_s, 1),
+        "charged_wh": round(stop.charged_wh, 2),
+        "stopped_s": round(stop.stopped_s, 1),
     }
 
 

@@ -10,11 +10,12 @@ from django.utils.translation import gettext as _
 
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.selectors.planning import planning_read
+from missions.flight_plan.ways_taken import FlightClass
 from missions.models import EndAction
 from missions.routing.problem import End, UavStart
 from missions.routing.reachability import Flight, Reach, Verdict, reach
 from missions.services.refusals import Scene, groundings, zone_at
-from missions.services.requests import BaseRequest, PlanRequest
+from missions.services.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.scenes import scene_on
 from missions.services.zone_choice import zone_choice
 
@@ -23,6 +24,8 @@ ENDS = {EndAction.HOVER: End.OPEN, EndAction.LAND: End.OPEN, EndAction.RETURN: E
 CODES = {
     Verdict.PARTLY: "partly_reachable",
     Verdict.BEYOND_RANGE: "beyond_range",
+    Verdict.BEYOND_ENERGY: "beyond_energy",
+    Verdict.WIND: "wind",
     Verdict.CUT_OFF: "no_path",
     Verdict.ABOVE_HEIGHT_LIMIT: "above_height_limit",
     Verdict.INSIDE_ZONE: "inside_zone",
@@ -48,7 +51,10 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
     scene = scene_on(ground, zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest)
     starting, flights, grounded = _flights(request, starts, scene)
     bases = [base.position for base in request.bases if zone_at(base.position, scene) is None]
-    found = reach(ground.network(), scene.whole_graph, scene.graph, scene.zones, scene.leg_zones, flights, bases, scene.access)
+    found = reach(
+        ground.network(), scene.whole_graph, scene.graph, scene.zones, scene.leg_zones, flights, bases, scene.access,
+        conditions=request.conditions, flight_rules=scene.flight,
+    )  # fmt: skip
     chosen = np.ones(len(found.asset), dtype=bool) if box is None else _in_box(found, box)
     code, reasons = _reasons(found, chosen, scene.graph, has_flights=bool(flights))
     return {
@@ -62,6 +68,7 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
             "code": code.tolist(),
             "flight": found.flight[chosen].tolist(),
             "missing_m": np.ceil(found.missing_m[chosen]).astype(np.int64).tolist(),
+            "missing_wh": np.ceil(found.missing_wh[chosen]).astype(np.int64).tolist(),
         },
         "graph_version": scene.graph.version,
         "ground_revision": ground.edition[0],
@@ -80,10 +87,19 @@ def _flights(request: PlanRequest, starts: Sequence[BaseRequest], scene: Scene) 
                 why = kept_down[number]
                 grounded.append({"uav": number, "base": name, "code": why.code, "message": why.message})
                 continue
-            end = ENDS[request.end_action(number)]
+            action = request.end_action(number)
+            limit_m = UavStart(uav.max_range_m, ENDS[action]).limit_m
             starting.append(_Start(number, name))
-            flights.append(Flight(uav.position, end, UavStart(uav.max_range_m, end).limit_m))
+            flights.append(Flight(uav.position, ENDS[action], limit_m, action is not EndAction.HOVER, _class_of(uav, request)))
     return starting, flights, grounded
+
+
+def _class_of(uav: UavRequest, request: PlanRequest) -> FlightClass | None:
+    """None for a UAV whose battery is not known and which no wind can stop."""
+    is_stopped = uav.performance.max_airspeed_mps is not None and not request.conditions.is_calm
+    if uav.performance.battery_wh is None and not is_stopped:
+        return None
+    return FlightClass(uav.performance, uav.cruise_speed_mps)
 
 
 def _in_box(found: Reach, box: Box) -> np.ndarray:
@@ -96,7 +112,8 @@ def _in_box(found: Reach, box: Box) -> np.ndarray:
 
 def _reasons(found: Reach, chosen: np.ndarray, graph: InspectionGraph, *, has_flights: bool) -> tuple[np.ndarray, list[dict[str, Any]]]:
     """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
-    verdict, zone, missing_m = found.verdict[chosen].astype(np.int64), found.zone[chosen].astype(np.int64), found.missing_m[chosen]
+    verdict, zone = found.verdict[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
+    missing = found.missing_m[chosen] + found.missing_wh[chosen]  # of the one or the other
     kinds = len(Verdict)
     key = verdict + np.where(verdict == Verdict.INSIDE_ZONE, (zone + 1) * kinds, 0)
     keys, number, count = np.unique(key, return_inverse=True, return_counts=True)
@@ -108,19 +125,24 @@ def _reasons(found: Reach, chosen: np.ndarray, graph: InspectionGraph, *, has_fl
         if why is Verdict.CUT_OFF and not has_flights:
             reasons.append({"code": NO_UAV, "message": _("No UAV can take off."), "count": assets})
         else:
-            message = _message(why, one // kinds - 1, missing_m[number == place], graph)
+            message = _message(why, one // kinds - 1, missing[number == place], graph)
             reasons.append({"code": CODES[why], "message": message, "count": assets})
         code_of[place] = len(reasons)
     return code_of[number], reasons
 
 
-def _message(why: Verdict, zone: int, missing_m: np.ndarray, graph: InspectionGraph) -> str:
+def _message(why: Verdict, zone: int, missing: np.ndarray, graph: InspectionGraph) -> str:
     flight, access = settings.FLIGHT_RULES, settings.ROUTING_RULES
     if why is Verdict.PARTLY:
         return _("Some spans of the line or railway can be inspected, others cannot.")
     if why is Verdict.BEYOND_RANGE:
         words = _("The range of every UAV is too short: by %(least)s at the nearest, by %(most)s at the farthest.")
-        return words % {"least": _km(float(missing_m.min())), "most": _km(float(missing_m.max()))}
+        return words % {"least": _km(float(missing.min())), "most": _km(float(missing.max()))}
+    if why is Verdict.BEYOND_ENERGY:
+        words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
+        return words % {"least": f"{np.ceil(missing.min()):,.0f}", "most": f"{np.ceil(missing.max()):,.0f}"}
+    if why is Verdict.WIND:
+        return _("The wind is too strong on every way to it, or back.")
     if why is Verdict.CUT_OFF:
         words = _("No way that keeps clear of every zone was found: along the network, or up to %(km)s beside it.")
         return words % {"km": _km(access.access_leg_m)}

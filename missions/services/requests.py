@@ -25,6 +25,7 @@ class UavRequest:
     most_targets: int | None = None
     sensors: tuple[str, ...] = ()
     performance: Performance = NO_BATTERY
+    sorties: int = 1  # flights that it makes at most; several only where it returns
 
 
 @dataclass(frozen=True)
@@ -139,6 +140,7 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "most_targets": uav.most_targets,
                 "sensors": list(uav.sensors),
                 "performance": performance_to_json(uav.performance),
+                "sorties": uav.sorties,
             }
             for uav in request.uavs
         ],
@@ -180,6 +182,7 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 most_targets=uav.get("most_targets"),
                 sensors=tuple(uav.get("sensors", ())),
                 performance=performance_from_json(uav.get("performance", {})),
+                sorties=uav.get("sorties", 1),
             )
             for uav in value["uavs"]
         ),

@@ -19,6 +19,7 @@ from missions.services.refusals import Scene, zone_at
 from missions.services.requests import InvalidRequest, PlanRequest
 from missions.services.scenes import current_scene, scene_without_zones
 from missions.services.visits import visits_of_places
+from missions.services.why_binds import what_binds
 
 MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
 BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route
@@ -64,7 +65,29 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
         "zones": _zones_met(detours or []),
         "heaviest": _heaviest(request, field, uav, order, legs_m),
         "alternative": _alternative(request, field, routes, uav, order) if len(wanted) == sum(map(len, routes)) else None,
+        **what_binds(
+            request,
+            scene,
+            field.places,
+            field.ways,
+            _orders(request, field, routes, uav, order),
+            uav,
+            length_m=length_m,
+            is_round_zones=bool(round_zones_m),
+        ),
     }
+
+
+def _orders(
+    request: PlanRequest, field: _Field, routes: Sequence[Sequence[int]], uav: int, order: Sequence[int]
+) -> dict[int, Sequence[int]]:
+    """The visits of each UAV whose targets are all looked at."""
+    others = {
+        other: _best_order(request, field, other, targets)
+        for other, targets in enumerate(routes)
+        if targets and other != uav and other in field.uav_of and all(target in field.visits_of for target in targets)
+    }
+    return {uav: order} | others
 
 
 def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: InspectionGraph, zones: ZoneIndex) -> _Field:

@@ -59,6 +59,9 @@ def _faults(request: PlanRequest) -> Iterator[tuple[str, str]]:
         for number, uav in enumerate(request.uavs):
             if uav.performance.battery_wh is None:
                 yield f"uavs.{number}.battery_wh", _("Without a battery %(uav)s has no energy to save.") % {"uav": uav.name}
+    for number, uav in enumerate(request.uavs):
+        if uav.sorties > 1 and request.end_action(number) is not EndAction.RETURN:
+            yield f"uavs.{number}.sorties", _("%(uav)s can fly again only where it returns to its start.") % {"uav": uav.name}
     for number, target in enumerate(request.targets):
         if target.uav:
             yield from _name_fault(f"targets.{number}.uav", target.uav, names)

@@ -27,7 +27,7 @@ from inspection.graph.snapshot_file import CLEARED, NETWORKS
 from inspection.graph.ways import travel_between
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
-from inspection.selectors.graph import KEPT_GRAPHS, _KeptGraphs, graph_for
+from inspection.selectors.graph import KEPT, _Kept, graph_for
 from inspection.selectors.planning import planning_read
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
 from tests.inspection.graph.drawn_graphs import drawn_graph
@@ -323,7 +323,7 @@ def test_a_snapshot_of_an_earlier_layout_is_no_graph_until_it_is_made_anew(line,
 
 def test_of_threads_that_want_the_same_graph_one_makes_it():
     """And one that wants another is not held up: it comes back while the first is still being made."""
-    kept, made = _KeptGraphs(), []
+    kept, made = _Kept(), []
     is_making, may_end = threading.Event(), threading.Event()
 
     def slowly():
@@ -344,7 +344,7 @@ def test_of_threads_that_want_the_same_graph_one_makes_it():
 
 
 def test_a_graph_that_could_not_be_made_is_tried_again():
-    kept = _KeptGraphs()
+    kept = _Kept()
     with pytest.raises(selectors.NoGraph):
         kept.get("key", fail)
     assert kept.get("key", lambda: GRAPH) is GRAPH
@@ -355,8 +355,8 @@ def fail() -> None:
 
 
 def test_the_graphs_used_last_are_kept_in_memory():
-    kept = _KeptGraphs()
-    for number in range(KEPT_GRAPHS):
+    kept = _Kept()
+    for number in range(KEPT):
         kept.get(number, lambda: GRAPH)
     assert kept.get(0, lambda: OTHER) is GRAPH
     kept.get("one more", lambda: GRAPH)

@@ -8,12 +8,14 @@ const result = (more) => ({ total_length_m: 50_000, total_duration_s: 6000, tota
 const basis = (objective) => basisOf({ ...EMPTY, objective });
 
 test("each way has its result, its fault or neither, and the present one is marked", () => {
-  const state = { selection: EMPTY, figures: { [basis("makespan")]: result() }, refusedBeside: { [basis("energy")]: "No UAV has a battery." }, planningBeside: basis("time"), plan: { basis: basis("makespan") } };
+  const state = { selection: EMPTY, figures: { [basis("makespan")]: result() }, refusedBeside: { [basis("energy")]: "It is refused." }, planningBeside: basis("time"), plan: { basis: basis("makespan"), result: result() } };
   const ways = waysOf(state);
   assert.deepEqual(ways.map(({ objective }) => objective), ["makespan", "total", "time", "energy"]);
   assert.deepEqual(ways.map(({ isPresent }) => isPresent), [true, false, false, false]);
   assert.equal(ways[2].isBeingMade, true);
-  assert.equal(ways[3].fault, "No UAV has a battery.");
+  assert.equal(ways[3].fault, "It is refused.");
+  const bare = { ...state, refusedBeside: {}, plan: { ...state.plan, result: result({ total_energy_wh: null }) } };
+  assert.equal(waysOf(bare)[3].fault, "No UAV has a battery.");
 });
 
 test("the best of a column is marked, and nothing where all are alike", () => {

@@ -104,3 +104,49 @@ def test_calm_air_and_no_battery_plan_as_ever() -> None:
     plan = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN))
     told = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN, conditions=Conditions((WindLayer(60.0, 0.0, 0.0),))))
     assert plan["routes"][0]["targets"] == told["routes"][0]["targets"]
+
+
+def test_what_does_not_fit_in_one_flight_is_flown_in_several() -> None:
+    here = world()
+    home = {"end_action": EndAction.RETURN, "speed_mps": 8.0}
+    one = make_plan(request=request(here.towers[5], uavs=(iris(**home),)))["total_energy_wh"]
+    battery_wh = 1.15 * one / 0.8
+    both = (here.towers[5], here.bridge, here.towers[0])
+    once = make_plan(request=request(*both, uavs=(iris(battery_wh=battery_wh, **home),)))
+    assert "beyond_energy" in reasons(once).values()
+    plan = make_plan(request=request(*both, uavs=(iris(battery_wh=battery_wh, sorties=3, **home),)))
+    assert plan["unassigned"] == []
+    (route,) = plan["routes"]
+    kinds = [waypoint["kind"] for waypoint in route["waypoints"]]
+    stop = kinds.index("base")
+    assert kinds[stop - 1 : stop + 2] == ["end", "base", "start"]
+    assert route["waypoints"][stop]["altitude_agl_m"] == 0.0
+    assert route["arrival_s"] == sorted(route["arrival_s"])
+    assert route["arrival_s"][stop + 1] - route["arrival_s"][stop] > 600.0
+    assert max(route["used_wh"]) <= 0.8 * battery_wh
+    assert route["used_wh"][stop + 1] < route["used_wh"][stop]
+    assert route["energy_wh"] > 0.8 * battery_wh
+    assert min(route["battery_left_percent"]) >= 20.0
+    assert sorted(route["targets"]) == [0, 1, 2]
+
+
+def test_a_uav_that_charges_at_towers_flies_farther_than_its_battery() -> None:
+    here = world()
+    home = {"end_action": EndAction.RETURN}
+    whole = make_plan(request=request(here.towers[5], uavs=(iris(**home),)))
+    small = iris(battery_wh=0.6 * whole["total_energy_wh"] / 0.8, **home)
+    assert reasons(make_plan(request=request(here.towers[5], uavs=(small,)))) == {0: "beyond_energy"}
+    plan = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=100.0))
+    (route,) = plan["routes"]
+    assert plan["unassigned"] == []
+    (stop,) = route["charging"]
+    assert route["waypoints"][stop["waypoint"]]["asset"] in {tower.pk for tower in here.towers}
+    assert route["duration_s"] > whole["routes"][0]["duration_s"] + stop["charging_s"]
+    assert min(route["battery_left_percent"]) >= 19.9
+
+
+def test_without_towers_on_the_way_charging_helps_nobody() -> None:
+    here = world()
+    small = iris((10.001, 55.95), battery_wh=4.0, end_action=EndAction.RETURN)
+    plan = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=100.0))
+    assert reasons(plan) == {0: "beyond_energy"}

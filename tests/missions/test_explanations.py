@@ -208,3 +208,25 @@ def test_a_question_about_another_plan_is_refused(here: World, client: Client, p
     response = post(client, path, plan_body(here.towers[0]) | more)
     assert response.status_code == 400
     assert place in response.json()["error"]["details"]
+
+
+def test_what_binds_a_route_is_said(here: World, client: Client) -> None:
+    iris = TERN | {
+        "position": [10.0, 55.9999],
+        "cruise_speed_mps": 8.0,
+        "battery_wh": 56.6,
+        "max_airspeed_mps": 11.0,
+        "end_action": "return",
+    }
+    body = plan_body(here.towers[5], uavs=[iris])
+    calm, plan = why_route(client, body)
+    assert calm["binds"] == []
+    assert calm["used_wh"] == pytest.approx(plan["total_energy_wh"], rel=0.01)
+    assert calm["wind_s"] == pytest.approx(0.0, abs=0.01)
+    tight = iris | {"battery_wh": 1.02 * plan["total_energy_wh"] / 0.8, "most_targets": 1}
+    wind = {"wind": [{"altitude_agl_m": 60.0, "speed_mps": 7.0, "from_deg": 90.0}]}
+    bound, _ = why_route(client, plan_body(here.towers[5], uavs=[tight]))
+    assert bound["binds"] == ["battery", "most_targets"]
+    windy, _ = why_route(client, body | {"conditions": wind})
+    assert "wind" in windy["binds"]
+    assert windy["wind_s"] > 10.0

@@ -373,6 +373,7 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
             "end_action": "hover",
             "most_targets": None,
             "sensors": [],
+            "sorties": 1,
             **performance_to_json(Performance()),
         }
     ]

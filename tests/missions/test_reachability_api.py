@@ -72,6 +72,17 @@ def test_what_is_reached_is_what_a_plan_flies_to(here: World, client: Client) ->
         assert codes(asked(client, uavs=[TERN | {"max_range_m": needed_m - 1.0}]))[tower.pk] == "beyond_range"
 
 
+def test_a_small_battery_tells_what_is_missing_and_a_storm_that_it_is_one(here: World, client: Client) -> None:
+    small = TERN | {"battery_wh": 8.0, "max_airspeed_mps": 15.0}
+    said = asked(client, uavs=[small])
+    found = codes(said)
+    assert (found[here.towers[0].pk], found[here.towers[5].pk]) == ("reachable", "beyond_energy")
+    missing_wh = dict(zip(said["assets"]["ids"], said["assets"]["missing_wh"], strict=True))
+    assert missing_wh[here.towers[0].pk] == 0 < missing_wh[here.towers[5].pk]
+    storm = {"wind": [{"altitude_agl_m": 60.0, "speed_mps": 20.0, "from_deg": 270.0}], "temperature_c": 15.0}
+    assert set(codes(asked(client, uavs=[small], conditions=storm)).values()) == {"wind"}
+
+
 def test_inside_a_zone_names_it(here: World, client: Client) -> None:
     zone_around((10.008, 56.0), name="Airport")
     said = asked(client)

@@ -28,6 +28,9 @@ export const OBJECTIVES = [
 /** The one to set beside another: the soonest end, beside which the fewest metres. */
 export const otherObjective = (objective) => (objective === "makespan" ? "total" : "makespan");
 
+/** A plan that counts no energy is of UAVs without a battery: least energy means nothing for them. */
+export const isWithoutBattery = (plan) => plan !== null && (plan.result.total_energy_wh ?? null) === null;
+
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
 export function routesOf(plan) {
   if (!plan) return [];

@@ -5,7 +5,7 @@ import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "./compare.js";
-import { figuresOf, isPlanCurrent, OBJECTIVES, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
+import { figuresOf, isPlanCurrent, isWithoutBattery, OBJECTIVES, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -266,7 +266,7 @@ function planBeside(store) {
       for (const { value } of OBJECTIVES) {
         const other = { ...asked, objective: value };
         if (own.signal.aborted) return;
-        if (store.state.figures[picks.basisOf(other)]) continue;
+        if (store.state.figures[picks.basisOf(other)] || (value === "energy" && isWithoutBattery(store.state.plan))) continue;
         try {
           await make(other, own);
         } catch (error) {

@@ -13,7 +13,7 @@ from shapely.affinity import translate
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
-from inspection.graph.zone_index import ZoneIndex
+from inspection.graph.zone_index import MANY, ZoneIndex
 from tests.exact_geometry import segment_meets_polygon
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -244,3 +244,30 @@ def test_some_of_the_zones_make_an_index():
     assert some.digest == zones.where(np.array([True, False, True])).digest != zones.digest
     assert len(zones.where([])) == 0
     assert zones.where([0, 1, 2]) is zones
+
+
+def test_very_many_legs_and_positions_get_the_answers_of_few():
+    """Which are the same whatever stands beside them."""
+    rng = np.random.default_rng(7)
+    boxes = [
+        box(*west_south, *(west_south + size))
+        for west_south, size in zip(rng.uniform(5, 15, (40, 2)), rng.uniform(0.001, 0.5, (40, 2)), strict=True)
+    ]
+    zones = ZoneIndex(boxes, range(40), [""] * 40, floor_agl_m=rng.choice([-np.inf, 50.0, 90.0], 40))
+    start = rng.uniform(4, 16, (2 * MANY, 2)).round(2)
+    end = start + rng.uniform(-0.2, 0.2, start.shape).round(2)
+    high_m = rng.uniform(0, 120, len(start))
+    for limits in ((), (0.0, high_m)):
+        few = [
+            zones.meets(start[first : first + 500], end[first : first + 500], 5.0, *(limits and (0.0, high_m[first : first + 500])))
+            for first in range(0, len(start), 500)
+        ]
+        assert zones.meets(start, end, 5.0, *limits).tolist() == np.concatenate(few).tolist()
+        few = [
+            zones.contains(start[first : first + 500], 5.0, *(limits and (0.0, high_m[first : first + 500])))
+            for first in range(0, len(start), 500)
+        ]
+        assert zones.contains(start, 5.0, *limits).tolist() == np.concatenate(few).tolist()
+        assert 0 < np.concatenate(few).sum() < len(start)
+    from_one = zones.meets(start[:1], end, 5.0)
+    assert from_one.tolist() == zones.meets(np.repeat(start[:1], len(end), axis=0), end, 5.0).tolist()

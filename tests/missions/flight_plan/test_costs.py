@@ -5,6 +5,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,6 +13,7 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.ways import BEND, DIRECT
 from inspection.graph.zone_index import ZoneIndex
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
@@ -56,11 +58,12 @@ class World:
         starts: list[LonLat],
         visits: list[tuple[list[LonLat], float, float]],
         bases: list[LonLat] = (),
+        zones: list[shapely.Polygon] = (),
     ) -> None:
         self.graph, self.starts, self.visits, self.bases = graph, starts, visits, bases
         self.ways: Ways = ways_between(
             graph,
-            ZoneIndex([], [], []),
+            ZoneIndex(list(zones), list(range(len(zones))), [""] * len(zones)),
             [Terminal(start) for start in starts],
             [Terminal(course[0]) for course, _, _ in visits],
             [Terminal(course[-1]) for course, _, _ in visits],
@@ -87,10 +90,12 @@ class World:
         )
 
     def drawn(self, uav: int, order: list[int], flying: FlightClass, finish: Finish, conditions: Conditions) -> Timing:
-        nodes, first = self.ways.travel.paths(np.array(self.ways.of_route(uav, order, finish.end), dtype=np.int64))
-        passed = PassedNodes(
-            self.graph.position[nodes], pass_agl_m(node_heights_m(self.graph, nodes), RULES), self.graph.node_asset[nodes], first
-        )
+        legs = np.array(self.ways.of_route(uav, order, finish.end), dtype=np.int64)
+        told = self.ways.travel.passed(legs, self.graph.position)
+        agl_m = np.full(len(told.node), RULES.transit_agl_m)
+        nodes = told.node[told.node != BEND]
+        agl_m[told.node != BEND] = pass_agl_m(node_heights_m(self.graph, nodes), RULES)
+        passed = PassedNodes(told.position, agl_m, np.full(len(agl_m), -1), told.first)
         targets = [
             TargetPoints(visit, tuple(course), agl_m, Task(TaskKind.HOLD, hold_s), None)
             for visit, (course, agl_m, hold_s) in ((visit, self.visits[visit]) for visit in order)
@@ -236,6 +241,33 @@ def test_the_assignment_counts_what_the_drawn_route_takes(
         assert wh == pytest.approx(drawn.total_wh, rel=1e-4, abs=0.01)
 
 
+def wall(east_m: float, north_m: float) -> shapely.Polygon:
+    """A zone of 40 m by 800 m."""
+    corners = [(-20, -400), (20, -400), (20, 400), (-20, 400)]
+    return shapely.Polygon([at(east_m + east, north_m + north) for east, north in corners])
+
+
+@pytest.mark.parametrize("conditions", [Conditions(), WEST_WIND])
+def test_legs_round_a_zone_take_what_is_flown(conditions: Conditions) -> None:
+    """Both the start and the target lie beside the line, behind a zone."""
+    world = World(TOWERS, [at(300, 900)], [([at(1700, -900)], 45.0, 10.0)], zones=[wall(150, 700), wall(1850, -700), wall(1500, -700)])
+    assert world.ways.travel.leg_bends
+    costs = world.costs([IRIS], [RETURN], conditions)
+    drawn = world.drawn(0, [0], IRIS, RETURN, conditions)
+    assert counted(costs, 0, [0]) == pytest.approx((drawn.total_s, drawn.total_wh), rel=1e-5)
+
+
+def test_a_direct_way_round_a_zone_takes_what_is_flown() -> None:
+    """Start and target lie 280 m apart and far from the line, a narrow zone between them."""
+    post = shapely.Polygon([at(east, north) for east, north in [(130, 2480), (150, 2480), (150, 2520), (130, 2520)]])
+    world = World(TOWERS, [at(0, 2500)], [([at(280, 2500)], 45.0, 10.0)], zones=[post])
+    assert world.ways.travel.way[0, 0, 0] == DIRECT
+    assert world.ways.travel.direct_bends
+    costs = world.costs([IRIS], [RETURN], WEST_WIND)
+    drawn = world.drawn(0, [0], IRIS, RETURN, WEST_WIND)
+    assert counted(costs, 0, [0]) == pytest.approx((drawn.total_s, drawn.total_wh), rel=1e-4)
+
+
 def test_nothing_is_below_0() -> None:
     world = World(TOWERS, [at(0, 0)], [([at(500, 20)], 20.0, 0.0), ([at(1500, 20)], 90.0, 0.0)])
     costs = world.costs([IRIS], [LAND], WEST_WIND)
@@ -247,3 +279,22 @@ def test_all_pairs_have_numbers() -> None:
     world = World(TOWERS, [at(0, 0), at(10, 5)], [([at(500, 20)], 20.0, 0.0), ([at(1500, 20)], 90.0, 0.0)], [at(100, 100)])
     costs = world.costs([IRIS, HEAVY], [BASE, RETURN], WEST_WIND)
     assert all(np.isfinite(part).all() for part in chain(vars(costs.seconds).values(), vars(costs.wh).values()))
+
+
+@settings(deadline=None, max_examples=60)
+@given(worlds(), st.lists(st.tuples(st.floats(0, 16), st.floats(0, 359)), min_size=2, max_size=3), st.data())
+def test_what_is_counted_as_open_can_be_flown_when_drawn(world: World, winds: list[tuple[float, float]], data: st.DataObject) -> None:
+    """In wind that changes with height, drawing divides legs, and each part has the wind of its own height."""
+    layers = tuple(WindLayer(30.0 + 40.0 * number, speed_mps, from_deg) for number, (speed_mps, from_deg) in enumerate(winds))
+    costs = world.costs([IRIS, IRIS], [RETURN, RETURN], Conditions(layers))
+    order = list(data.draw(st.permutations(range(len(world.visits)))))
+    if np.isfinite(counted(costs, 0, order)).all():
+        assert world.drawn(0, order, IRIS, RETURN, Conditions(layers)).total_s > 0
+
+
+def test_a_jet_between_two_heights_closes_the_leg_between_them() -> None:
+    """20 m/s at 91 m, and 6 m/s from 6 m below and above it on; the leg leads from 60 to 105 m, its middle is at 82.5 m."""
+    jet = Conditions((WindLayer(60, 6, 270), WindLayer(85, 6, 270), WindLayer(91, 20, 270), WindLayer(97, 6, 270)))
+    tall = World(replace(TOWERS, node_height_m=np.array([45.0, 90.0, 45.0])), EAST.starts, EAST.visits)
+    assert np.isfinite(EAST.costs([IRIS], [RETURN], jet).seconds.first).all()
+    assert np.isinf(tall.costs([IRIS], [RETURN], jet).seconds.first).all()

@@ -1,5 +1,7 @@
 """Which assets can be inspected, by hand and against what the planner itself says of each."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -14,7 +16,11 @@ from inspection.graph.inspection_graph import EdgeKind, NodeKind
 from inspection.graph.network import Network
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.costs import Finish, flight_costs
+from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.ways_taken import FlightClass
 from missions.routing.problem import End
 from missions.routing.reachability import Flight, Verdict, reach
 from missions.routing.terminals import AccessRules, Terminal, ways_between
@@ -60,10 +66,10 @@ def zone_index(*boxes):
     )
 
 
-def judged(ground, flights, *, zones=None, bases=()):
+def judged(ground, flights, *, zones=None, bases=(), **more):
     zones = zone_index() if zones is None else zones
     whole = cleared(ground, zones, LINKING, HEIGHTS).graph
-    return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, flights, bases, RULES)
+    return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, flights, bases, RULES, **more)
 
 
 def verdicts(found):
@@ -184,3 +190,63 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
             assert found.missing_m[place] == pytest.approx(
                 min(m - one.limit_m for m, one in zip(needed_m, flights, strict=True) if m < np.inf), abs=0.01
             )
+
+
+IRIS = FlightClass(Performance(battery_wh=56.6, max_airspeed_mps=14.0), 10.0)
+HEAVY = FlightClass(Performance(battery_wh=300.0, mass_kg=6.0, rotor_disk_m2=0.8, climb_speed_mps=4.0), 12.0)
+
+
+def needed_wh(graph, zones, one, node, bases, conditions):
+    """What an assignment counts for this node as the only target."""
+    place = LonLat(*graph.position[node].tolist())
+    target = Terminal(place, int(graph.node_asset[node]))
+    ways = ways_between(graph, zones, [Terminal(one.position)], [target], [target], RULES, [Terminal(base) for base in bases])
+    costs = flight_costs(
+        graph, ways, classes=[one.flying], finishes=[Finish(one.end, one.lands)], starts=[one.position], bases=bases, courses=[[place]],
+        agl_m=[45.0 + 15.0], hold_s=[10.0], conditions=conditions, rules=FlightRules(),
+    )  # fmt: skip
+    return float(costs.wh.first[0, 0] + costs.wh.service[0, 0] + costs.wh.end[0, 0])
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_battery_is_counted_as_an_assignment_counts_it(seed):
+    generator = np.random.default_rng(seed)
+    lines = [
+        np.cumsum(generator.uniform(-0.012, 0.012, (int(generator.integers(2, 7)), 2)), axis=0) + generator.uniform(-0.05, 0.05, 2)
+        for _ in range(int(generator.integers(1, 4)))
+    ]
+    ground, zones = network([line.tolist() for line in lines]), zone_index()
+    graph = cleared(ground, zones, LINKING, HEIGHTS).graph
+    places = [LonLat(*place) for place in generator.uniform(-0.05, 0.05, (2, 2)).tolist()]
+    end, lands = [(End.OPEN, False), (End.OPEN, True), (End.RETURN, True), (End.ANY_BASE, True)][int(generator.integers(4))]
+    flying = IRIS if generator.random() < 0.5 else HEAVY
+    conditions = Conditions((WindLayer(60.0, float(generator.uniform(0.0, 12.0)), float(generator.uniform(0.0, 359.0))),))
+    one = Flight(places[0], end, np.inf, lands, flying)
+
+    found = judged(ground, [one], bases=places[1:], conditions=conditions)
+
+    for place in np.flatnonzero(found.asset < LINE).tolist():
+        node = int(np.flatnonzero(graph.node_asset == found.asset[place])[0])
+        wanted_wh = needed_wh(graph, zones, one, node, places[1:], conditions)
+        verdict = Verdict(found.verdict[place])
+        if wanted_wh <= one.usable_wh:
+            assert verdict == Verdict.REACHABLE
+        elif np.isfinite(wanted_wh):
+            assert verdict == Verdict.BEYOND_ENERGY
+            assert found.missing_wh[place] == pytest.approx(wanted_wh - one.usable_wh, rel=1e-3, abs=0.02)
+        else:
+            assert verdict in {Verdict.WIND, Verdict.CUT_OFF}
+
+
+def test_against_the_wind_the_battery_does_for_less_and_too_much_of_it_stops_all():
+    """Eastward along the line against an east wind; the towers are the same distance away as in calm air."""
+    ground, one = network([row(9)]), flight(0.0, end=End.RETURN)
+    one = replace(one, lands=True, flying=IRIS)
+    calm = judged(ground, [one])
+    windy = judged(ground, [one], conditions=Conditions((WindLayer(60.0, 9.0, 90.0),)))
+    storm = judged(ground, [one], conditions=Conditions((WindLayer(60.0, 15.0, 90.0),)))
+    done = [int((found.verdict[:9] == Verdict.REACHABLE).sum()) for found in (calm, windy, storm)]
+    assert 9 > done[0] > done[1] > done[2] == 0
+    assert Verdict(calm.verdict[8]) == Verdict.BEYOND_ENERGY
+    assert set(storm.verdict[:9].tolist()) == {Verdict.WIND}

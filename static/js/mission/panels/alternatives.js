@@ -3,7 +3,7 @@
 import { h, icon } from "../../dom.js";
 import { t } from "../../text.js";
 import { durationText, energyText, lengthText, numberText } from "../../units.js";
-import { longestDuration_s, OBJECTIVES } from "../plan_view.js";
+import { isWithoutBattery, longestDuration_s, OBJECTIVES } from "../plan_view.js";
 import { basisOf } from "../selection.js";
 
 const COLUMNS = [
@@ -24,7 +24,8 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
   return OBJECTIVES.map(({ value, words, meaning }) => {
     const basis = basisOf({ ...selection, objective: value });
     const result = figures[basis] ?? null;
-    return { objective: value, words, meaning, result, fault: refusedBeside[basis] ?? "", isPresent: plan?.basis === basis, isBeingMade: planningBeside === basis };
+    const fault = refusedBeside[basis] ?? (value === "energy" && isWithoutBattery(plan) ? t("No UAV has a battery.") : "");
+    return { objective: value, words, meaning, result, fault, isPresent: plan?.basis === basis, isBeingMade: planningBeside === basis };
   });
 }
 
