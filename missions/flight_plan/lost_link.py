@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 import shapely
@@ -239,23 +238,3 @@ def _flown(one: _Return, waypoints: Waypoints, level_m: float, start_s: float | 
         return FlownRoute(position, agl_m, amsl_m, lands=True)
     arrival_s = start_s + np.array([0.0, seconds[0], seconds[0], seconds[1], seconds[1]])
     return FlownRoute(position, agl_m, amsl_m, arrival_s=arrival_s, departs_s=start_s, ends_s=start_s + seconds[2], lands=True)
-
-
-def failed_returns_json(plan: LostLinkPlan, failed: Sequence[FailedReturn]) -> dict[str, Any]:
-    """What is done, and from where it would go wrong; what does not belong to a reason is null."""
-    return {
-        "behaviour": plan.behaviour.value,
-        "hold_s": plan.hold_s if plan.behaviour is LostLink.HOLD else None,
-        "rally_points": [[point.lon, point.lat] for point in plan.rally_points],
-        "failed": [
-            {
-                "waypoint": one.waypoint,
-                "rally_point": one.haven - 1 if one.haven else None,
-                "reason": one.trouble.value,
-                "missing_wh": None if one.missing_wh is None else round(one.missing_wh, 2),
-                "zone": one.zone,
-                "over_m": None if one.over_m is None else round(one.over_m, 1),
-            }
-            for one in failed
-        ],
-    }

@@ -1,7 +1,7 @@
 """A problem as plain arrays, the shape that the compiled solvers read."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -29,6 +29,7 @@ class Burden:
         return Burden(self.first[:, uavs], self.onward, self.end[:, uavs], self.limit[:, uavs])
 
 
+@lru_cache(maxsize=64)
 def no_burden(uavs: int, visits: int) -> Burden:
     return Burden(np.zeros((0, uavs, visits)), np.zeros((0, 1, visits, visits)), np.zeros((0, uavs, visits)), np.zeros((0, uavs)))
 
@@ -66,6 +67,7 @@ class Arcs:
     turnaround_s: FloatArray
     again_m: FloatArray
     burden: Burden
+    has_sorties: bool  # whether any owner has several
 
     @classmethod
     def of(cls, problem: Problem) -> "Arcs":
@@ -99,11 +101,8 @@ class Arcs:
             turnaround_s=np.zeros(len(uavs)) if is_whole else turnaround_s,
             again_m=turnaround_s if objective is Objective.TIME else np.zeros(len(uavs)),
             burden=burden,
+            has_sorties=len(set(problem.owner)) < len(problem.owner),
         )
-
-    @property
-    def has_sorties(self) -> bool:
-        return bool((self.owner[1:] == self.owner[:-1]).any())
 
     @cached_property
     def visits_of_target(self) -> tuple[IntArray, IntArray]:
@@ -203,7 +202,7 @@ def metres(problem: Problem, classes: int = 1) -> Quantity:
         first=np.minimum(problem.from_start_m + along_m, NO_WAY_M).reshape(len(problem.uavs), len(problem.visits)),
         onward=onward_m if classes <= 1 else np.repeat(onward_m, classes, axis=0),
         end=np.ascontiguousarray(np.minimum(problem.end_m, NO_WAY_M).T).reshape(len(problem.uavs), len(problem.visits)),
-        along=np.repeat(along_m[None], max(1, classes), axis=0),
+        along=along_m[None] if classes <= 1 else np.repeat(along_m[None], classes, axis=0),
         limit=_limits([uav.limit_m for uav in problem.uavs]),
     )
 

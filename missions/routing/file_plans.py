@@ -177,6 +177,7 @@ def _plain(uavs: int, targets: int) -> dict[str, Any]:
         "turnaround_s": np.zeros(uavs),
         "again_m": np.zeros(uavs),
         "burden": no_burden(uavs, targets),
+        "has_sorties": False,
     }
 
 

@@ -7,24 +7,35 @@ import numpy as np
 
 from missions.routing.problem import Amounts, FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
 
-MOST_WAYS = 8  # through a locked run between the same two visits: all for up to three stretches between its ends
+MOST_WAYS = 16  # through a locked run between the same two visits, of which none beats another
 
 
 @dataclass(frozen=True)
 class _Run:
-    """One way of flying a locked run: its visits in order, and the metres from the first one's begin to the last one's end."""
+    """One way of flying a locked run: its visits in order, and what it takes from the first one's begin to the last one's end.
+
+    `taken` are metres, then seconds and Wh by class where the problem has them.
+    """
 
     visits: tuple[int, ...]
-    length_m: float
+    taken: tuple[float, ...]
+
+    @property
+    def length_m(self) -> float:
+        return self.taken[0]
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """A problem in which every lock is one target; `visits_of` and `targets_of` lead back to the visits and targets of the whole one."""
+    """A problem in which every lock is one target; `visits_of` and `targets_of` lead back to the visits and targets of the whole one.
+
+    `is_whole` tells whether every way through the locked runs that could be the best is in it.
+    """
 
     problem: Problem
     visits_of: tuple[tuple[int, ...], ...]
     targets_of: tuple[tuple[int, ...], ...]
+    is_whole: bool
 
     def expanded(self, routes: Routes) -> Routes:
         return tuple(tuple(visit for reduced in route for visit in self.visits_of[reduced]) for route in routes)
@@ -37,7 +48,8 @@ class Reduced:
 def reduced(problem: Problem) -> Reduced:
     """The problem without its locks: a run is a target of one visit for each pair of its first and its last visit.
 
-    Inside, stretches are flown in the directions that are shortest together. Leaving out what is locked weighs more than leaving out
+    Inside, stretches are flown in the directions that are shortest together; where seconds or Wh are not as the metres, each way that
+    takes less of something is a visit. Leaving out what is locked weighs more than leaving out
     everything free of its priority, and less than anything of a higher one. Raises InvalidProblem if the locks contradict each other.
     """
     _refuse_contradictions(problem)
@@ -49,11 +61,14 @@ def reduced(problem: Problem) -> Reduced:
     owner: list[Lock | None] = []
     for number, target in enumerate(free):
         for visit in visits_of_target[target]:
-            ways.append(_Run((visit,), problem.visits[visit].length_m))
+            ways.append(_Run((visit,), (problem.visits[visit].length_m,)))
             visits.append(replace(problem.visits[visit], target=number))
             owner.append(None)
+    is_whole = True
     for number, lock in enumerate(problem.locks, start=len(free)):
-        for run in _runs(problem, [visits_of_target[target] for target in lock.targets]):
+        runs, has_all = _runs(problem, [visits_of_target[target] for target in lock.targets])
+        is_whole = is_whole and has_all
+        for run in runs:
             ways.append(run)
             service_s = sum(problem.visits[visit].service_s for visit in run.visits)
             done = sum(problem.visits[visit].done for visit in run.visits)
@@ -93,6 +108,7 @@ def reduced(problem: Problem) -> Reduced:
         ),
         tuple(run.visits for run in ways),
         targets_of,
+        is_whole,
     )
 
 
@@ -118,27 +134,44 @@ def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int)
     return np.array([weights[list(targets)].sum() for targets in targets_of])
 
 
-def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> list[_Run]:
-    """The shortest way through one visit of each target, for each first and each last visit that has one.
-
-    Where seconds or Wh are not as the metres, up to so many of the shortest: each may be the best by what counts.
-    """
-    most = 1 if problem.seconds is None and problem.wh is None else MOST_WAYS
-    runs = []
+def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> tuple[list[_Run], bool]:
+    """The best ways through one visit of each target, for each first and each last visit that has one, and whether these are all."""
+    runs: list[_Run] = []
+    is_whole = True
     for first in alternatives[0]:
-        ways = {first: [_Run((first,), problem.visits[first].length_m)]}
+        ways = {first: [_begun(problem, first)]}
         for visits in alternatives[1:]:
-            ways = {
-                visit: sorted((_onward(problem, run, visit) for runs in ways.values() for run in runs), key=lambda run: run.length_m)[:most]
-                for visit in visits
-            }
+            before = [run for found in ways.values() for run in found]
+            ways = {visit: _unbeaten([_onward(problem, run, visit) for run in before]) for visit in visits}
+            is_whole = is_whole and all(len(found) <= MOST_WAYS for found in ways.values())
+            ways = {visit: found[:MOST_WAYS] for visit, found in ways.items()}
         runs += [run for found in ways.values() for run in found if np.isfinite(run.length_m)]
-    return runs
+    return runs, is_whole
+
+
+def _unbeaten(runs: Sequence[_Run]) -> list[_Run]:
+    """Those of which no other takes as little of everything, the shortest first."""
+    kept: list[_Run] = []
+    for run in sorted(runs, key=lambda run: run.taken):
+        if not any(all(own <= other for own, other in zip(better.taken, run.taken, strict=True)) for better in kept):
+            kept.append(run)
+    return kept
+
+
+def _begun(problem: Problem, visit: int) -> _Run:
+    more = [float(amount) for amounts in _amounts(problem) for amount in amounts.at_visit[:, visit]]
+    return _Run((visit,), (problem.visits[visit].length_m, *more))
 
 
 def _onward(problem: Problem, run: _Run, visit: int) -> _Run:
-    length_m = run.length_m + float(problem.between_m[run.visits[-1], visit]) + problem.visits[visit].length_m
-    return _Run((*run.visits, visit), length_m)
+    last = run.visits[-1]
+    length_m = run.length_m + float(problem.between_m[last, visit]) + problem.visits[visit].length_m
+    more = [float(amount) for amounts in _amounts(problem) for amount in amounts.onward[:, last, visit] + amounts.at_visit[:, visit]]
+    return _Run((*run.visits, visit), (length_m, *(own + added for own, added in zip(run.taken[1:], more, strict=True))))
+
+
+def _amounts(problem: Problem) -> list[Amounts]:
+    return [amounts for amounts in (problem.seconds, problem.wh) if amounts is not None]
 
 
 def _refuse_contradictions(problem: Problem) -> None:

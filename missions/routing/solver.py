@@ -50,6 +50,7 @@ def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_
             search_s=search_s,
         )
         routes, left_out = whole.expanded(routes), whole.expanded_reasons(left_out)
+        bound = bound if whole.is_whole else 0.0  # nothing is known of the ways through the runs that were not looked at
     else:
         tell = (lambda told: on_progress(_expanded(told, of_uavs))) if rows.owner else on_progress
         routes, left_out, bound, method = _solved(rows, stop=stop, on_progress=tell, seed=seed, search_s=search_s)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from missions.routing.problem import Problem, Routes
+from missions.routing.problem import Problem, Routes, merit
 
 
 def unfolded(problem: Problem) -> Problem:
@@ -17,7 +17,7 @@ def unfolded(problem: Problem) -> Problem:
     if max(most, default=1) == 1:
         return problem
     rows = np.repeat(np.arange(len(most)), most)
-    first_row = np.cumsum([0, *most])
+    first_row = np.cumsum([0, *most]).tolist()
     return replace(
         problem,
         uavs=tuple(replace(problem.uavs[uav], sorties=1) for uav in rows.tolist()),
@@ -26,7 +26,7 @@ def unfolded(problem: Problem) -> Problem:
         to_base_m=None if problem.to_base_m is None else problem.to_base_m[:, rows],
         allowed=None if problem.allowed is None else problem.allowed[rows],
         cannot_end=None if problem.cannot_end is None else problem.cannot_end[:, rows],
-        locks=tuple(replace(lock, uav=int(first_row[lock.uav])) for lock in problem.locks),
+        locks=tuple(replace(lock, uav=first_row[lock.uav] if 0 <= lock.uav < len(most) else len(rows)) for lock in problem.locks),
         seconds=None if problem.seconds is None else problem.seconds.of_uavs(rows),
         wh=None if problem.wh is None else problem.wh.of_uavs(rows),
         class_of=tuple(problem.class_of[uav] for uav in rows.tolist()) if problem.class_of else (),
@@ -42,6 +42,14 @@ def by_uav(rows: Problem, routes: Routes) -> tuple[Routes, ...]:
         if route:
             flown[uav].append(route)
     return tuple(tuple(sorties) for sorties in flown.values())
+
+
+def merit_of(problem: Problem, sorties: tuple[Routes, ...]) -> tuple[float, float, float]:
+    """The merit of the plan with these sorties of each UAV; see `merit`."""
+    rows = unfolded(replace(problem, locks=()))
+    rest = [list(flown) for flown in sorties]
+    owner = rows.owner or tuple(range(len(rows.uavs)))
+    return merit(rows, tuple(rest[uav].pop(0) if rest[uav] else () for uav in owner))
 
 
 def joined(sorties: tuple[Routes, ...]) -> Routes:

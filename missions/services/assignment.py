@@ -11,9 +11,10 @@ from missions.flight_plan.duration import ready_s
 from missions.flight_plan.rules import FlightRules
 from missions.models import EndAction
 from missions.routing.exact import MAX_TARGETS
-from missions.routing.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit, merit
+from missions.routing.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import PROVEN_GAP, Stop, solve
+from missions.routing.sorties import merit_of
 from missions.routing.terminals import Ways
 from missions.services.places import Place
 from missions.services.refusals import Grounding
@@ -192,7 +193,7 @@ def solve_assignment(
 
 def _cost(problem: Problem, solution: Solution, free: Solution) -> LockCost:
     """The plan with the locks is one without them, too: where the search without them finds nothing better, they cost nothing."""
-    if merit(problem, solution.routes) <= merit(problem, free.routes):
+    if merit_of(problem, solution.sorties) <= merit_of(problem, free.sorties):
         free = solution
     left_out = len(solution.unassigned) - len(free.unassigned)
     is_comparable = {item.target for item in solution.unassigned} == {item.target for item in free.unassigned}

@@ -56,6 +56,13 @@ const ROWS = [
     draw: () => sample(stroke("--route-1", 3), svg("path", { d: "M17 6L10 2L12 6L10 10Z", fill: "var(--route-1)", stroke: "var(--map-casing)", "stroke-width": 1 })),
   },
   {
+    layer: "route-stops",
+    kind: "charging",
+    words: t("Charging stop"),
+    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 5.25, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.25 }), svg("path", { d: "M13.7 2L10.5 6.8H12.7L12.2 10L15.5 5.3H13.2Z", fill: "var(--ink)" })),
+  },
+  { layer: "route-stops", kind: "base", words: t("Base between two flights"), draw: () => sample(svg("rect", { x: 9, y: 2, width: 8, height: 8, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.5 })) },
+  {
     layer: "many-targets",
     words: t("Target"),
     draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 4.5, fill: "var(--raised)", stroke: "var(--ink-2)", "stroke-width": 1.75 })),
@@ -89,6 +96,7 @@ const keyOf = (layer, kind = "") => `${layer}/${kind}`;
 /** Which of a layer's rows shows a feature: its voltage, or whether a zone applies at times and rests now. */
 function kindOf({ layer, properties, state }) {
   if (layer.id === "lines") return voltageBand(properties.voltage);
+  if (layer.id === "route-stops") return properties.kind;
   if (layer.id !== "zones-fill" || properties.schedule === undefined) return "";
   return state.resting ? "resting" : "timed";
 }

@@ -76,6 +76,7 @@ export function mapStyle(palette, options) {
       [TILES]: { type: "vector", tiles: [options.tilesAddress], minzoom: 0, maxzoom: 15 },
       "picked-shapes": { type: "geojson", data: NOTHING },
       routes: { type: "geojson", data: NOTHING },
+      "route-stops": { type: "geojson", data: NOTHING },
       "routes-so-far": { type: "geojson", data: NOTHING },
       "strip-point": { type: "geojson", data: NOTHING },
       "many-targets": { type: "geojson", data: NOTHING },
@@ -188,6 +189,12 @@ function routeLayers(palette) {
         "icon-allow-overlap": true,
         "icon-rotation-alignment": "map",
       },
+    },
+    {
+      id: "route-stops",
+      type: "symbol",
+      source: "route-stops",
+      layout: { "icon-image": ["concat", "stop-", ["get", "kind"]], "icon-allow-overlap": true },
     },
     {
       id: "strip-point",

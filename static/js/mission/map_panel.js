@@ -18,6 +18,7 @@ import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
+import { staysOf } from "./route_times.js";
 import { mountHandMap } from "./hand_map.js";
 import { mountReachLayer } from "./reach_layer.js";
 import { createMapPicking } from "./map_picking.js";
@@ -169,6 +170,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     store.listen(["selection", "plan"], drawTargets);
     store.listen(["plan"], ({ plan }) => {
       routesLayer.update(map, routesOf(plan));
+      routesLayer.showStops(map, routesOf(plan).flatMap((route) => staysOf(route).map(({ kind, index }) => ({ kind, position: route.waypoints[index].position }))));
       // A plan that was just made is looked at. A stored one is what the map opened at, but the dock took room from it; after saving nothing moves.
       if (plan && !store.state.planIsStored) fit();
       else if (plan && !opensAtPlace && !wasFitted) fit({ animate: false });

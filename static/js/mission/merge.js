@@ -13,8 +13,8 @@ const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav
 /** Without a task a target has its kind's own, which the server writes down: that is the same. */
 const isSameTask = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
 const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
-const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null }) =>
-  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets]);
+const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null, sorties = 1 }) =>
+  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets, sorties ?? 1]);
 /** What nobody has said of a UAV is its type's, which the server writes down: that is the same. */
 const isSamePerformance = (a, b) => PERFORMANCE.every((fact) => a[fact] === undefined || b[fact] === undefined || a[fact] === b[fact]);
 const isSameUav = (a, b) => uavFacts(a) === uavFacts(b) && isSamePerformance(a, b);

@@ -6,6 +6,7 @@ import { t } from "../text.js";
 import { heightText, lengthText, percentText } from "../units.js";
 import { heightsText } from "../zones/heights.js";
 import { timeAt } from "./flight_options.js";
+import { staysOf, stayText } from "./route_times.js";
 import { rulesOf } from "../terrain/profile_chart.js";
 import { profileOf, scaleOf } from "./span_strip.js";
 
@@ -50,19 +51,28 @@ export function groundOf(profile, length_m) {
 }
 
 /** Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat. */
-export function flightOf(route, ground) {
+export function flightOf(route, ground, battery_wh = null) {
   const { places, targets } = profileOf(route.waypoints, route.length_m);
   const isFlat = route.waypoints.some(({ altitude_amsl_m }) => altitude_amsl_m === null);
   const heightOf = (waypoint) => (isFlat ? waypoint.altitude_relative_m : waypoint.altitude_amsl_m);
-  const path = route.waypoints.map((waypoint, index) => ({
-    at_m: places[index],
-    height_m: heightOf(waypoint),
-    arrival_s: route.arrival_s?.[index] ?? null,
-    battery_percent: route.battery_left_percent?.[index] ?? null,
-  }));
+  const stays = new Map(staysOf(route).map((stay) => [stay.index, stay]));
+  const path = route.waypoints.flatMap((waypoint, index) => {
+    const point = { at_m: places[index], height_m: heightOf(waypoint), arrival_s: route.arrival_s?.[index] ?? null, battery_percent: route.battery_left_percent?.[index] ?? null };
+    const stay = stays.get(index) ?? (waypoint.task?.hold_s ? { kind: "task", stay_s: waypoint.task.hold_s } : null);
+    return stay ? [point, afterStay(point, stay, battery_wh)] : [point];
+  });
   const under = isFlat ? [{ at_m: 0, ground_m: 0 }, { at_m: route.length_m, ground_m: 0 }] : (ground?.samples ?? []);
   const tasks = targets.map(({ target, at }) => ({ target, at_m: at, height_m: heightAt(path, at, "height_m") }));
-  return { isFlat, path, under, tasks, zones: ground?.zones ?? [], hasBattery: path.some(({ battery_percent }) => battery_percent !== null) };
+  const waits = [...stays.values()].map((stay) => ({ ...stay, at_m: places[stay.index] }));
+  return { isFlat, path, under, tasks, waits, zones: ground?.zones ?? [], hasBattery: path.some(({ battery_percent }) => battery_percent !== null) };
+}
+
+/** The same place when it goes on from there: later, and with a battery that is full after a base and fuller after charging. */
+function afterStay(point, { kind, stay_s, charged_wh }, battery_wh) {
+  const { arrival_s, battery_percent } = point;
+  const gained = kind === "charging" && battery_wh ? (charged_wh / battery_wh) * 100 : 0;
+  const left = battery_percent === null ? null : kind === "base" ? 100 : Math.min(100, battery_percent + gained);
+  return { ...point, arrival_s: arrival_s === null ? null : arrival_s + stay_s, battery_percent: left };
 }
 
 /** The value of a name at a distance, straight between neighbours; null where one of them is unknown. */
@@ -159,6 +169,7 @@ export function drawProfile({ route, flight, longest_m, width_px, reserve_percen
     dots.get(task.target).push(dot);
     element.append(dot);
   }
+  for (const wait of flight.waits) element.append(svg("line", { class: "wait", x1: x(wait.at_m), x2: x(wait.at_m), y1: TOP_PX, y2: bottom_px }, svg("title", {}, stayText(wait))));
   const line = svg("line", { class: "strip-cursor", y1: 0, y2: bottom_px, visibility: "hidden" });
   const dot = svg("circle", { class: "cursor-dot", r: 3.5, visibility: "hidden" });
   element.append(line, dot);

@@ -1,7 +1,7 @@
 /** Which assets the chosen UAVs can inspect, as the server has answered. Values in, values out. */
 
 import { t } from "../text.js";
-import { lengthText } from "../units.js";
+import { energyText, lengthText } from "../units.js";
 import { requestOf } from "./selection.js";
 
 /** "yes", "partly" or "no" as the map draws them; "" is not known. */
@@ -45,5 +45,7 @@ export function reachText({ assets, reasons, flights }, id, uavs) {
   }
   const { code: why, message } = reasons[code - 1];
   if (why === "beyond_range" && assets.missing_m[place] > 0) return t("Out of range: {length} are missing at best.", { length: lengthText(assets.missing_m[place]) });
+  const lacking_wh = assets.missing_wh?.[place] ?? 0;
+  if (why === "beyond_energy" && lacking_wh > 0) return t("Out of range: {length} are missing at best.", { length: energyText(lacking_wh) });
   return message;
 }

@@ -1,6 +1,6 @@
 /** When routes reach their targets, what is left of their batteries, and how they are kept apart: in words. Values in, values out. */
 
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../units.js";
 import { timeAt } from "./flight_options.js";
 
@@ -27,6 +27,26 @@ export function arrivalsOf(plan) {
 
 /** "lands 14:32" is the last of these; null in plans without times. */
 export const landing_s = ({ arrival_s }) => arrival_s?.at(-1) ?? null;
+
+/** Where a route waits on the way: at a base between two flights, on a tower to charge. [{ index, kind: "base" | "charging", stay_s, charged_wh }] */
+export function staysOf({ waypoints, charging }) {
+  const bases = waypoints.flatMap(({ kind, task }, index) => (kind === "base" ? [{ index, kind: "base", stay_s: task?.hold_s ?? 0, charged_wh: null }] : []));
+  const chargings = (charging ?? []).map(({ waypoint, stopped_s, charged_wh }) => ({ index: waypoint, kind: "charging", stay_s: stopped_s, charged_wh }));
+  return [...bases, ...chargings].sort((a, b) => a.index - b.index);
+}
+
+/** "in 2 flights", "charges 3 times"; empty for one flight without. */
+export function staysText(route) {
+  const stays = staysOf(route);
+  const [bases, chargings] = ["base", "charging"].map((kind) => stays.filter((stay) => stay.kind === kind).length);
+  return [bases > 0 && tn(bases + 1, "in {count} flight", "in {count} flights"), chargings > 0 && tn(chargings, "charges {count} time", "charges {count} times")].filter(Boolean).join(", ");
+}
+
+/** What one of them is: "Charges 8 min, +60 Wh", "At the base 10 min". */
+export function stayText({ kind, stay_s, charged_wh }) {
+  const time = durationText(stay_s);
+  return kind === "base" ? t("at the base {time}", { time }) : t("charges {time}, +{energy}", { time, energy: energyText(charged_wh) });
+}
 
 /** "takes off 3 min later"; empty where it starts with the mission. */
 export const delayText = ({ departs_s }) => (departs_s > 0 ? t("takes off {time} later", { time: durationText(departs_s) }) : "");

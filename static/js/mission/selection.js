@@ -182,6 +182,7 @@ export function requestOf(selection) {
       if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
       if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
       for (const name of UAV_VALUES) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
+      if (uav.sorties > 1) body.sorties = uav.sorties;
       if (body.id === undefined && uav.sensors?.length) body.sensors = uav.sensors; // one of the fleet brings its own
       return body;
     }),

@@ -12,7 +12,7 @@ from missions.routing.arcs import Arcs
 from missions.routing.bounds import lower_bound
 from missions.routing.exact import best_plan, proven_routes
 from missions.routing.limited_tours import limited_tours
-from missions.routing.problem import Amounts, End, InvalidProblem, Objective, Problem, Reason, Routes, UavStart, Visit, merit
+from missions.routing.problem import Amounts, End, InvalidProblem, Lock, Objective, Problem, Reason, Routes, UavStart, Visit, merit
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.search import best_found
 from missions.routing.solver import never, solve
@@ -78,6 +78,26 @@ def test_locked_runs_are_flown_as_wished_within_every_limit(seed: int, objective
     assert all(problem.keeps_limits(uav, route) for uav, route in enumerate(solution.routes))
     flown = {problem.visits[visit].target for route in solution.routes for visit in route}
     assert all(honours(problem, solution.routes, lock) for lock in problem.locks if flown & set(lock.targets))
+
+
+def test_in_the_wind_a_locked_run_is_flown_in_the_directions_that_are_quickest() -> None:
+    """A stretch between two places: flown one way round it is shorter, the other way quicker."""
+    visits = (Visit(0), Visit(1, False, 100.0), Visit(1, True, 90.0), Visit(2))
+    zero = np.zeros((4, 4))
+    problem = Problem(
+        uavs=(UavStart(),),
+        visits=visits,
+        target_count=3,
+        from_start_m=np.zeros((1, 4)),
+        between_m=zero,
+        to_start_m=np.zeros((4, 1)),
+        objective=Objective.TOTAL,
+        locks=(Lock(0, (0, 1, 2)),),
+        seconds=Amounts(np.zeros((1, 4)), zero[None], np.zeros((4, 1)), along=np.array([[0.0, 10.0, 20.0, 0.0]])),
+    )
+    assert solve(problem).routes == ((0, 2, 3),)
+    quickest = solve(replace(problem, objective=Objective.TIME))
+    assert (quickest.routes, quickest.total_s, quickest.is_proven) == (((0, 1, 3),), 10.0, True)
 
 
 def on_a_road(places_km: list[float], uavs: tuple[UavStart, ...], objective: Objective, *, wind: float = 0.0) -> Problem:

@@ -13,7 +13,7 @@ from missions.routing.problem import End, InvalidProblem, Lock, Objective, Probl
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.search import best_found
 from missions.routing.solver import never, solve
-from missions.routing.sorties import by_uav, unfolded
+from missions.routing.sorties import by_uav, merit_of, unfolded
 from tests.missions.routing.random_problems import best_merit, windy_problem
 
 seeds = st.integers(0, 1_000_000)
@@ -61,7 +61,11 @@ def check(problem: Problem, solution: Solution) -> None:
 @given(seed=seeds, objective=st.sampled_from(list(Objective)), uavs=st.integers(1, 3), locks=st.integers(0, 2))
 def test_every_sortie_keeps_the_limits(seed: int, objective: Objective, uavs: int, locks: int) -> None:
     problem = windy_problem(seed, objective, uavs=uavs, targets=6, sorties=3, locks=locks)
-    check(problem, solve(problem))
+    solution = solve(problem)
+    check(problem, solution)
+    missed, value, _ = merit_of(problem, solution.sorties)
+    assert missed == pytest.approx(sum(problem.left_out_weights[item.target] for item in solution.unassigned))
+    assert solution.lower_bound <= value * (1 + 1e-12)
 
 
 @settings(max_examples=15, deadline=None)
@@ -74,8 +78,9 @@ def test_so_does_the_search_and_its_bound_is_one(seed: int, objective: Objective
         return
     found = best_found(rows, usable, needed_m, seed=7, search_s=0.0, stop=never, on_look=lambda share, found: None)
     assert all(rows.keeps_limits(uav, route) for uav, route in enumerate(found.routes))
-    for flown, uav in zip(by_uav(rows, found.routes), {owner: uav for uav, owner in enumerate(rows.owner)}.values(), strict=False):
-        assert sum(rows.visits[visit].done for route in flown for visit in route) <= rows.uavs[uav].most
+    owner = rows.owner or tuple(range(len(rows.uavs)))
+    for own, flown in zip(dict.fromkeys(owner), by_uav(rows, found.routes), strict=True):
+        assert sum(rows.visits[visit].done for route in flown for visit in route) <= rows.uavs[owner.index(own)].most
     best = merit(rows, best_plan(rows))
     assert merit(rows, found.routes)[0] > best[0] or merit(rows, found.routes)[1] >= best[1] * (1 - 1e-9)
     assert found.bound is not None

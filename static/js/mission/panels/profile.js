@@ -2,13 +2,15 @@
 
 import { byId, h } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
-import { t } from "../../text.js";
+import { t, tn } from "../../text.js";
 import { heightText, lengthText, percentText } from "../../units.js";
 import { timeAt } from "../flight_options.js";
 import { isPlanCurrent, lastPlanOf, shownRoute } from "../plan_view.js";
 import { drawProfile, flightOf, profileTable, readingAt } from "../profile.js";
-import { batteryOf, landing_s } from "../route_times.js";
+import { batteryOf, landing_s, stayText } from "../route_times.js";
 import { stripRoom } from "./routes.js";
+
+const MOST_WAITS = 3;
 
 export function mountProfile(store, { grounds }) {
   const dock = byId("dock");
@@ -40,8 +42,8 @@ export function mountProfile(store, { grounds }) {
   }
 
   function put(route, ground, fault, width_px, longest_m) {
-    const flight = flightOf(route, ground);
-    const { targets } = store.state.plan;
+    const { targets, uavs } = store.state.plan;
+    const flight = flightOf(route, ground, uavs[route.sequence]?.battery_wh ?? null);
     const chart = drawProfile({
       route,
       flight,
@@ -106,6 +108,9 @@ function wholeWords(route, flight, fault, departs_at) {
   if (landing !== null) lines.push(line(t("done at {time}", { time: timeAt(departs_at, landing) })));
   const battery = batteryOf(route);
   if (battery) lines.push(line(t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used })));
+  const rest = flight.waits.length - MOST_WAITS;
+  for (const wait of flight.waits.slice(0, MOST_WAITS)) lines.push(line(`${t("at {distance}", { distance: lengthText(wait.at_m) })}: ${stayText(wait)}`));
+  if (rest > 0) lines.push(line(tn(rest, "and {count} more", "and {count} more")));
   if (fault) return [...lines, line(fault)];
   if (flight.isFlat) return [...lines, line(t("flat ground assumed"))];
   const above = route.waypoints.map(({ altitude_agl_m }) => altitude_agl_m).filter((metres) => metres > 0);

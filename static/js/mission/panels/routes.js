@@ -9,7 +9,7 @@ import { timeAt } from "../flight_options.js";
 import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
 import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
 import { GROUNDING } from "../plan_words.js";
-import { batteryOf, delayText, landing_s, separationOf } from "../route_times.js";
+import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
 import { createPillDrag } from "../strip_drag.js";
 import { uavsByName } from "../selection.js";
 import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
@@ -60,7 +60,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const look = () => store.update({ lookedAt: route.sequence });
     const leave = () => store.update({ lookedAt: null });
     const old = before && counterpart(route, before);
-    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
+    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), staysText(route), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
     const delta = (words) => old && h("small", {}, words);
     const landing = isUsed && state.plan.result.departs_at && !old ? landing_s(route) : null;
     const battery = isUsed ? batteryOf(route) : null;
@@ -110,6 +110,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       label: stripLabel(route, wishes[route.sequence].map((key) => ({ ...targetOf(state, key), isLocked: lockOf(state.selection, key) !== null }))),
       stopsOf: (planned) => stopsOf(route, state, planned),
       zones: zonesOf.get(waypoints) ?? [],
+      waits: staysOf(route).map((stay) => ({ ...stay, words: stayText(stay) })),
       onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
       onTarget: (key) => store.update({ litTarget: key }),
       grab: canPlan && uavsByName(state.selection).some(({ name }) => name === route.name) ? grab : undefined,

@@ -7,6 +7,8 @@ import { t } from "../../text.js";
 import { LONG_UNIT, SPEED_UNIT } from "../../units.js";
 import { MOST_TARGETS } from "../picking.js";
 
+const MOST_SORTIES = 20; // missions/serializers/limits.py
+
 let fields = 0; // each has an id of its own
 
 function field(label, input, unit = "") {
@@ -56,6 +58,7 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   const mass = own(uav.mass_kg, 0.01, 10_000);
   const reserve = own(uav.reserve_percent, 0, 95);
   const airspeed = own(uav.max_airspeed_mps, 0.5, 300, SPEED_UNIT.mps);
+  const sorties = h("input", { class: "input", type: "number", min: 1, max: MOST_SORTIES, step: 1, required: true, value: uav.sorties ?? 1 });
   const unlimited = h("p", { class: "caption", role: "status" });
   const wrong = h("p", { class: "field-error", role: "alert" });
   const sayWhatIsMissing = () => (unlimited.textContent = range.value ? "" : t("Range not stated: it is planned as unlimited."));
@@ -77,7 +80,7 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
         h("p", { class: "caption own-values" }, t("Empty: as its type. Without a battery its energy is not planned.")),
       ),
     field(t("End, where “Return to start” is off"), end),
-    !isNew && h("div", {}, field(t("At most this many targets"), most), h("p", { class: "caption" }, uav.sensors?.length ? t("Sensors: {names}", { names: uav.sensors.join(", ") }) : t("No sensor is stated for it."))),
+    !isNew && h("div", {}, h("div", { class: "pair" }, field(t("At most this many targets"), most), field(t("At most this many flights"), sorties)), h("p", { class: "caption" }, t("More than one flight only where it returns to its start; each on a full battery."), " ", uav.sensors?.length ? t("Sensors: {names}", { names: uav.sensors.join(", ") }) : t("No sensor is stated for it."))),
     h("div", { class: "pair" }, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")),
     wrong,
     h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, act)),
@@ -92,7 +95,7 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
         max_range_m: kept(range, uav.max_range_m, LONG_UNIT.metres),
         cruise_speed_mps: kept(speed, uav.cruise_speed_mps, SPEED_UNIT.mps),
         end_action: end.value,
-        ...(isNew ? {} : { most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null, battery_wh: kept(battery, uav.battery_wh, 1), mass_kg: kept(mass, uav.mass_kg, 1), reserve_percent: kept(reserve, uav.reserve_percent, 1), max_airspeed_mps: kept(airspeed, uav.max_airspeed_mps, SPEED_UNIT.mps) }),
+        ...(isNew ? {} : { most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null, sorties: sorties.valueAsNumber, battery_wh: kept(battery, uav.battery_wh, 1), mass_kg: kept(mass, uav.mass_kg, 1), reserve_percent: kept(reserve, uav.reserve_percent, 1), max_airspeed_mps: kept(airspeed, uav.max_airspeed_mps, SPEED_UNIT.mps) }),
       });
       dialog.close();
     } catch (error) {
