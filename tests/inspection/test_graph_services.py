@@ -27,6 +27,7 @@ from inspection.graph.snapshot_file import CLEARED, NETWORKS
 from inspection.graph.ways import travel_between
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
+from inspection.selectors import graph as graph_selectors
 from inspection.selectors.graph import KEPT, _Kept, graph_for
 from inspection.selectors.planning import planning_read
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
@@ -281,7 +282,7 @@ def test_broken_files_are_made_anew_from_what_is_not_broken(line, settings, monk
         content = bytearray(path.read_bytes())
         content[-1] ^= 1
         path.write_bytes(bytes(content))
-    monkeypatch.setattr(graph_selectors, "_graphs", _KeptGraphs())
+    monkeypatch.setattr(graph_selectors, "_graphs", _Kept())
     add_zone(9.1, 47.1, 9.2, 47.2)  # beside everything: another set of zones, the same graph
     for zones in (selectors.zones_in_force(), selectors.zones_in_force().where([])):
         again = graph_for(snapshot.version, zones)
