@@ -11,6 +11,7 @@ const REASONS = {
   no_path: t("No way along the network leads there."),
   inside_zone: t("It stands inside a no-fly zone."),
   beyond_range: t("It is out of range."),
+  beyond_energy: t("No battery lasts for the way there and back."),
   too_far_from_network: t("It is too far from the network."),
   above_height_limit: t("It is higher than may be flown."),
   asset_gone: t("It is no longer in the data."),
@@ -96,7 +97,7 @@ const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
 
-const LEFT_TO_THE_SEARCH = ["beyond_range", "most_targets"]; // others no plan reaches
+const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
 
 /** How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
  *
