@@ -10,26 +10,13 @@ from numba import njit
 from inspection.graph.condensed import FloatArray, NumberArray
 from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.legs import NO_BENDS, Attachment, Attachments, DirectLeg, NoWay, bends_of, joined
+from inspection.graph.legs import Attachment, Attachments, DirectLeg, NoWay, bends_of, joined
 from inspection.graph.route_index import RouteIndex, route_index
 
 # What `Travel.way` holds in place of an entry: there is no way, or the way is the direct leg, or it stays within one chain.
 NO_WAY = -1
 DIRECT = -2
 ALONG_CHAIN = -3  # minus twice the number of the leg
-BEND = -1  # in place of a node
-
-
-@dataclass(frozen=True, eq=False)
-class Passed:
-    """What several ways lead over, one way after another: way w has the places first[w] up to but without first[w + 1], (w + 1,).
-
-    position (n, 2) lon, lat [deg]; node (n,), BEND for a bend of a leg.
-    """
-
-    position: FloatArray
-    node: IntArray
-    first: IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,33 +55,6 @@ class Travel:
             raise NoWay(legs.tolist())
         nodes, first = _paths(ways, self.leg_node, self.entry_leg, self.entry_label, *self.index.path_arrays)
         return nodes, first
-
-    def passed(self, legs: IntArray, position: FloatArray) -> Passed:
-        """The nodes of `paths` with the bends of legs in between; position is the graph's. Raises NoWay as `path`."""
-        node, first = self.paths(legs)
-        if not (self.leg_bends or self.direct_bends):
-            return Passed(position[node], node, first)
-        places: list[FloatArray] = []
-        nodes: list[IntArray] = []
-        counts = [0]
-        for way, (source, sink) in enumerate(legs.tolist()):
-            own = node[first[way] : first[way + 1]]
-            out, back = self._bends_of(source, sink)
-            places += [out, position[own], back[::-1]]
-            nodes += [np.full(len(out), BEND, dtype=np.int64), own, np.full(len(back), BEND, dtype=np.int64)]
-            counts.append(len(out) + len(own) + len(back))
-        return Passed(np.concatenate(places), np.concatenate(nodes), np.cumsum(counts))
-
-    def _bends_of(self, source: int, sink: int) -> tuple[FloatArray, FloatArray]:
-        """Of the leg out, and of the leg to the sink from the sink on."""
-        out, back = self.way[source, sink].tolist()
-        if out == DIRECT:
-            return self.direct_bends.get((source, sink), NO_BENDS), NO_BENDS
-        if not self.leg_bends:
-            return NO_BENDS, NO_BENDS
-        if out <= ALONG_CHAIN:
-            return self.leg_bends[(ALONG_CHAIN - out) // 2], self.leg_bends[(ALONG_CHAIN - back) // 2]
-        return self.leg_bends[int(self.entry_leg[out]) // 2], self.leg_bends[int(self.entry_leg[back]) // 2]
 
 
 def travel_between(

@@ -132,9 +132,9 @@ def _way_to_towers(
     for number, place in enumerate(places.tolist()):
         agl_m = float(waypoints.points.agl_m[place])
         density = conditions.air_density(None if waypoints.amsl_m is None else float(waypoints.amsl_m[place]))
-        wind = conditions.wind_at(agl_m)
-        for way, rise_m in ((down, -rules.clearance_m), (up, rules.clearance_m)):
-            seconds, joules = leg_taken(0.0, 0.0, 0.0, rise_m, *wind, density, own, table)
+        low_m = max(agl_m - rules.clearance_m, 0.0)
+        for way, start_m, end_m in ((down, agl_m, low_m), (up, low_m, agl_m)):
+            seconds, joules = leg_taken(0.0, 0.0, 0.0, start_m, end_m, end_m - start_m, conditions.wind_table, density, own, table)
             way[number] = seconds, joules / J_PER_WH
     return down, up
 

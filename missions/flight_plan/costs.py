@@ -17,7 +17,7 @@ from inspection.geodesy.short_vector import short_vector_m
 from inspection.graph.along_ways import chain_arrays
 from inspection.graph.condensed import NumberArray
 from inspection.graph.inspection_graph import InspectionGraph
-from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
+from missions.flight_plan.conditions import Conditions, air_density
 from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, leg_taken
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.ways_taken import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
@@ -222,20 +222,17 @@ def _at_visits(
         low_m = min(level_m, transit_m)
         known_m = ground_m[uavs + visit]
         density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, temperature_c)
-        east_mps, north_mps = wind_in_table(wind, level_m)
-        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = hold_taken(flown[1, visit], east_mps, north_mps, density, own, table)
+        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = hold_taken(flown[1, visit], level_m, wind, density, own, table)
         for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
             east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
             length_m = math.hypot(east, north)
             if length_m > 0.0:
-                along = leg_taken(length_m, east / length_m, north / length_m, 0.0, east_mps, north_mps, density, own, table)
+                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, wind, density, own, table)
                 parts[0, ALONG, visit] += along[0]
                 parts[1, ALONG, visit] += along[1]
-        east_mps, north_mps = wind_in_table(wind, 0.5 * (low_m + transit_m))
-        down = leg_taken(0.0, 0.0, 0.0, low_m - transit_m, east_mps, north_mps, density, own, table)
-        up = leg_taken(0.0, 0.0, 0.0, transit_m - low_m, east_mps, north_mps, density, own, table)
-        east_mps, north_mps = wind_in_table(wind, 0.5 * level_m)
-        landing = leg_taken(0.0, 0.0, 0.0, -level_m, east_mps, north_mps, density, own, table)
+        down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
+        up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
+        landing = leg_taken(0.0, 0.0, 0.0, level_m, 0.0, -level_m, wind, density, own, table)
         for part in range(2):
             parts[part, SERVICE, visit] += down[part]
             parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part]
@@ -244,9 +241,8 @@ def _at_visits(
         if not math.isnan(ground_m[uav]):
             highest_m = max(highest_m, ground_m[uav])
     density = air_density(highest_m, temperature_c)
-    east_mps, north_mps = wind_in_table(wind, 0.5 * transit_m)
-    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, transit_m, east_mps, north_mps, density, own, table)
-    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, -transit_m, east_mps, north_mps, density, own, table)
+    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
+    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
     parts[1] /= J_PER_WH
     columns[1] /= J_PER_WH
     return parts, columns

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 import shapely
@@ -197,7 +196,7 @@ class _Air:
     """What climbing, flying and staying take in the wind."""
 
     def __init__(self, performance: Performance, cruise_speed_mps: float, conditions: Conditions, rules: FlightRules) -> None:
-        self.conditions = conditions
+        self.wind, self.temperature_c = conditions.wind_table, float(conditions.temperature_c)
         self.own = speeds(performance, cruise_speed_mps, rules)
         self.table = table_of(performance, self.own.climb_mps)
 
@@ -208,21 +207,19 @@ class _Air:
         here_m, agl_m = _amsl_m(one, waypoints), float(waypoints.points.agl_m[one.waypoint])
         level_agl_m, down_m = level_m - float(one.ground_m[0]), level_m - float(one.ground_m[-1])
         is_known = waypoints.amsl_m is not None
-        density = air_density(here_m if is_known else 0.0, self.conditions.temperature_c)
-        up = leg_taken(
-            0.0, 0.0, 0.0, level_m - here_m, *self.conditions.wind_at(0.5 * (agl_m + level_agl_m)), density, self.own, self.table
-        )
-        stay = hold_taken(stays_s, *self.conditions.wind_at(agl_m), density, self.own, self.table)
-        density = air_density(level_m if one.is_known else 0.0, self.conditions.temperature_c)
+        density = air_density(here_m if is_known else 0.0, self.temperature_c)
+        up = leg_taken(0.0, 0.0, 0.0, agl_m, level_agl_m, level_m - here_m, self.wind, density, self.own, self.table)
+        stay = hold_taken(stays_s, agl_m, self.wind, density, self.own, self.table)
+        density = air_density(level_m if one.is_known else 0.0, self.temperature_c)
         # The ground under it rises and falls, so that one of the winds between its least and its greatest height may be met.
         across = max(
             (
-                leg_taken(one.length_m, one.east, one.north, 0.0, *self.conditions.wind_at(height_m), density, self.own, self.table)
+                leg_taken(one.length_m, one.east, one.north, height_m, height_m, 0.0, self.wind, density, self.own, self.table)
                 for height_m in (level_m - float(one.ground_m.min()), level_m - float(one.ground_m.max()))
             ),
             key=lambda found: found[1] if len(self.table) else found[0],
         )
-        down = leg_taken(0.0, 0.0, 0.0, -down_m, *self.conditions.wind_at(0.5 * down_m), density, self.own, self.table)
+        down = leg_taken(0.0, 0.0, 0.0, down_m, 0.0, -down_m, self.wind, density, self.own, self.table)
         sums = np.cumsum([np.add(stay, up), across, down], axis=0)
         return [(float(seconds), float(joules)) for seconds, joules in sums]
 
@@ -241,23 +238,3 @@ def _flown(one: _Return, waypoints: Waypoints, level_m: float, start_s: float | 
         return FlownRoute(position, agl_m, amsl_m, lands=True)
     arrival_s = start_s + np.array([0.0, seconds[0], seconds[0], seconds[1], seconds[1]])
     return FlownRoute(position, agl_m, amsl_m, arrival_s=arrival_s, departs_s=start_s, ends_s=start_s + seconds[2], lands=True)
-
-
-def failed_returns_json(plan: LostLinkPlan, failed: Sequence[FailedReturn]) -> dict[str, Any]:
-    """What is done, and from where it would go wrong; what does not belong to a reason is null."""
-    return {
-        "behaviour": plan.behaviour.value,
-        "hold_s": plan.hold_s if plan.behaviour is LostLink.HOLD else None,
-        "rally_points": [[point.lon, point.lat] for point in plan.rally_points],
-        "failed": [
-            {
-                "waypoint": one.waypoint,
-                "rally_point": one.haven - 1 if one.haven else None,
-                "reason": one.trouble.value,
-                "missing_wh": None if one.missing_wh is None else round(one.missing_wh, 2),
-                "zone": one.zone,
-                "over_m": None if one.over_m is None else round(one.over_m, 1),
-            }
-            for one in failed
-        ],
-    }

@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.short_vector import short_vector_m
-from missions.flight_plan.conditions import air_density, wind_in_table
+from missions.flight_plan.conditions import air_density
 from missions.flight_plan.leg_taken import Speeds, hold_taken, leg_taken
 from missions.flight_plan.ways_taken import Air
 
@@ -60,11 +60,10 @@ def _both_ways(
         if straight_m > 0.0:
             east, north = east / straight_m, north / straight_m
         rise_m = end_agl_m[leg] - start_agl_m[leg]
-        east_mps, north_mps = wind_in_table(wind, 0.5 * (start_agl_m[leg] + end_agl_m[leg]))
         for way in range(2):
             sign = 1.0 - 2.0 * way
             taken[leg, way, 0], taken[leg, way, 1] = leg_taken(
-                length_m[leg], sign * east, sign * north, sign * rise_m, east_mps, north_mps, density, own, table
+                length_m[leg], sign * east, sign * north, start_agl_m[leg], end_agl_m[leg], sign * rise_m, wind, density, own, table
             )
     return taken
 
@@ -75,21 +74,19 @@ def _at_nodes(
 ) -> tuple[FloatArray, FloatArray]:
     taken, columns = np.empty((len(level_m), 3, 2)), np.empty((2, 2))
     density = air_density(0.0, temperature_c)
-    east_mps, north_mps = wind_in_table(wind, 0.5 * transit_m)
-    columns[0, 0], columns[0, 1] = leg_taken(0.0, 0.0, 0.0, transit_m, east_mps, north_mps, density, own, table)
-    columns[1, 0], columns[1, 1] = leg_taken(0.0, 0.0, 0.0, -transit_m, east_mps, north_mps, density, own, table)
+    columns[0, 0], columns[0, 1] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
+    columns[1, 0], columns[1, 1] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
     for node in range(len(level_m)):
         level = level_m[node]
         if node > 0 and level == level_m[node - 1] and hold_s[node] == hold_s[node - 1]:
             taken[node] = taken[node - 1]
             continue
         low_m = min(level, transit_m)
-        east_mps, north_mps = wind_in_table(wind, level)
-        held_s, held_j = hold_taken(hold_s[node], east_mps, north_mps, density, own, table)
-        east_mps, north_mps = wind_in_table(wind, 0.5 * (low_m + transit_m))
-        down_s, down_j = leg_taken(0.0, 0.0, 0.0, low_m - transit_m, east_mps, north_mps, density, own, table)
+        held_s, held_j = hold_taken(hold_s[node], level, wind, density, own, table)
+        down_s, down_j = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
         taken[node, 0, 0], taken[node, 0, 1] = held_s + down_s, held_j + down_j
-        taken[node, 1, 0], taken[node, 1, 1] = leg_taken(0.0, 0.0, 0.0, transit_m - low_m, east_mps, north_mps, density, own, table)
-        east_mps, north_mps = wind_in_table(wind, 0.5 * level)
-        taken[node, 2, 0], taken[node, 2, 1] = leg_taken(0.0, 0.0, 0.0, -level, east_mps, north_mps, density, own, table)
+        up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
+        landing = leg_taken(0.0, 0.0, 0.0, level, 0.0, -level, wind, density, own, table)
+        taken[node, 1, 0], taken[node, 1, 1] = up
+        taken[node, 2, 0], taken[node, 2, 1] = landing
     return taken, columns

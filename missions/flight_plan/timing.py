@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy.short_vector import short_vector_m
 from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
-from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, leg_taken, speeds, table_of
+from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, is_closed, speeds, table_of, taken_in_wind
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.rules import FlightRules
@@ -112,16 +112,14 @@ def _timing(
     arrival_s, used_j = np.empty(count), np.empty(count)
     now_s = now_j = 0.0
     density_amsl_m, density = 0.0, air_density(0.0, temperature_c)
-    wind_agl_m, wind_here = -1.0, (0.0, 0.0)
+    wind_agl_m, wind_here = (0.0, 0.0), wind_in_table(wind, 0.0)
     for place in range(count + 1 if lands and count else count):
         # The leg to this waypoint; the one after the last goes down to the ground.
         length_m = east = north = 0.0
-        if place == 0:
-            middle_m, rise_m = 0.5 * agl_m[0], agl_m[0]
-        elif place == count:
-            middle_m, rise_m = 0.5 * agl_m[count - 1], -agl_m[count - 1]
-        else:
-            middle_m, rise_m = 0.5 * (agl_m[place - 1] + agl_m[place]), relative_m[place] - relative_m[place - 1]
+        before_m, after_m = agl_m[place - 1] if place > 0 else 0.0, agl_m[place] if place < count else 0.0
+        rise_m = after_m - before_m
+        if 0 < place < count:
+            rise_m = relative_m[place] - relative_m[place - 1]
             east, north = short_vector_m(position[place - 1, 0], position[place - 1, 1], position[place, 0], position[place, 1])
             length_m = math.sqrt(east * east + north * north)
             if length_m > 0.0:
@@ -129,14 +127,17 @@ def _timing(
         if len(table) > 0 and len(amsl_m) > 0 and abs(amsl_m[min(place, count - 1)] - density_amsl_m) > SAME_AIR_M:
             density_amsl_m = amsl_m[min(place, count - 1)]
             density = air_density(density_amsl_m, temperature_c)
-        if middle_m != wind_agl_m:
-            wind_agl_m, wind_here = middle_m, wind_in_table(wind, middle_m)
-        seconds, joules = leg_taken(length_m, east, north, rise_m, wind_here[0], wind_here[1], density, own, table)
+        if before_m != wind_agl_m[0] or after_m != wind_agl_m[1]:
+            wind_agl_m, wind_here = (before_m, after_m), wind_in_table(wind, 0.5 * (before_m + after_m))
+        # As leg_taken: most legs are level, and in the wind of the leg before.
+        seconds, joules = taken_in_wind(length_m, east, north, rise_m, wind_here[0], wind_here[1], density, own, table)
+        if before_m != after_m and is_closed(length_m > 0.0, east, north, before_m, after_m, wind, own):
+            seconds = joules = np.inf
         now_s, now_j = now_s + seconds, now_j + joules
         if place < count:
             arrival_s[place], used_j[place] = now_s, now_j
             if hold_s[place] > 0.0:
-                seconds, joules = hold_taken(hold_s[place], *wind_in_table(wind, agl_m[place]), density, own, table)
+                seconds, joules = hold_taken(hold_s[place], agl_m[place], wind, density, own, table)
                 now_s, now_j = now_s + seconds, now_j + joules
         if math.isinf(now_s):
             return arrival_s, used_j, now_s, now_j, min(place, count - 1)

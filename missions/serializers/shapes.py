@@ -3,6 +3,7 @@
 from rest_framework import serializers
 
 from missions.fields import PositionField
+from missions.flight_plan.lost_link import LostLink, Trouble
 from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
 from missions.routing.problem import TaskKind
 
@@ -148,6 +149,28 @@ class SeparationSerializer(serializers.Serializer):
     unresolved = serializers.ListField(child=serializers.DictField(), help_text="conflicts that could not be solved")
 
 
+class FailedReturnSerializer(serializers.Serializer):
+    """A waypoint from which a UAV that has lost its link cannot return as wished."""
+
+    route = serializers.IntegerField(help_text="index of the UAV")
+    waypoint = serializers.IntegerField(help_text="its place in the route")
+    haven = serializers.IntegerField(help_text="where it would return to: 0 its start, n the n-th rally point")
+    trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
+    missing_wh = serializers.FloatField(allow_null=True)
+    zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
+    over_m = serializers.FloatField(allow_null=True, help_text="by how much it would fly above the limit")
+
+
+class LostLinkOutputSerializer(serializers.Serializer):
+    behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
+    rally_points = serializers.ListField(child=PositionField())
+    hold_s = serializers.FloatField()
+
+
+class LostLinkCheckSerializer(LostLinkOutputSerializer):
+    failed = FailedReturnSerializer(many=True)
+
+
 class PlanSerializer(QualitySerializer):
     objective = serializers.ChoiceField(choices=Objective.choices)
     return_to_start = serializers.BooleanField()
@@ -158,6 +181,7 @@ class PlanSerializer(QualitySerializer):
     departs_at = serializers.DateTimeField(allow_null=True, help_text="null: the plan keeps clear of zones at any time")
     conditions = ConditionsOutputSerializer()
     separation = SeparationSerializer(allow_null=True, help_text="null in plans of before")
+    lost_link = LostLinkCheckSerializer(allow_null=True, help_text="null in plans of before")
     graph_version = serializers.IntegerField()
     ground_revision = serializers.IntegerField()
     flat_ground_assumed = serializers.BooleanField()
@@ -280,6 +304,7 @@ class MissionSerializer(serializers.Serializer):
     departs_at = serializers.DateTimeField(allow_null=True, help_text="planned take-off; null: at any time")
     conditions = ConditionsOutputSerializer()
     charging_w = serializers.FloatField(allow_null=True)
+    lost_link = LostLinkOutputSerializer()
     revision = serializers.IntegerField(help_text="the ETag")
     created_at = serializers.DateTimeField()
     updated_at = serializers.DateTimeField()

@@ -7,6 +7,7 @@ from datetime import datetime
 from django.conf import settings
 
 from inspection.zones.reach import ZoneTable
+from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.separation import Separation, TimedRoute, keep_apart, raised_agl_m, timed_route
 from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
 from missions.flight_plan.waypoints import RoutePoints, Waypoints
@@ -73,14 +74,17 @@ def _raised(
         None if amsl_m is None else amsl_m + more_m,
         agl_m if route.waypoints.relative_m is points.agl_m else route.waypoints.relative_m + more_m,
     )
-    clock = timing_of_route(
-        waypoints,
-        cruise_speed_mps=asked.cruise_speed_mps,
-        performance=asked.performance,
-        conditions=request.conditions,
-        lands=lands,
-        rules=flight,
-    )
+    try:
+        clock = timing_of_route(
+            waypoints,
+            cruise_speed_mps=asked.cruise_speed_mps,
+            performance=asked.performance,
+            conditions=request.conditions,
+            lands=lands,
+            rules=flight,
+        )
+    except NoHeadway:
+        return None
     usable_wh = asked.performance.usable_wh
     if usable_wh is not None and max(wh_of_sorties(clock), default=0.0) > usable_wh:
         return None

@@ -8,6 +8,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.passed import passed_on
 from missions.flight_plan.heights import FloatArray
 from missions.routing.problem import End, Objective, Problem, Routes
 from missions.routing.progress import Progress
@@ -78,7 +79,7 @@ class Sketch:
 
     def _line(self, uav: int, route: Sequence[int]) -> FloatArray:
         end = self.problem.uavs[uav].end
-        ways = self.ways.travel.passed(np.array(self.ways.of_route(uav, route, end), dtype=np.int64), self.graph.position)
+        ways = passed_on(self.ways.travel, np.array(self.ways.of_route(uav, route, end), dtype=np.int64), self.graph.position)
         legs = np.split(ways.position, ways.first[1:-1])
         parts = [np.array([self.starts[uav]])]
         for leg, visit in zip(legs, route, strict=False):

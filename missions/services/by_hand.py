@@ -11,7 +11,7 @@ from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.utils.translation import gettext as _
 
-from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.selectors import ground_heights_m, has_terrain
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
@@ -32,6 +32,7 @@ from workspace.models import User
 MOVED_M = 0.1  # less is rounding
 HIGHER_M = 0.05
 MOST_WAYPOINTS = 5_000
+LONGEST_M = 1_000_000.0
 
 
 @dataclass(frozen=True)
@@ -91,6 +92,8 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
     fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
     if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
         return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
+    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": f"{LONGEST_M / 1_000:.0f}"}}
     faults: dict[str, str] = {}
     flight = settings.FLIGHT_RULES
     for number, point in enumerate(points):

@@ -5,13 +5,15 @@ from collections.abc import Mapping, Sequence
 from itertools import accumulate, chain, pairwise
 
 import numpy as np
+from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.inspection_graph import NodeKind
-from inspection.graph.ways import BEND
+from inspection.graph.passed import BEND, passed_on
 from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
+from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.sorties import joined_sorties, timing_of_route
 from missions.flight_plan.timing import Timing
@@ -23,7 +25,7 @@ from missions.services.assignment import route_end
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import Scene
-from missions.services.requests import BaseRequest, PlanRequest
+from missions.services.requests import BaseRequest, InvalidRequest, PlanRequest
 
 
 class Drawing:
@@ -57,7 +59,7 @@ class Drawing:
         flying = [(start, uav, order) for start, (uav, orders) in enumerate(zip(uavs, sorties, strict=True)) for order in orders]
         ways = [self.ways.of_route(start, order, route_end(self.request, uav)) for start, uav, order in flying]
         flights: dict[int, list[tuple[Sequence[int], PassedNodes]]] = {}
-        for (_, uav, order), passed in zip(flying, self._passed(ways), strict=True):
+        for (_start, uav, order), passed in zip(flying, self._passed(ways), strict=True):
             flights.setdefault(uav, []).append((order, passed))
         return {uav: self._route(uav, own, ground) for uav, own in flights.items()}
 
@@ -73,16 +75,19 @@ class Drawing:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)
         drawn = [self._flight(uav, order, passed, ground) for order, passed in flights]
-        waypoints = drawn[0][0] if len(drawn) == 1 else joined_sorties([own for own, _, _ in drawn], flight.turnaround_s)
+        waypoints = drawn[0][0] if len(drawn) == 1 else joined_sorties([own for own, _length_m, _is_flat in drawn], flight.turnaround_s)
         base = self._base(action, flights[-1][0])
-        clock = timing_of_route(
-            waypoints,
-            cruise_speed_mps=asked.cruise_speed_mps,
-            performance=asked.performance,
-            conditions=self.request.conditions,
-            lands=action is not EndAction.HOVER,
-            rules=flight,
-        )
+        try:
+            clock = timing_of_route(
+                waypoints,
+                cruise_speed_mps=asked.cruise_speed_mps,
+                performance=asked.performance,
+                conditions=self.request.conditions,
+                lands=action is not EndAction.HOVER,
+                rules=flight,
+            )
+        except NoHeadway as error:  # over hills the wind of another height is met than was counted with
+            raise InvalidRequest({"conditions": _("The wind is too strong for %(uav)s on its route.") % {"uav": asked.name}}) from error
         stops: tuple[ChargingStop, ...] = ()
         lacks_wh = 0.0
         if self.request.charging_w is not None and len(drawn) == 1:
@@ -92,14 +97,14 @@ class Drawing:
             except CannotCharge as error:
                 lacks_wh = error.missing_wh
         return PlannedRoute(
-            targets=tuple(self.places[self.visits[visit].target].target for order, _ in flights for visit in order),
+            targets=tuple(self.places[self.visits[visit].target].target for order, _passed in flights for visit in order),
             waypoints=waypoints,
             line=line_of(waypoints.points),
-            length_m=sum(length_m for _, length_m, _ in drawn),
+            length_m=sum(length_m for _waypoints, length_m, _is_flat in drawn),
             duration_s=clock.total_s,
             end_action=action,
             base=None if base is None else base.name,
-            is_flat=any(is_flat for _, _, is_flat in drawn),
+            is_flat=any(is_flat for _waypoints, _length_m, is_flat in drawn),
             timing=clock,
             charging=stops,
             lacks_wh=lacks_wh,
@@ -148,7 +153,7 @@ class Drawing:
         if not ways:
             return []
         graph, flight = self.scene.graph, self.scene.flight
-        told = self.ways.travel.passed(np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
+        told = passed_on(self.ways.travel, np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
         is_node = told.node != BEND
         nodes = told.node[is_node]
         asset, agl_m = np.full(len(told.node), NONE, dtype=np.int64), np.full(len(told.node), flight.transit_agl_m)

@@ -112,6 +112,7 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
         locked.longest_route_m = plan["longest_route_m"]
         locked.total_energy_wh = plan.get("total_energy_wh")
         locked.separation = plan.get("separation")
+        locked.lost_link_check = plan.get("lost_link")
         locked.plan_warnings = plan["warnings"]
         locked.plan_quality = {name: plan.get(name) for name in QUALITY}
         locked.revision += 1

@@ -19,11 +19,14 @@ from missions.services.last_plan import summary_of_plan
 from missions.services.places import places_of
 from missions.services.requests import (
     LockRequest,
+    LostLinkRequest,
     PlanRequest,
     TargetRequest,
     UavRequest,
     lock_from_json,
     lock_to_json,
+    lost_link_from_json,
+    lost_link_to_json,
     moment_to_json,
     priority_from_json,
     priority_to_json,
@@ -73,6 +76,7 @@ class MissionChange:
     departure: Departure | None = None
     conditions: Conditions | None = None
     charging: Charging | None = None
+    lost_link: LostLinkRequest | None = None
 
     @property
     def drops_plan(self) -> bool:
@@ -94,6 +98,7 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
             departs_at=request.departs_at,
             conditions=conditions_to_json(request.conditions),
             charging_w=request.charging_w,
+            lost_link=lost_link_to_json(request.lost_link),
         )
         _store_uavs(mission, request.uavs)
         _store_targets(mission, targets)
@@ -125,6 +130,8 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             locked.conditions = conditions_to_json(change.conditions)
         if change.charging is not None:
             locked.charging_w = change.charging.power_w
+        if change.lost_link is not None:
+            locked.lost_link = lost_link_to_json(change.lost_link)
         if change.locks is not None:
             locked.locks = [lock_to_json(lock) for lock in change.locks]
         elif targets is not None:
@@ -199,7 +206,7 @@ def drop_plan(*, mission: Mission) -> None:
     mission.state = MissionState.DRAFT
     mission.planned_at = mission.graph_version = mission.ground_revision = mission.flat_ground_assumed = None
     mission.total_length_m = mission.longest_route_m = mission.total_energy_wh = None
-    mission.separation = None
+    mission.separation = mission.lost_link_check = None
     mission.plan_quality = None
     mission.plan_warnings = []
 
@@ -240,6 +247,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
         departs_at=mission.departs_at,
         conditions=conditions_from_json(mission.conditions),
         charging_w=mission.charging_w,
+        lost_link=lost_link_from_json(mission.lost_link),
     )
 
 
@@ -306,6 +314,7 @@ def _summary(mission: Mission) -> dict[str, Any]:
         "departs_at": moment_to_json(mission.departs_at),
         "conditions": mission.conditions,
         "charging_w": mission.charging_w,
+        "lost_link": mission.lost_link,
         "locks": len(mission.locks),
         "total_length_m": mission.total_length_m,
         "graph_version": mission.graph_version,

@@ -54,6 +54,7 @@ def plan_to_json(
     has_terrain: bool,
     quality: Mapping[str, Any],
     separation: Mapping[str, Any],
+    lost_link: Mapping[str, Any],
     as_text: bool = False,
 ) -> dict[str, Any]:
     """as_text: lines and waypoints are ready JSON, which orjson alone takes; it writes the same bytes as of plain lists."""
@@ -71,6 +72,7 @@ def plan_to_json(
         "departs_at": moment_to_json(request.departs_at),
         "conditions": conditions_to_json(request.conditions),
         "separation": separation,
+        "lost_link": lost_link,
         "graph_version": graph_version,
         "ground_revision": ground_revision,
         "flat_ground_assumed": flat_ground_assumed,

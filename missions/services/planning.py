@@ -18,6 +18,7 @@ from missions.services.attempts import Attempt, attempt
 from missions.services.battery import battery_overruns, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import keys_of_zones_met
+from missions.services.lost_link import lost_link_check
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -26,6 +27,7 @@ from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
+MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
 MOST_TRIES = 6  # with more zones each time
 
 
@@ -47,6 +49,7 @@ class Finished:
     found: Attempt
     routes: Sequence[PlannedRoute]
     separation: Separation
+    others: OtherFlights
     has_terrain: bool
     met: frozenset[int]
     worth: Worth
@@ -64,7 +67,6 @@ class _Planner:
     on_progress: OnPlanProgress
     seed: int
     search_s: float
-    others: OtherFlights
 
     def best_on(self, ground: PlanningGround) -> tuple[Finished, Finished]:
         """The best plan that meets no zone of this ground, and the plan on the fewest zones, which might; often the same.
@@ -124,9 +126,21 @@ class _Planner:
                 found, alone = without_overruns(self.request, found, alone, over)
             for uav, too_much in over.items():
                 usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if number < MOST_TRIES - 2 else 0.0
-        routes, separation = routes_apart(self.request, alone, choice.table, self.others.routes)
+        routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        return Finished(found, routes, separation, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
+        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
+
+    def _apart(self, alone: Sequence[PlannedRoute], choice: ZoneChoice) -> tuple[list[PlannedRoute], Separation, OtherFlights]:
+        """A route that is put off until after the flights that were looked up may meet those that come later: these are looked up, too."""
+        window_s = settings.FLIGHT_RULES.longest_flight_s
+        for _ in range(MOST_WINDOWS):
+            others = _others_in_the_air(self.request, window_s)
+            routes, separation = routes_apart(self.request, alone, choice.table, others.routes)
+            ends_s = max((route.departs_s + route.duration_s for route in routes), default=0.0)
+            if ends_s <= window_s:
+                break
+            window_s = 2.0 * ends_s
+        return routes, separation, others
 
 
 def make_plan(
@@ -145,8 +159,7 @@ def make_plan(
     on_progress(PlanProgress(0.0, "Looking up the targets"))
     read = planning_read(whole_assets(request.targets))
     places, gone = places_of(request.targets, read.points)
-    others = _others_in_the_air(request)
-    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s, others)
+    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s)
     ground = read.ground()
     for _ in range(MOST_GROUNDS):
         terrain = terrain_at(ground.edition)  # before any height is read
@@ -167,19 +180,19 @@ def make_plan(
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
-        separation=separation_json(plan.separation, others.untimed),
+        separation=separation_json(plan.separation, plan.others.untimed),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.whole_graph, has_terrain=plan.has_terrain),
         quality=_quality(request, plan, freest),
         as_text=as_text,
     )
 
 
-def _others_in_the_air(request: PlanRequest) -> OtherFlights:
+def _others_in_the_air(request: PlanRequest, window_s: float) -> OtherFlights:
     """A plan for any time cannot be kept apart from flights of a certain one; it gets a departure before it is flown."""
     if request.departs_at is None or request.organisation is None:
         return OtherFlights()
     from_s = request.departs_at.timestamp()
-    to_s = from_s + settings.FLIGHT_RULES.longest_flight_s
-    return flights_at_the_same_time(request.organisation, from_s, to_s, but=request.mission)
+    return flights_at_the_same_time(request.organisation, from_s, from_s + window_s, but=request.mission)
 
 
 def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str, object]:

@@ -6,6 +6,7 @@ from typing import Any
 
 from inspection.geodesy import LonLat
 from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
+from missions.flight_plan.lost_link import LostLink
 from missions.flight_plan.performance import Performance, performance_from_json, performance_to_json
 from missions.models import EndAction
 from missions.routing.problem import Objective, Priority, Task, TaskKind
@@ -63,6 +64,18 @@ class BaseRequest:
 
 
 @dataclass(frozen=True)
+class LostLinkRequest:
+    """What UAVs do when their link is lost for good; hold_s before they return, only with hold."""
+
+    behaviour: LostLink = LostLink.GO_ON
+    rally_points: tuple[LonLat, ...] = ()
+    hold_s: float = 0.0
+
+
+GO_ON = LostLinkRequest()
+
+
+@dataclass(frozen=True)
 class PlanRequest:
     """`bases` are those of the organisation when the plan was asked for; only filled in where a UAV is to land at one.
 
@@ -79,6 +92,7 @@ class PlanRequest:
     departs_at: datetime | None = None
     conditions: Conditions = CALM
     charging_w: float | None = None
+    lost_link: LostLinkRequest = GO_ON
     organisation: int | None = None
     mission: str | None = None
 
@@ -117,6 +131,22 @@ def lock_to_json(lock: LockRequest) -> dict[str, Any]:
 
 def lock_from_json(value: dict[str, Any]) -> LockRequest:
     return LockRequest(value["uav"], tuple(value["targets"]), value["at_start"], value["at_end"])
+
+
+def lost_link_to_json(lost_link: LostLinkRequest) -> dict[str, Any]:
+    return {
+        "behaviour": lost_link.behaviour.value,
+        "rally_points": [list(at) for at in lost_link.rally_points],
+        "hold_s": lost_link.hold_s,
+    }
+
+
+def lost_link_from_json(value: dict[str, Any]) -> LostLinkRequest:
+    return LostLinkRequest(
+        LostLink(value.get("behaviour", LostLink.GO_ON)),
+        tuple(LonLat(*at) for at in value.get("rally_points", ())),
+        float(value.get("hold_s", 0.0)),
+    )
 
 
 def moment_to_json(moment: datetime | None) -> str | None:
@@ -163,6 +193,7 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
         "departs_at": moment_to_json(request.departs_at),
         "conditions": conditions_to_json(request.conditions),
         "charging_w": request.charging_w,
+        "lost_link": lost_link_to_json(request.lost_link),
         "organisation": request.organisation,
         "mission": request.mission,
     }
@@ -205,6 +236,7 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
         departs_at=moment_from_json(value.get("departs_at")),
         conditions=conditions_from_json(value.get("conditions") or {}),
         charging_w=value.get("charging_w"),
+        lost_link=lost_link_from_json(value.get("lost_link") or {}),
         organisation=value.get("organisation"),
         mission=value.get("mission"),
     )

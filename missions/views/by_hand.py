@@ -17,6 +17,9 @@ from workspace.throttling import ScopedRate
 
 
 class RouteWaypoints(APIView):
+    throttle_classes = [ScopedRate]
+    throttle_scope = "plans"
+
     @extend_schema(
         operation_id="change_route_by_hand",
         summary="Fly a route over other waypoints",

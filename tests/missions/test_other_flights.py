@@ -96,3 +96,22 @@ def test_a_mission_that_lands_is_flown_after_an_approved_one_over_the_same_line(
     found = flights_at_the_same_time(first.organisation_id, FROM_S, FROM_S + 3_600.0)
     assert {flight.mission for flight in found.routes} == {str(first.pk), str(second.pk)}
     assert conflicts(found.routes, rules=SeparationRules()) == ()
+
+
+def test_a_mission_that_is_put_off_by_hours_is_kept_apart_from_those_that_fly_then(settings):
+    ground = worlds.world()
+    hovering = approved(ground, end_action=EndAction.HOVER)
+    later_at = DEPARTURE + timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
+    later = approved(ground, departs_at=later_at)
+    put_off = approved(ground)
+    assert hovering.pk != later.pk
+    delays = put_off.separation["delays"]
+    assert delays[0] > settings.FLIGHT_RULES.longest_flight_s - hovering.routes.get().duration_s
+    found = flights_at_the_same_time(hovering.organisation_id, FROM_S, later_at.timestamp() + 7_200.0)
+    assert conflicts(found.routes, rules=SeparationRules()) == ()
+
+
+def test_a_mission_without_a_departure_is_named_and_never_taken_as_away():
+    mission = approved(worlds.world(), departs_at=DEPARTURE)
+    Mission.objects.filter(pk=mission.pk).update(departs_at=None)
+    assert flights_at_the_same_time(mission.organisation_id, FROM_S, FROM_S + 10.0).untimed == ((str(mission.pk), "Tern"),)

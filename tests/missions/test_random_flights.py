@@ -19,6 +19,7 @@ from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, make_plan
 from tests.inspection.terrain.tiffs import write_geotiff
+from tests.missions.clock_judge import too_near
 from tests.missions.flight_judge import Judge, applies_at, sun
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.worlds import request, uav, world, zone_around
@@ -63,11 +64,13 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
             assert judge.faults(asked, plan) == [], asked
             seen.update(item["reason"] for item in plan["unassigned"])
             seen["visited"] += sum(len(route["targets"]) for route in plan["routes"])
+            seen["put off or higher"] += any((*plan["separation"]["delays"], *plan["separation"]["layers"]))
+            seen["not kept apart"] += bool(plan["separation"]["unresolved"])
         seen["over or under a zone"] += judge.seen_beside_height
         seen["before or after its time"] += judge.seen_beside_time
     print(path.name, dict(seen))
     assert seen["visited"] > missions
-    for reason in ("inside_zone", "beyond_range", "beyond_energy", "over or under a zone", "before or after its time"):
+    for reason in ("inside_zone", "beyond_range", "beyond_energy", "put off or higher", "over or under a zone", "before or after its time"):
         assert seen[reason] > 0, reason
 
 
@@ -212,6 +215,39 @@ def test_the_judge_finds_a_false_refusal_and_a_forgotten_target() -> None:
         "target 0 is not no_path: Tern is idle and could fly there straight",
         "target 0 is not no_path: Gull is idle and could fly there straight",
     ]
+
+
+def test_the_judge_counts_seconds_and_watt_hours_for_itself() -> None:
+    here = world()
+    zone_around((10.2, 56.2), name="elsewhere")
+    wind = (WindLayer(10.0, 5.0, 250.0), WindLayer(100.0, 8.0, 300.0))
+    battery = Performance(battery_wh=IRIS_BATTERY_WH, max_airspeed_mps=IRIS_MAX_AIRSPEED_MPS)
+    asked = request(here.towers[5], here.bridge, uavs=(uav(performance=battery),), conditions=Conditions(wind, -5.0))
+    plan = make_plan(request=asked)
+    [route] = plan["routes"]
+    assert Judge().faults(asked, plan) == []
+    frugal = plan | {"routes": [route | {"energy_wh": route["energy_wh"] * 0.97}]}
+    assert [fault.split(" takes ")[0] for fault in Judge().faults(asked, frugal)] == ["Tern"]
+    hasty = plan | {"routes": [route | {"arrival_s": [0.98 * arrival_s for arrival_s in route["arrival_s"]]}]}
+    assert [fault.split(" takes ")[0] for fault in Judge().faults(asked, hasty)] == ["Tern"]
+    small = replace(asked, uavs=(uav(performance=replace(battery, battery_wh=route["energy_wh"] * 1.2)),))
+    assert any(" Wh of " in fault for fault in Judge().faults(small, plan))
+
+
+def test_the_judge_sees_uavs_that_pass_one_place_together() -> None:
+    here = world()
+    zone_around((10.2, 56.2), name="elsewhere")
+    asked = request(here.towers[5], uavs=(uav(end_action=EndAction.RETURN),))
+    plan = make_plan(request=asked)
+    [route] = plan["routes"]
+
+    def beside(later_s: float) -> list[str]:
+        late = {"departs_s": later_s, "arrival_s": [arrival_s + later_s for arrival_s in route["arrival_s"]]}
+        return list(too_near(plan | {"routes": [route, route | {"uav": "Gull"} | late]}))
+
+    assert beside(0.0)
+    assert beside(40.0)
+    assert beside(2 * route["duration_s"]) == []
 
 
 def test_the_judge_reads_schedules_by_the_minute() -> None:

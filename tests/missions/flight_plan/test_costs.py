@@ -279,3 +279,22 @@ def test_all_pairs_have_numbers() -> None:
     world = World(TOWERS, [at(0, 0), at(10, 5)], [([at(500, 20)], 20.0, 0.0), ([at(1500, 20)], 90.0, 0.0)], [at(100, 100)])
     costs = world.costs([IRIS, HEAVY], [BASE, RETURN], WEST_WIND)
     assert all(np.isfinite(part).all() for part in chain(vars(costs.seconds).values(), vars(costs.wh).values()))
+
+
+@settings(deadline=None, max_examples=60)
+@given(worlds(), st.lists(st.tuples(st.floats(0, 16), st.floats(0, 359)), min_size=2, max_size=3), st.data())
+def test_what_is_counted_as_open_can_be_flown_when_drawn(world: World, winds: list[tuple[float, float]], data: st.DataObject) -> None:
+    """In wind that changes with height, drawing divides legs, and each part has the wind of its own height."""
+    layers = tuple(WindLayer(30.0 + 40.0 * number, speed_mps, from_deg) for number, (speed_mps, from_deg) in enumerate(winds))
+    costs = world.costs([IRIS, IRIS], [RETURN, RETURN], Conditions(layers))
+    order = list(data.draw(st.permutations(range(len(world.visits)))))
+    if np.isfinite(counted(costs, 0, order)).all():
+        assert world.drawn(0, order, IRIS, RETURN, Conditions(layers)).total_s > 0
+
+
+def test_a_jet_between_two_heights_closes_the_leg_between_them() -> None:
+    """20 m/s at 91 m, and 6 m/s from 6 m below and above it on; the leg leads from 60 to 105 m, its middle is at 82.5 m."""
+    jet = Conditions((WindLayer(60, 6, 270), WindLayer(85, 6, 270), WindLayer(91, 20, 270), WindLayer(97, 6, 270)))
+    tall = World(replace(TOWERS, node_height_m=np.array([45.0, 90.0, 45.0])), EAST.starts, EAST.visits)
+    assert np.isfinite(EAST.costs([IRIS], [RETURN], jet).seconds.first).all()
+    assert np.isinf(tall.costs([IRIS], [RETURN], jet).seconds.first).all()

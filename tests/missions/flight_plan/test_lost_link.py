@@ -16,7 +16,6 @@ from missions.flight_plan.lost_link import (
     Obstacles,
     Trouble,
     failed_returns,
-    failed_returns_json,
 )
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
@@ -147,16 +146,6 @@ def test_against_a_wind_that_is_too_strong_nobody_comes_home():
     wind = Conditions((WindLayer(60.0, 10.0, 270.0),))
     found = failed(route(0, 1, 2), performance=Performance(max_airspeed_mps=10.2), conditions=wind)
     assert [(one.waypoint, one.trouble) for one in found] == [(1, Trouble.WIND), (2, Trouble.WIND)]
-
-
-def test_the_answer_names_what_belongs_to_each_reason():
-    plan = LostLinkPlan(LostLink.HOLD, (LonLat(1.0, 2.0),), hold_s=30.0)
-    said = failed_returns_json(plan, [FailedReturn(3, 1, Trouble.BATTERY, missing_wh=1.234), FailedReturn(4, 0, Trouble.ZONE, zone=2)])
-    assert (said["behaviour"], said["hold_s"], said["rally_points"]) == ("hold", 30.0, [[1.0, 2.0]])
-    assert said["failed"] == [
-        {"waypoint": 3, "rally_point": 0, "reason": "battery", "missing_wh": 1.23, "zone": None, "over_m": None},
-        {"waypoint": 4, "rally_point": None, "reason": "zone", "missing_wh": None, "zone": 2, "over_m": None},
-    ]
 
 
 def test_a_route_without_waypoints_needs_no_way_home():
