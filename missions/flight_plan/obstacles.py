@@ -39,7 +39,7 @@ def tall_things(graph: InspectionGraph, rules: FlightRules) -> TallThings:
 
 
 def legs_too_low(points: RoutePoints, things: TallThings) -> list[tuple[int, float, float]]:
-    """Legs that pass beside a tall thing too low, in their order: leg, share of it at which that is, and the height above ground to have."""
+    """Legs that pass beside a tall thing too low, in their order: leg, where on it as a share, and the height above ground to have."""
     if not len(things.position) or len(points) < 2:
         return []
     low, high = points.position.min(axis=0) - NEAR_DEG, points.position.max(axis=0) + NEAR_DEG
@@ -61,7 +61,7 @@ def legs_too_low(points: RoutePoints, things: TallThings) -> list[tuple[int, flo
 
 
 def rising_over(points: RoutePoints, things: TallThings) -> RoutePoints:
-    """The points, and one more over each tall thing beside a leg, high enough; between two points of one target it belongs to the target."""
+    """The points, and one more over each tall thing beside a leg, high enough; between two of one target it belongs to the target."""
     low = legs_too_low(points, things)
     if not low:
         return points
