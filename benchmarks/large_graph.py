@@ -8,14 +8,15 @@ Nothing else is imported here, so that what is measured is what a web worker has
 
 import argparse
 import json
+import math
 import os
 import resource
-from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 
 TARGETS, UAVS = 4, 2
+KEY = "large"
 
 
 def planner(folder: Path) -> None:
@@ -23,15 +24,14 @@ def planner(folder: Path) -> None:
     import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
     from inspection.geodesy import LonLat  # noqa: PLC0415
     from inspection.graph.access import clear_legs  # noqa: PLC0415
-    from inspection.graph.snapshot_file import read_cache  # noqa: PLC0415
+    from inspection.graph.snapshot_file import read_cleared  # noqa: PLC0415
     from inspection.graph.ways import travel_between  # noqa: PLC0415
     from inspection.graph.zone_index import ZoneIndex  # noqa: PLC0415
 
-    content_sha256 = (folder / "content.sha256").read_text()
-    graph = read_cache(folder / "graphs", content_sha256=content_sha256, version=1, ground_revision=1)
+    zones = ZoneIndex([], [], [])
+    graph = read_cleared(folder / "graphs", key=KEY, zones=zones, version=1, ground_revision=1, tallest_m=math.inf)
     if graph is None:
         raise SystemExit("the stored graph cannot be read")
-    zones = ZoneIndex([], [], [])
     for mission in json.loads((folder / "missions.json").read_bytes()):
         places = [LonLat(lon, lat) for lat, lon in mission["uavs"]]
         places += [LonLat(*graph.position[node].tolist()) for node in mission["targets"]]
@@ -49,7 +49,7 @@ def store(folder: Path) -> None:
 
     django.setup()
     from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: PLC0415
-    from inspection.graph.snapshot_file import to_bytes, write_cache  # noqa: PLC0415
+    from inspection.graph.snapshot_file import write_cleared  # noqa: PLC0415
 
     stored = np.load(folder / "large.npz")
     nodes, edges = len(stored["lat"]), len(stored["u"])
@@ -69,10 +69,7 @@ def store(folder: Path) -> None:
         zone_id=np.zeros(0, dtype=np.int64),
         zone_name=(),
     )
-    content = to_bytes(graph)
-    content_sha256 = sha256(content).hexdigest()
-    write_cache(folder / "graphs", content, content_sha256=content_sha256, version=1)
-    (folder / "content.sha256").write_text(content_sha256)
+    write_cleared(folder / "graphs", graph, key=KEY, tallest_m=math.inf)
 
 
 def main() -> None:

@@ -10,9 +10,10 @@ import dj_database_url
 
 from config.mail import mail_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
+from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.rules import LinkingRules
 from inspection.zones.rules import ZoneRules
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
@@ -305,6 +306,7 @@ GRAPH_RULES = LinkingRules(
     crossing_m=_float("SPANWISE_CROSSING_M", LinkingRules.crossing_m),
     railway_spacing_m=_float("SPANWISE_RAILWAY_SPACING_M", LinkingRules.railway_spacing_m),
     off_network_factor=_float("SPANWISE_OFF_NETWORK_FACTOR", LinkingRules.off_network_factor),
+    detour_m=_float("SPANWISE_DETOUR_M", LinkingRules.detour_m),
     zone_clearance_m=_float("SPANWISE_ZONE_CLEARANCE_M", LinkingRules.zone_clearance_m),
 )
 ROUTING_RULES = RoutingRules(
@@ -317,10 +319,23 @@ FLIGHT_RULES = FlightRules(
     transit_agl_m=_float("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
     max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
     cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
+    longest_flight_s=_float("SPANWISE_LONGEST_FLIGHT_S", FlightRules.longest_flight_s),
+    turnaround_s=_float("SPANWISE_TURNAROUND_S", FlightRules.turnaround_s),
 )
 ZONE_RULES = ZoneRules(
     time_margin_s=_float("SPANWISE_ZONE_TIME_MARGIN_S", ZoneRules.time_margin_s),
     height_margin_m=_float("SPANWISE_ZONE_HEIGHT_MARGIN_M", ZoneRules.height_margin_m),
+)
+FLOWN_HEIGHTS = FlownHeights(
+    transit_agl_m=FLIGHT_RULES.transit_agl_m,
+    clearance_m=FLIGHT_RULES.clearance_m,
+    tolerance_m=FLIGHT_RULES.terrain_tolerance_m,
+    margin_m=ZONE_RULES.height_margin_m,
+)
+SEPARATION_RULES = SeparationRules(
+    lateral_m=_float("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),
+    vertical_m=_float("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
+    time_s=_float("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
 )
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)

@@ -2,16 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 from django.db.models import Exists, OuterRef
+from django.utils.formats import date_format
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset
-from inspection.selectors import ground_heights_m, ground_revision, zones_in_force
-from missions.flight_plan.clearance import legs_that_meet
+from inspection.selectors import ground_heights_m, ground_revision
+from missions.flight_plan.clearance import FloatArray, FlownRoute
 from missions.models import Base, Mission, MissionState, Route, WaypointKind
+from missions.zone_selectors import MetZone, departure_s, flown_route, zones_met
 
 TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
 MOST_CAUSES = 20
@@ -27,6 +30,8 @@ class StaleCause:
     target: int | None = None
     leg: tuple[str, str] | None = None  # "A1", "A2"; a flight's start and end are empty
     position: tuple[float, float] | None = None
+    agl_m: tuple[float, float] | None = None  # lowest and highest, where it meets a zone
+    times: tuple[datetime, datetime] | None = None  # from when to when
 
 
 def landing_routes_without_base() -> Exists:
@@ -85,24 +90,70 @@ def cause_json(cause: StaleCause) -> dict[str, Any]:
         "target": cause.target,
         "leg": list(cause.leg) if cause.leg else None,
         "position": list(cause.position) if cause.position else None,
+        "agl_m": list(cause.agl_m) if cause.agl_m else None,
+        "from": cause.times[0] if cause.times else None,
+        "to": cause.times[1] if cause.times else None,
     }
 
 
 def _zones(mission: Mission) -> list[StaleCause]:
-    zones = zones_in_force()
-    causes = {}
-    for route in mission.routes.all():
-        if route.geometry is None:
-            continue
-        line = np.array(route.geometry.coords)
-        for leg, zone in sorted(legs_that_meet(line, list(zones.polygons))):
-            ends = _leg_names(route, leg)
-            where = (float(line[leg : leg + 2, 0].mean()), float(line[leg : leg + 2, 1].mean()))
-            name, uav = zones.names[zone], route.mission_uav
-            causes.setdefault(
-                (uav.sequence, zone, ends), StaleCause("zone", _leg_words(name, ends, uav.name), uav.sequence, leg=ends, position=where)
+    """What the routes meet of the zones of now: at the mission's time where it has one, else at any time."""
+    routes = [route for route in mission.routes.all() if route.geometry is not None]
+    flown = [flown_route(route, departure_s(mission)) for route in routes]
+    return [cause for route, way, met in zip(routes, flown, zones_met(flown), strict=True) for cause in _zone_causes(route, way, met)]
+
+
+def _zone_causes(route: Route, flown: FlownRoute, met: Sequence[MetZone]) -> list[StaleCause]:
+    """One for each zone and pair of neighbouring targets between which it is met."""
+    parts: dict[tuple[int, tuple[str, str]], list[MetZone]] = {}
+    for meeting in met:
+        parts.setdefault((meeting.zone, _leg_names(route, meeting.breach.leg)), []).append(meeting)
+    causes = []
+    for (_zone, ends), meetings in parts.items():
+        first = _waypoints_of(meetings[0].breach.leg, flown)
+        heights_m = np.concatenate([_heights_m(meeting.breach.leg, flown) for meeting in meetings])
+        agl_m = float(heights_m.min()), float(heights_m.max())
+        times = _times(meetings)
+        causes.append(
+            StaleCause(
+                "zone",
+                f"{_leg_words(meetings[0].name, ends, route.mission_uav.name)} {_when_and_how_high(agl_m, times)}",
+                route.mission_uav.sequence,
+                leg=ends,
+                position=(float(flown.position[first, 0].mean()), float(flown.position[first, 1].mean())),
+                agl_m=agl_m,
+                times=times,
             )
-    return list(causes.values())
+        )
+    return causes
+
+
+def _waypoints_of(leg: int, flown: FlownRoute) -> list[int]:
+    """The waypoints at a leg's ends; the columns at start and end have one."""
+    return [max(leg, 0), min(leg + 1, len(flown.position) - 1)]
+
+
+def _heights_m(leg: int, flown: FlownRoute) -> FloatArray:
+    """Above ground at a leg's ends."""
+    on_ground = leg < 0 or (flown.lands and leg == len(flown.position) - 1)
+    return np.append(flown.agl_m[_waypoints_of(leg, flown)], [0.0] if on_ground else [])
+
+
+def _times(meetings: Sequence[MetZone]) -> tuple[datetime, datetime] | None:
+    known = [(meeting.breach.from_s, meeting.breach.to_s) for meeting in meetings]
+    starts, ends = [start for start, _end in known if start is not None], [end for _start, end in known if end is not None]
+    if len(starts) < len(known) or len(ends) < len(known):
+        return None
+    return datetime.fromtimestamp(min(starts), UTC), datetime.fromtimestamp(max(ends), UTC)
+
+
+def _when_and_how_high(agl_m: tuple[float, float], times: tuple[datetime, datetime] | None) -> str:
+    low, high = (f"{height_m:.0f}" for height_m in agl_m)
+    values = {"heights": low if low == high else _("%(low)s to %(high)s") % {"low": low, "high": high}}
+    if times is None:
+        return _("It is flown %(heights)s m above ground.") % values
+    values |= {"day": date_format(times[0], "j M"), "start": f"{times[0]:%H:%M}", "end": f"{times[1]:%H:%M}"}
+    return _("It is flown %(heights)s m above ground, on %(day)s from %(start)s to %(end)s UTC.") % values
 
 
 def _leg_names(route: Route, leg: int) -> tuple[str, str]:

@@ -3,13 +3,18 @@
 from django.urls import path
 
 from missions import views
+from missions.views.by_hand import LegChecks, RouteWaypoints
 from missions.views.explanations import WhyRoute, WhyTarget
+from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
+from missions.views.reachability import Reachability
 from missions.views.selections import SelectionDetail, SelectionList
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
     path("plans/why-target", WhyTarget.as_view(), name="api-plans-why-target"),
     path("plans/why-route", WhyRoute.as_view(), name="api-plans-why-route"),
+    path("plans/legal-windows", PlanLegalWindows.as_view(), name="api-plans-legal-windows"),
+    path("reachability", Reachability.as_view(), name="api-reachability"),
     path("missions", views.MissionList.as_view(), name="api-missions"),
     path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
     path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),
@@ -19,6 +24,9 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),
     path("missions/<uuid:mission_id>/duplicate", views.MissionDuplicate.as_view(), name="api-mission-duplicate"),
     path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
+    path("missions/<uuid:mission_id>/legal-windows", MissionLegalWindows.as_view(), name="api-mission-legal-windows"),
+    path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints", RouteWaypoints.as_view(), name="api-route-waypoints"),
+    path("leg-checks", LegChecks.as_view(), name="api-leg-checks"),
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),
     path("uavs", views.UavList.as_view(), name="api-uavs"),
     path("uavs/<int:uav_id>", views.UavDetail.as_view(), name="api-uav"),

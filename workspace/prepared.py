@@ -16,9 +16,7 @@ from django.db import InterfaceError, OperationalError, connection
 from psycopg import pq
 from psycopg.adapt import PyFormat, Transformer
 
-_known: WeakKeyDictionary[psycopg.Connection[Any], set[bytes]] = (
-    WeakKeyDictionary()
-)  # names of statements its server has
+_known: WeakKeyDictionary[psycopg.Connection[Any], set[bytes]] = WeakKeyDictionary()  # names of statements its server has
 
 
 def prepared_rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:

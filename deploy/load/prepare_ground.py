@@ -12,7 +12,7 @@ import json
 import os
 import secrets
 import sys
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import timedelta
 from hashlib import sha256
 from pathlib import Path
@@ -36,9 +36,11 @@ from django.core.management import call_command  # noqa: E402
 from django.utils import timezone  # noqa: E402
 
 from inspection.geodesy import distance_m  # noqa: E402
-from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: E402
+from inspection.graph.inspection_graph import EdgeKind, NodeKind  # noqa: E402
+from inspection.graph.network import Network  # noqa: E402
 from inspection.graph.snapshot_file import to_bytes  # noqa: E402
 from inspection.models import Asset, AssetKind, GraphSnapshot  # noqa: E402
+from inspection.selectors.graph import rules_of_snapshots  # noqa: E402
 from inspection.selectors.ground import ground_revision  # noqa: E402
 from inspection.services.ground import mark_ground_changed  # noqa: E402
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, Role, User  # noqa: E402
@@ -104,9 +106,7 @@ def store_snapshot(graph: PlainGraph, keys: NDArray[np.int64]) -> GraphSnapshot:
     edge_kind[(ends == BRIDGE).all(axis=1)] = EdgeKind.BRIDGE_TO_BRIDGE
     length_m = distance_m(graph.position[graph.edge[:, 0]], graph.position[graph.edge[:, 1]])
     is_link = ~np.isin(edge_kind, (EdgeKind.LINE, EdgeKind.RAILWAY))
-    arrays = InspectionGraph(
-        version=0,
-        ground_revision=ground_revision(),
+    arrays = Network(
         position=graph.position,
         node_kind=np.array([NodeKind.SUPPORT, NodeKind.RAILWAY, NodeKind.BRIDGE], dtype=np.uint8)[graph.kind],
         node_asset=keys,
@@ -116,14 +116,11 @@ def store_snapshot(graph: PlainGraph, keys: NDArray[np.int64]) -> GraphSnapshot:
         cost=np.where(is_link, length_m * settings.GRAPH_RULES.off_network_factor, length_m),
         edge_kind=edge_kind,
         edge_asset=np.full(len(graph.edge), -1, dtype=np.int64),
-        zone_wkb=(),
-        zone_id=np.zeros(0, dtype=np.int64),
-        zone_name=(),
     )
     content = to_bytes(arrays)
     return GraphSnapshot.objects.create(
-        ground_revision=arrays.ground_revision,
-        rules=asdict(settings.GRAPH_RULES),
+        ground_revision=ground_revision(),
+        rules=rules_of_snapshots(),
         nodes=arrays.node_count,
         edges=arrays.edge_count,
         components=int(graph.components().max()) + 1,

@@ -6,22 +6,17 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.graph.inspection_graph import InspectionGraph, NodeKind
+from inspection.graph.flown_heights import asset_heights_m
+from inspection.graph.inspection_graph import InspectionGraph
 
 FloatArray = NDArray[np.float64]
-
-# Where no tag states a height, towards the upper end of what is common, so that the error is on the safe side.
-UNTAGGED_HEIGHT_M = {NodeKind.SUPPORT: 45.0, NodeKind.LINE_VERTEX: 45.0, NodeKind.RAILWAY: 8.0, NodeKind.BRIDGE: 30.0}
-_UNTAGGED_M = np.array([UNTAGGED_HEIGHT_M[kind] for kind in NodeKind])
 
 _flyable_of_graph: WeakKeyDictionary[InspectionGraph, dict[float, InspectionGraph | None]] = WeakKeyDictionary()
 
 
 def node_heights_m(graph: InspectionGraph, nodes: NDArray[np.int64] | slice) -> FloatArray:
     """The height that the asset at each of the nodes is taken to have."""
-    tagged_m = graph.node_height_m[nodes]
-    heights_m: FloatArray = np.where(np.isnan(tagged_m), _UNTAGGED_M[graph.node_kind[nodes]], tagged_m)
-    return heights_m
+    return asset_heights_m(graph.node_kind[nodes], graph.node_height_m[nodes])
 
 
 def flyable_part(graph: InspectionGraph, tallest_m: float) -> InspectionGraph:

@@ -12,6 +12,7 @@ class NodeKind(IntEnum):
     LINE_VERTEX = 1  # a line's vertex without a support
     RAILWAY = 2
     BRIDGE = 3
+    BEND = 4  # of a detour round a zone: no asset, height 0
 
 
 class EdgeKind(IntEnum):
@@ -21,6 +22,7 @@ class EdgeKind(IntEnum):
     BRIDGE_TO_BRIDGE = 3
     RAILWAY_TO_TOWER = 4
     CROSSING = 5
+    DETOUR = 6  # round a zone
 
     @property
     def is_on_network(self) -> bool:
@@ -33,7 +35,7 @@ class InspectionGraph:
 
     position      float64 (n, 2)  lon, lat [deg]
     node_kind     uint8   (n,)    NodeKind
-    node_asset    int64   (n,)    primary key of the asset at the node: the tower, the railway, the bridge; for a line vertex its line
+    node_asset    int64   (n,)    primary key of the asset at the node: tower, railway, bridge; for a line vertex its line, for a bend -1
     node_height_m float64 (n,)    height of that asset as tagged, NaN when not stated
     edge          int32   (m, 2)  node indices, the smaller first; at most one edge per pair
     length_m      float64 (m,)    geodesic length
@@ -65,7 +67,7 @@ class InspectionGraph:
         for field in fields(self):
             array = getattr(self, field.name)
             if isinstance(array, np.ndarray) and array.flags.writeable:
-                object.__setattr__(self, field.name, _read_only(array))
+                object.__setattr__(self, field.name, read_only(array))
 
     @property
     def node_count(self) -> int:
@@ -76,7 +78,8 @@ class InspectionGraph:
         return len(self.edge)
 
 
-def _read_only(array: NDArray[np.generic]) -> NDArray[np.generic]:
+def read_only(array: NDArray[np.generic]) -> NDArray[np.generic]:
+    """The same values in one contiguous piece that nobody writes to."""
     view = np.ascontiguousarray(array).view()
     view.setflags(write=False)
     return view

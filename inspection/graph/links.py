@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inspection.graph.detours import Gap
 from inspection.graph.edges import Edges, component_labels, edges_of
+from inspection.graph.flown_heights import FlownNodes
 from inspection.graph.ground_data import Ways
 from inspection.graph.inspection_graph import EdgeKind
 from inspection.graph.nearness import nearest_within, pairs_within
@@ -59,39 +61,47 @@ def _share_a_way(pairs: IntArray, ways: Ways, node_of_vertex: IntArray) -> BoolA
 class NearestLinks:
     edges: Edges
     blocked: int  # nearest legs that a zone is in the way of
+    unlinked: list[Gap]  # what a zone is in every way of, for a way round
 
 
-def bridge_to_tower_links(
-    bridges: IntArray, supports: IntArray, position: FloatArray, zones: ZoneIndex, rules: LinkingRules
-) -> NearestLinks:
+def bridge_to_tower_links(bridges: IntArray, supports: IntArray, nodes: FlownNodes, zones: ZoneIndex, rules: LinkingRules) -> NearestLinks:
     """Each bridge to the nearest support within the radius, the next nearest when a zone is in the way."""
-    row, other, metres = nearest_within(position[bridges], position[supports], rules.bridge_to_tower_m, count=TRIES)
-    chosen, blocked = _nearest_clear(row, bridges[row], supports[other], metres, position, zones, rules)
-    return NearestLinks(edges_of(EdgeKind.BRIDGE_TO_TOWER, bridges[row[chosen]], supports[other[chosen]]), blocked)
+    row, other, _ = nearest_within(nodes.position[bridges], nodes.position[supports], rules.bridge_to_tower_m, count=TRIES)
+    return _nearest_clear(EdgeKind.BRIDGE_TO_TOWER, row, bridges[row], supports[other], nodes, zones, rules)
 
 
 def railway_to_tower_links(
-    railway_points: IntArray, supports: IntArray, position: FloatArray, cleared: Edges, zones: ZoneIndex, rules: LinkingRules
+    railway_points: IntArray, supports: IntArray, nodes: FlownNodes, cleared: Edges, zones: ZoneIndex, rules: LinkingRules
 ) -> NearestLinks:
     """One link, the shortest clear one, for each component of the cleared graph that has railway points and no support."""
-    _, component = component_labels(len(position), cleared.pair)
+    _, component = component_labels(len(nodes.position), cleared.pair)
     cut_off = railway_points[~np.isin(component[railway_points], component[supports])]
-    row, other, metres = nearest_within(position[cut_off], position[supports], rules.railway_to_tower_m, count=TRIES)
+    row, other, metres = nearest_within(nodes.position[cut_off], nodes.position[supports], rules.railway_to_tower_m, count=TRIES)
     order = np.lexsort((other, row, metres, component[cut_off[row]]))
     row, other, metres = row[order], other[order], metres[order]
-    chosen, blocked = _nearest_clear(component[cut_off[row]], cut_off[row], supports[other], metres, position, zones, rules)
-    return NearestLinks(edges_of(EdgeKind.RAILWAY_TO_TOWER, cut_off[row[chosen]], supports[other[chosen]]), blocked)
+    return _nearest_clear(EdgeKind.RAILWAY_TO_TOWER, component[cut_off[row]], cut_off[row], supports[other], nodes, zones, rules)
 
 
 def _nearest_clear(
-    group: IntArray, start: IntArray, end: IntArray, metres: FloatArray, position: FloatArray, zones: ZoneIndex, rules: LinkingRules
-) -> tuple[IntArray, int]:
-    """Of legs sorted by group, then metres: the index of the first clear one of each group, and how many groups' first one is not clear."""
-    usable = np.flatnonzero(np.abs(position[start, 0] - position[end, 0]) <= 180.0)
+    kind: EdgeKind, group: IntArray, start: IntArray, end: IntArray, nodes: FlownNodes, zones: ZoneIndex, rules: LinkingRules
+) -> NearestLinks:
+    """Of legs sorted by group, then length, the first clear one of each group."""
+    usable = np.flatnonzero(np.abs(nodes.position[start, 0] - nodes.position[end, 0]) <= 180.0)
     _, first = np.unique(group[usable], return_index=True)
     nearest = usable[first]
-    met = zones.meets(position[start[nearest]], position[end[nearest]], rules.zone_clearance_m)
+    met = nodes.legs_in_zones(zones, start[nearest], end[nearest], rules.zone_clearance_m)
     others = np.setdiff1d(usable[np.isin(group[usable], group[nearest[met]])], nearest)
-    others = others[~zones.meets(position[start[others]], position[end[others]], rules.zone_clearance_m)]
+    others = others[~nodes.legs_in_zones(zones, start[others], end[others], rules.zone_clearance_m)]
     _, first = np.unique(group[others], return_index=True)
-    return np.sort(np.concatenate([nearest[~met], others[first]])), int(met.sum())
+    chosen = np.sort(np.concatenate([nearest[~met], others[first]]))
+    unlinked = [
+        _way_round(start[legs], end[legs])
+        for one in np.setdiff1d(group[nearest[met]], group[chosen])
+        for legs in [usable[group[usable] == one][:TRIES]]
+    ]
+    return NearestLinks(edges_of(kind, start[chosen], end[chosen]), int(met.sum()), unlinked)
+
+
+def _way_round(start: IntArray, end: IntArray) -> Gap:
+    node, place = np.unique(np.concatenate([start, end]), return_inverse=True)
+    return Gap(node, place.reshape(2, -1).T, is_one_enough=True)

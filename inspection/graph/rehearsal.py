@@ -1,18 +1,20 @@
 """Every compiled function of the graph run once, so that it is compiled, or loaded, before somebody waits for it."""
 
 import numpy as np
+from shapely import box
 
 from inspection.geodesy import LonLat
 from inspection.graph.access import clear_legs
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.legs import Attachment
+from inspection.graph.round_zones import Errand, ways_round
 from inspection.graph.route_index import node_tree
 from inspection.graph.ways import travel_between
 from inspection.graph.zone_index import ZoneIndex
 
 
 def rehearse() -> None:
-    """Index a graph of four nodes, and find a way and a place on it."""
+    """Index a graph of four nodes, find a way and a place on it, and go round a zone."""
     graph = graph_to_rehearse_on()
     travel = travel_between(graph, [[Attachment(0, 1.0, 1.0)]], [[Attachment(2, 1.0, 1.0)]])
     travel.path(0, 0)
@@ -20,6 +22,8 @@ def rehearse() -> None:
     tree = node_tree(graph)
     tree.nearest(BESIDE, 2)
     tree.around(BESIDE, 1.0)
+    before = ZoneIndex([box(9.0005, 46.9999, 9.0006, 47.0001)], [1], [""])
+    ways_round(before, [Errand(graph.position[:2], np.array([(0, 1)]))], 0.0, 1_000.0)
 
 
 BESIDE = LonLat(9.0, 47.001)

@@ -73,7 +73,7 @@ def build_route_index(graph: InspectionGraph) -> RouteIndex:
     return RouteIndex(condensed, label(condensed))
 
 
-class _OncePerGraph(Generic[Part]):
+class OncePerGraph(Generic[Part]):
     """A part of a graph's index: the one that it was stored with, or one made now."""
 
     def __init__(self, make: Callable[[InspectionGraph], Part]) -> None:
@@ -94,6 +94,6 @@ class _OncePerGraph(Generic[Part]):
         self._made[graph] = part
 
 
-route_index = _OncePerGraph(build_route_index)
-node_tree = _OncePerGraph(lambda graph: build_node_tree(graph.position))
-asset_places = _OncePerGraph(build_asset_places)
+route_index = OncePerGraph(build_route_index)
+node_tree = OncePerGraph(lambda graph: build_node_tree(graph.position))
+asset_places = OncePerGraph(build_asset_places)

@@ -13,4 +13,5 @@ class LinkingRules:
     crossing_m: float = 150.0  # supports of different lines, and bridges and supports beside railways: crossings, substations
     railway_spacing_m: float = 250.0  # a railway's way vertices are thinned to at most this
     off_network_factor: float = 2.0  # cost per metre away from infrastructure, so that routes stay near the lines
+    detour_m: float = 10_000.0  # the longest way round zones, between the ends of what they cut out of a line; 0 for none
     zone_clearance_m: float = 5.0  # more than the gap between a chart's straight line and the geodesic on a leg of 5 km

@@ -1,7 +1,7 @@
 """Least-cost ways between places that are attached to the graph for one planning, from the graph's index."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import accumulate
 
 import numpy as np
@@ -10,7 +10,7 @@ from numba import njit
 from inspection.graph.condensed import FloatArray, NumberArray
 from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.legs import Attachment, Attachments, DirectLeg, NoWay, joined
+from inspection.graph.legs import Attachment, Attachments, DirectLeg, NoWay, bends_of, joined
 from inspection.graph.route_index import RouteIndex, route_index
 
 # What `Travel.way` holds in place of an entry: there is no way, or the way is the direct leg, or it stays within one chain.
@@ -35,6 +35,8 @@ class Travel:
     leg_node: NumberArray
     entry_leg: NumberArray  # twice the leg, plus 1 if it leaves its chain by the head
     entry_label: IntArray
+    leg_bends: tuple[FloatArray, ...] = ()  # of each leg, from its place on; nothing where all are straight
+    direct_bends: Mapping[tuple[int, int], FloatArray] = field(default_factory=dict)  # of source and sink
 
     def path(self, source: int, sink: int) -> IntArray:
         """Nodes from the source to the sink; none for a direct leg. Raises NoWay where the length is inf."""
@@ -96,12 +98,15 @@ def travel_between_places(
         np.array(sources, dtype=np.int64),
         np.array(sinks, dtype=np.int64),
     )
+    bends = {}
     for one in direct:
         if one.cost <= travel.cost[one.source, one.sink]:
             travel.cost[one.source, one.sink] = one.cost
             travel.length_m[one.source, one.sink] = one.length_m
             travel.way[one.source, one.sink] = DIRECT
-    return travel
+            bends[one.source, one.sink] = one.bends
+    by_bends = {ends: bends_of(way) for ends, way in bends.items() if way}
+    return replace(travel, leg_bends=all_legs.bends, direct_bends=by_bends) if all_legs.bends or by_bends else travel
 
 
 def travel_of_legs(

@@ -23,7 +23,7 @@ class Ground(models.Model):
 
 
 class GraphSnapshot(models.Model):
-    """An immutable graph, with the zones that it was cleared of. The primary key is the version."""
+    """An immutable network, free of zones. What it counts is the graph cleared of the zones of its time. The primary key is the version."""
 
     version = models.BigAutoField(primary_key=True)
     ground_revision = models.PositiveBigIntegerField(help_text="the ground that it shows")

@@ -77,7 +77,7 @@ class HeightReference(models.TextChoices):
 class NoFlyZone(models.Model):
     """One layer of a zone. It states facts as its source gives them; null is "not stated" and is not the same as 0.
 
-    Today every row counts as in force, always and at all heights; height band and schedule are kept whole for later use.
+    Which heights it reaches and when it applies is worked out in inspection/zones: what cannot be told counts as reaching, and as always.
     """
 
     zone_set = models.ForeignKey(ZoneSet, on_delete=models.CASCADE, null=True, blank=True, related_name="zones")

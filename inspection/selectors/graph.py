@@ -1,42 +1,105 @@
-"""The graph that planners use: the newest snapshot, memory-mapped, and the zones in force now."""
+"""The graph that planners use: the newest network, cleared of the zones that a plan has to keep clear of, memory-mapped."""
 
 import fcntl
 import logging
 import threading
+from collections import OrderedDict
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
 from datetime import datetime
+from typing import Any, Generic, TypeVar
 
-import numpy as np
-import shapely
 from django.conf import settings
+from django.db.models import QuerySet
 
+from inspection.graph.clearing import cleared
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.snapshot_file import from_bytes, read_cache, write_cache
+from inspection.graph.network import Network
+from inspection.graph.snapshot_file import (
+    LAYOUT,
+    from_bytes,
+    key_of_cleared,
+    read_cleared,
+    read_network,
+    write_cleared,
+    write_network,
+)
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import GraphSnapshot
 from inspection.selectors.ground import ground_edition
-from inspection.selectors.ground_data import zones_of_the_ground
+from inspection.selectors.zone_table import zone_table_of_edition
+from inspection.zones.reach import BoolArray, ZoneTable
 
 logger = logging.getLogger(__name__)
 
-KEPT_GRAPHS = 2  # per process: the newest, and the one that plans under way still hold
+KEPT = 6  # per process: the sets of zones that plans under way hold, and those that come back
+
+Made = TypeVar("Made")
+SnapshotRow = tuple[int, int, str]  # version, ground_revision, arrays_sha256
 
 
 class NoGraph(Exception):
     """No snapshot has been built yet, or none of this version is kept."""
 
 
-_lock = threading.Lock()
-_graphs: dict[tuple[int, str], InspectionGraph] = {}
-_zones: tuple[tuple[int, datetime | None], ZoneIndex] | None = None
+class _Kept(Generic[Made]):
+    """Those used last of what is costly to make. One thread makes it; others that want the same wait for it, others are not held up."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._made: OrderedDict[Hashable, Made] = OrderedDict()
+        self._under_way: dict[Hashable, threading.Lock] = {}
+
+    def get(self, key: Hashable, make: Callable[[], Made]) -> Made:
+        made = self._look_up(key)
+        if made is not None:
+            return made
+        with self._lock:
+            own = self._under_way.setdefault(key, threading.Lock())
+        with own:
+            made = self._look_up(key)
+            if made is None:
+                try:
+                    made = make()
+                    self._keep(key, made)
+                finally:
+                    with self._lock:
+                        self._under_way.pop(key, None)
+        return made
+
+    def _look_up(self, key: Hashable) -> Made | None:
+        with self._lock:
+            made = self._made.get(key)
+            if made is not None:
+                self._made.move_to_end(key)
+            return made
+
+    def _keep(self, key: Hashable, made: Made) -> None:
+        with self._lock:
+            self._made[key] = made
+            while len(self._made) > KEPT:
+                self._made.popitem(last=False)
+
+
+_graphs: _Kept[InspectionGraph] = _Kept()
+_indices: _Kept[ZoneIndex] = _Kept()
+_networks: _Kept[Network] = _Kept()
+
+
+def rules_of_snapshots() -> dict[str, Any]:
+    """What a snapshot made now is made by. One that says something else is made anew; one of another layout is not read."""
+    return {"layout": LAYOUT} | asdict(settings.GRAPH_RULES)
 
 
 def current_graph() -> InspectionGraph:
-    """The newest snapshot. Costs one small query once the process has it."""
-    return graph_of_row(GraphSnapshot.objects.values_list("version", "ground_revision", "arrays_sha256").first())
+    """The newest snapshot's network, cleared of all zones of now. Costs two small queries once the process has it."""
+    return graph_for(_rows().first(), zones_in_force())
 
 
 def graph_of_version(version: int) -> InspectionGraph:
-    return graph_of_row(GraphSnapshot.objects.filter(version=version).values_list("version", "ground_revision", "arrays_sha256").first())
+    """The network of a snapshot, cleared of all zones of now."""
+    return graph_for(version, zones_in_force())
 
 
 def zones_in_force() -> ZoneIndex:
@@ -46,58 +109,107 @@ def zones_in_force() -> ZoneIndex:
 
 def zones_of_edition(key: tuple[int, datetime | None]) -> ZoneIndex:
     """The zones of an edition of the ground that has just been read: they are at least as new as that."""
-    global _zones
-    remembered = _zones
-    if remembered is None or remembered[0] != key:
-        zones = zones_of_the_ground()
-        polygons = shapely.from_wkb(np.array(zones.wkb, dtype=object))
-        _zones = remembered = key, ZoneIndex(polygons, zones.identifier, zones.name)
-    return remembered[1]
+    return zones_of_table(zone_table_of_edition(key))
 
 
-def graph_of_row(row: tuple[int, int, str] | None) -> InspectionGraph:
-    """The graph of a snapshot's version, ground_revision and arrays_sha256; raises NoGraph for None."""
+def zones_of_table(table: ZoneTable, chosen: BoolArray | None = None) -> ZoneIndex:
+    """All zones of a table, or those where the mask (z,) is true, each with the heights above ground that it may reach."""
+    if chosen is None or chosen.all():
+        return _indices.get((table, None), lambda: _index_of(table))
+    return _indices.get((table, chosen.tobytes()), lambda: zones_of_table(table).where(chosen))
+
+
+def _index_of(table: ZoneTable) -> ZoneIndex:
+    return ZoneIndex(table.polygons, table.ids, table.names, floor_agl_m=table.floor_agl_m, ceiling_agl_m=table.ceiling_agl_m)
+
+
+def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> InspectionGraph:
+    """The network of a snapshot, named by its row or version, cleared of these zones at the heights flown.
+
+    Costs nothing once the process has it; for a set of zones that no planner of this machine has had, the graph is cleared and indexed
+    first. Raises NoGraph for None, and for a version that is not kept or is of an earlier layout.
+    """
+    row = _rows().filter(version=snapshot).first() if isinstance(snapshot, int) else snapshot
     if row is None:
         raise NoGraph
-    version, ground_revision, content_sha256 = row
-    key = version, content_sha256
-    with _lock:
-        if key not in _graphs:
-            _graphs[key] = _load(version, ground_revision, content_sha256)
-            for old in sorted(_graphs)[:-KEPT_GRAPHS]:
-                if old != key:
-                    del _graphs[old]
-        return _graphs[key]
+    key = (*row, zones.digest, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
+    return _graphs.get(key, lambda: _load(row, zones))
 
 
-def _load(version: int, ground_revision: int, content_sha256: str) -> InspectionGraph:
-    """The graph from its files; the first process that misses them writes them, and with them the index of an old snapshot."""
-    graph = _read(version, ground_revision, content_sha256)
+def network_for(row: SnapshotRow | None) -> Network:
+    """The network of a snapshot, as if there were no zones. Raises NoGraph for None, and for a version that is not kept."""
+    if row is None:
+        raise NoGraph
+    return _networks.get(row, lambda: _network(row))
+
+
+def _network(row: SnapshotRow) -> Network:
+    return read_network(settings.GRAPH_CACHE_DIR, content_sha256=row[2]) or from_bytes(_content(row), content_sha256=row[2])
+
+
+def prepare_graph(row: SnapshotRow, content: Callable[[], bytes], zones: ZoneIndex) -> None:
+    """Write the files of a network and of the graph cleared of these zones, where they are missing; one process at a time."""
+    content_sha256 = row[2]
+    try:
+        with _only_process():
+            if _read(row, zones) is None:
+                folder, tallest_m = settings.GRAPH_CACHE_DIR, settings.FLIGHT_RULES.tallest_m
+                network = read_network(folder, content_sha256=content_sha256)
+                if network is None:
+                    network = from_bytes(content(), content_sha256=content_sha256)
+                    write_network(folder, network, content_sha256=content_sha256)
+                graph = _cleared(network, zones)
+                write_cleared(folder, graph, key=_key_of_files(content_sha256, zones), tallest_m=tallest_m)
+    except OSError as error:
+        logger.warning("graph %d is kept in memory, its cache cannot be written: %s", row[0], error)
+
+
+def _rows() -> "QuerySet[GraphSnapshot, SnapshotRow]":
+    """Version, ground_revision and arrays_sha256 of the snapshots that can be read, the newest first."""
+    return GraphSnapshot.objects.filter(rules__layout=LAYOUT).values_list("version", "ground_revision", "arrays_sha256")
+
+
+def _load(row: SnapshotRow, zones: ZoneIndex) -> InspectionGraph:
+    """The graph from its files; the first process that misses them writes them."""
+    graph = _read(row, zones)
     if graph is not None:
         return graph
-    content = GraphSnapshot.objects.filter(version=version).values_list("arrays", flat=True).first()
+    prepare_graph(row, lambda: _content(row), zones)
+    return _read(row, zones) or _cleared(from_bytes(_content(row), content_sha256=row[2]), zones, version=row[0], ground_revision=row[1])
+
+
+def _content(row: SnapshotRow) -> bytes:
+    content = GraphSnapshot.objects.filter(version=row[0]).values_list("arrays", flat=True).first()
     if content is None:
         raise NoGraph
-    write_planner_files(version, bytes(content), content_sha256)
-    graph = _read(version, ground_revision, content_sha256)
-    return graph or from_bytes(bytes(content), content_sha256=content_sha256, version=version, ground_revision=ground_revision)
+    return bytes(content)
 
 
-def write_planner_files(version: int, content: bytes, content_sha256: str) -> None:
-    """Unpack a snapshot and index it for all planners of this machine, one process at a time; does nothing where it is done."""
-    folder = settings.GRAPH_CACHE_DIR
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with (folder / ".lock").open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            if _read(version, 0, content_sha256) is None:
-                write_cache(folder, content, content_sha256=content_sha256, version=version, tallest_m=settings.FLIGHT_RULES.tallest_m)
-    except OSError as error:
-        logger.warning("graph %d is kept in memory, its cache cannot be written: %s", version, error)
+def _cleared(network: Network, zones: ZoneIndex, **stamps: int) -> InspectionGraph:
+    return cleared(network, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, **stamps).graph
 
 
-def _read(version: int, ground_revision: int, content_sha256: str) -> InspectionGraph | None:
-    tallest_m = settings.FLIGHT_RULES.tallest_m
-    return read_cache(
-        settings.GRAPH_CACHE_DIR, content_sha256=content_sha256, version=version, ground_revision=ground_revision, tallest_m=tallest_m
+def _read(row: SnapshotRow, zones: ZoneIndex) -> InspectionGraph | None:
+    version, ground_revision, content_sha256 = row
+    return read_cleared(
+        settings.GRAPH_CACHE_DIR,
+        key=_key_of_files(content_sha256, zones),
+        zones=zones,
+        version=version,
+        ground_revision=ground_revision,
+        tallest_m=settings.FLIGHT_RULES.tallest_m,
     )
+
+
+def _key_of_files(content_sha256: str, zones: ZoneIndex) -> str:
+    return key_of_cleared(content_sha256, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
+
+
+@contextmanager
+def _only_process() -> Iterator[None]:
+    """Of the processes of this machine, and of the threads of one, one at a time."""
+    folder = settings.GRAPH_CACHE_DIR
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield

@@ -57,19 +57,6 @@ def supports_and_lines(box: tuple[float, float, float, float], *, line: int | No
     return _places(AssetKind.TOWER, "geometry", in_box), _ways(AssetKind.LINE, lines)
 
 
-def ground_without_zones(box: tuple[float, float, float, float]) -> GroundData:
-    """What is in west, south, east, north, as if there were no zones."""
-    area = _Area("AND geometry && ST_MakeEnvelope(%s, %s, %s, %s, 4326)", list(box))
-    return GroundData(
-        revision=ground_revision(),
-        supports=_places(AssetKind.TOWER, "geometry", area),
-        bridges=_places(AssetKind.BRIDGE, "centre", area),
-        lines=_ways(AssetKind.LINE, area),
-        railways=_ways(AssetKind.RAILWAY, area),
-        zones=Zones((), np.zeros(0, dtype=np.int64), ()),
-    )
-
-
 def zones_of_the_ground() -> Zones:
     rows = _rows("SELECT id, name, ST_AsBinary(geometry) FROM inspection_noflyzone ORDER BY id")
     return Zones(

@@ -11,15 +11,20 @@ from django.db import DEFAULT_DB_ALIAS
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.network import Network
+from inspection.graph.snapshot_file import LAYOUT
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind
-from inspection.selectors.graph import graph_of_row, zones_of_edition
-from inspection.selectors.terrain import has_terrain
+from inspection.selectors.graph import SnapshotRow, graph_for, network_for, zones_of_table
+from inspection.selectors.terrain import has_terrain, terrain_edition
+from inspection.selectors.zone_table import zone_table_of_edition
+from inspection.zones.reach import BoolArray, ZoneTable
 from workspace.prepared import prepared_rows
 
 _GROUND = "(SELECT revision, changed_at FROM inspection_ground ORDER BY id LIMIT 1)"
 _EDITION = f"SELECT revision, changed_at FROM {_GROUND} AS ground"  # noqa: S608 - no value of anybody's
-_SNAPSHOT = "(SELECT version, ground_revision, arrays_sha256 FROM inspection_graphsnapshot ORDER BY version DESC LIMIT 1)"
+_SNAPSHOT = f"""(SELECT version, ground_revision, arrays_sha256 FROM inspection_graphsnapshot WHERE rules @> '{{"layout": {LAYOUT}}}'
+    ORDER BY version DESC LIMIT 1)"""  # noqa: S608 - no value of anybody's
 # What planning asks of a whole tower or bridge, and what its name is made of; in the model's own order, in which `from_db` takes them.
 _ASKED = {
     "id",
@@ -69,23 +74,34 @@ class PointAsset(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PlanningGround:
-    """The newest graph, the zones in force, and the edition of the ground that they were read with: they are at least as new as it."""
+    """The newest network, all zones, and the edition of the ground that they were read with: they are at least as new as it."""
 
-    graph: InspectionGraph
-    zones: ZoneIndex
+    snapshot: SnapshotRow | None
+    table: ZoneTable
     edition: Edition
+
+    def zones(self, chosen: BoolArray | None = None) -> ZoneIndex:
+        """All zones, or those where the mask (z,) is true."""
+        return zones_of_table(self.table, chosen)
+
+    def graph(self, zones: ZoneIndex) -> InspectionGraph:
+        """The network cleared of these zones. Costs nothing more until the network or the zones change. Raises NoGraph."""
+        return graph_for(self.snapshot, zones)
+
+    def network(self) -> Network:
+        """The network as if there were no zones. Raises NoGraph."""
+        return network_for(self.snapshot)
 
 
 class PlanningRead(NamedTuple):
     """What one statement has told."""
 
-    snapshot: tuple[int, int, str] | None
+    snapshot: SnapshotRow | None
     edition: Edition
     points: Mapping[int, PointAsset]
 
     def ground(self) -> PlanningGround:
-        """Costs nothing more until the graph or the ground change. Raises NoGraph."""
-        return PlanningGround(graph_of_row(self.snapshot), zones_of_edition(self.edition), self.edition)
+        return PlanningGround(self.snapshot, zone_table_of_edition(self.edition), self.edition)
 
 
 def planning_read(points: Sequence[int] = ()) -> PlanningRead:
@@ -110,6 +126,16 @@ def has_terrain_at(edition: Edition) -> bool:
     return has_terrain() if edition[1] is None else _had_terrain(edition)  # a ground never marked as changed has no edition
 
 
+def terrain_at(edition: Edition) -> tuple[int | None, int]:
+    """The edition of the terrain when this edition of the ground was first asked about, or a later one."""
+    return terrain_edition() if edition[1] is None else _terrain_of(edition)
+
+
 @lru_cache(maxsize=4)
 def _had_terrain(edition: Edition) -> bool:
     return has_terrain()
+
+
+@lru_cache(maxsize=4)
+def _terrain_of(edition: Edition) -> tuple[int | None, int]:
+    return terrain_edition()

@@ -1,17 +1,18 @@
 """Builds graph snapshots when the ground has changed."""
 
 from collections.abc import Callable
-from dataclasses import asdict
+from contextlib import suppress
 from hashlib import sha256
 from time import perf_counter
 
 from django.conf import settings
 from django.db import connection, transaction
 
-from inspection.graph.build import build
+from inspection.graph.clearing import cleared
+from inspection.graph.network import network
 from inspection.graph.snapshot_file import to_bytes
 from inspection.models import GraphSnapshot
-from inspection.selectors.graph import write_planner_files
+from inspection.selectors.graph import NoGraph, current_graph, prepare_graph, rules_of_snapshots, zones_in_force
 from inspection.selectors.ground import ground_revision
 from inspection.selectors.ground_data import ground_data, has_flyable_assets
 
@@ -45,19 +46,26 @@ def refresh_graph() -> GraphSnapshot | None:
 def _current_snapshot() -> GraphSnapshot | None:
     """The newest snapshot, if it shows the present ground under the present rules."""
     snapshot = GraphSnapshot.objects.defer("arrays").first()
-    rules = asdict(settings.GRAPH_RULES)
-    return snapshot if snapshot and snapshot.ground_revision == ground_revision() and snapshot.rules == rules else None
+    is_current = snapshot and snapshot.ground_revision == ground_revision() and snapshot.rules == rules_of_snapshots()
+    return snapshot if is_current else None
 
 
 def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnapshot:
     started_s = perf_counter()
-    if progress is not None:
-        progress("reading the ground", 0.0)
-    built = build(ground_data(), settings.GRAPH_RULES, progress)
-    content = to_bytes(built.graph)
+    tell = progress or (lambda message, fraction: None)
+    tell("clearing the zones", 0.0)
+    _clear_newest_network()
+    tell("reading the ground", 0.2)
+    ground = ground_data()
+    tell("joining lines and railways", 0.4)
+    whole = network(ground, settings.GRAPH_RULES)
+    content = to_bytes(whole)
+    tell("clearing the zones", 0.7)
+    zones = zones_in_force()
+    built = cleared(whole, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS)
     snapshot = GraphSnapshot.objects.create(
-        ground_revision=built.graph.ground_revision,
-        rules=asdict(settings.GRAPH_RULES),
+        ground_revision=ground.revision,
+        rules=rules_of_snapshots(),
         nodes=built.graph.node_count,
         edges=built.graph.edge_count,
         components=built.components,
@@ -68,7 +76,13 @@ def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnap
         build_s=perf_counter() - started_s,
     )
     # Before the commit: whoever sees the snapshot finds its files and its index.
-    write_planner_files(snapshot.version, content, snapshot.arrays_sha256)
+    prepare_graph((snapshot.version, snapshot.ground_revision, snapshot.arrays_sha256), lambda: content, zones)
     newest = list(GraphSnapshot.objects.values_list("version", flat=True)[:KEPT_SNAPSHOTS])
     GraphSnapshot.objects.filter(version__lt=newest[-1]).delete()
     return snapshot
+
+
+def _clear_newest_network() -> None:
+    """Most often the zones alone have changed: planners then go on at once, while the ground is read and compared."""
+    with suppress(NoGraph):
+        current_graph()

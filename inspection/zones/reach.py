@@ -108,10 +108,11 @@ class ZoneTable:
 
     def spans(self, from_s: float, to_s: float) -> tuple[tuple[Span, ...], ...]:
         """For each zone when it applies between two moments, time margin included."""
-        return tuple(
-            active_spans(schedule, (box[0], box[1], box[2], box[3]), from_s, to_s, self.rules.time_margin_s)
-            for schedule, box in zip(self.schedules, self.box.tolist(), strict=True)
-        )
+        return self._spans(from_s, to_s, self.rules.time_margin_s)
+
+    def stated_spans(self, from_s: float, to_s: float) -> tuple[tuple[Span, ...], ...]:
+        """For each zone when it applies between two moments, as its schedule states it."""
+        return self._spans(from_s, to_s, 0.0)
 
     def active_within(self, from_s: float, to_s: float) -> BoolArray:
         """Which zones apply at any moment of a window, (z,)."""
@@ -121,3 +122,9 @@ class ZoneTable:
         """Which zones apply through all of a window, (z,)."""
         whole = (Span(from_s, to_s),)
         return np.array([spans == whole for spans in self.spans(from_s, to_s)], dtype=bool)
+
+    def _spans(self, from_s: float, to_s: float, margin_s: float) -> tuple[tuple[Span, ...], ...]:
+        return tuple(
+            active_spans(schedule, (box[0], box[1], box[2], box[3]), from_s, to_s, margin_s)
+            for schedule, box in zip(self.schedules, self.box.tolist(), strict=True)
+        )

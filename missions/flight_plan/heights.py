@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
-from inspection.graph.flyable import UNTAGGED_HEIGHT_M
+from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.graph.inspection_graph import NodeKind
 from inspection.terrain.heights import amsl_m, counted_from
 from missions.flight_plan.rules import FlightRules

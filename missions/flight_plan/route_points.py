@@ -18,7 +18,7 @@ SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
 
 @dataclass(frozen=True, eq=False)
 class PassedNodes:
-    """Nodes of the graph on the ways of a route, one way after another.
+    """Nodes of the graph and bends round zones on the ways of a route, one way after another.
 
     position float64 (n, 2), lon lat [deg]; agl_m float64 (n,), the height above ground at which each is passed; asset int64 (n,), NONE
     where there is none; way w has the nodes first[w] up to but without first[w + 1], (w + 1,).

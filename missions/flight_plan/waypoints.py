@@ -20,10 +20,11 @@ class WaypointKind(StrEnum):
     PASS = "pass"  # noqa: S105 (no password)
     TARGET = "target"
     END = "end"
+    BASE = "base"  # on the ground between two flights
 
 
 KINDS = tuple(WaypointKind)  # columns hold places in it
-START, PASS, TARGET, END = range(len(KINDS))
+START, PASS, TARGET, END, BASE = range(len(KINDS))
 NONE = -1  # in place of an asset's or a target's number
 
 

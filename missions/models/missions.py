@@ -46,6 +46,7 @@ class Mission(models.Model):
     departs_at = models.DateTimeField(null=True, blank=True, help_text="planned take-off; empty = at any time")
     conditions = models.JSONField(default=dict, blank=True, help_text="wind by height and temperature; see flight_plan/conditions.py")
     charging_w = models.FloatField(null=True, blank=True, help_text="watts of charging at towers on the way; empty = none")
+    lost_link = models.JSONField(default=dict, blank=True, help_text="what UAVs do without a link; see services/requests.py")
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     planned_at = models.DateTimeField(null=True, blank=True)
     graph_version = models.BigIntegerField(null=True, blank=True, help_text="the graph that the routes were planned on")
@@ -54,6 +55,7 @@ class Mission(models.Model):
     total_length_m = models.FloatField(null=True, blank=True)
     longest_route_m = models.FloatField(null=True, blank=True)
     total_energy_wh = models.FloatField(null=True, blank=True, help_text="of the routes of UAVs with a battery; empty = none has one")
+    lost_link_check = models.JSONField(null=True, blank=True, help_text="from where UAVs cannot do so")
     separation = models.JSONField(null=True, blank=True, help_text="how the routes are kept apart, and what could not be")
     last_plan = models.JSONField(null=True, blank=True, help_text="summary of the plan before the present one, to compare with")
     locks = models.JSONField(default=list, blank=True, help_text="runs of targets that one UAV flies in this order; targets by sequence")
@@ -88,6 +90,7 @@ class MissionUav(models.Model):
     cruise_speed_mps = models.FloatField()
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
     most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
+    sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
     performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see flight_plan/performance.py")
 
@@ -157,6 +160,7 @@ class Route(models.Model):
     duration_s = models.FloatField()
     departs_s = models.FloatField(default=0.0, db_default=0.0, help_text="seconds after the mission's departure")
     energy_wh = models.FloatField(null=True, blank=True, help_text="empty without a battery")
+    charging = models.JSONField(default=list, blank=True, help_text="stops at towers to charge; see services/plan_json.py")
     battery_percent = models.FloatField(null=True, blank=True, help_text="left at the end; empty without a battery")
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
@@ -174,6 +178,7 @@ class WaypointKind(models.TextChoices):
     PASS = "pass", "Pass"
     TARGET = "target", "Target"
     END = "end", "End"
+    BASE = "base", "Between two flights"
 
 
 class Waypoint(models.Model):
@@ -192,6 +197,7 @@ class Waypoint(models.Model):
     arrival_s = models.FloatField(null=True, blank=True, help_text="seconds after the mission's departure; empty in older plans")
     used_wh = models.FloatField(null=True, blank=True, help_text="since take-off; empty without a battery")
     battery_left_percent = models.FloatField(null=True, blank=True)
+    is_by_hand = models.BooleanField(default=False, db_default=False, help_text="put in, moved or flown at another height by a person")
 
     class Meta:
         ordering = ["sequence"]

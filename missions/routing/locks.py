@@ -99,6 +99,7 @@ def reduced(problem: Problem) -> Reduced:
             to_start_m=problem.to_start_m[last],
             to_base_m=None if problem.to_base_m is None else problem.to_base_m[last],
             allowed=allowed,
+            cannot_end=None if problem.cannot_end is None else problem.cannot_end[last],
             priorities=(),
             locks=(),
             weights=_weights(problem, targets_of, len(free)),

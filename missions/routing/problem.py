@@ -192,6 +192,7 @@ class Problem:
     to_start_m   (v, u)  where each visit ends to the start of each UAV
     to_base_m    (v, u)  where each visit ends to the nearest base that is open to each UAV; needed if one may end at any base
     allowed      (u, v)  which visits each UAV may fly; without it all
+    cannot_end   (v, u)  where a UAV's route must not end, though it may pass; without it nowhere
     priorities   one for each target; without them all alike
     weights      (targets,) what leaving out each target weighs, given by who knows better than the priorities (see `left_out_weights`)
     seconds      of flying; without them metres over the speed
@@ -216,6 +217,7 @@ class Problem:
     wh: Amounts | None = None
     class_of: tuple[int, ...] = ()
     owner: tuple[int, ...] = ()
+    cannot_end: BoolArray | None = None
 
     def __post_init__(self) -> None:
         uavs, visits = len(self.uavs), len(self.visits)
@@ -273,6 +275,8 @@ class Problem:
                 if self.to_base_m is None:
                     raise InvalidProblem("a UAV may end at any base, but the ways to the bases are missing")
                 end_m[:, uav] = self.to_base_m[:, uav]
+        if self.cannot_end is not None:
+            end_m[self.cannot_end] = np.inf
         return end_m
 
     def may_fly(self, uav: int, visit: int) -> bool:

@@ -1,25 +1,32 @@
 """The compiled solvers run once, so that they are compiled, or loaded, before somebody waits for them."""
 
+from dataclasses import fields
+
 import numpy as np
 
+from inspection.graph.network import Network
 from inspection.graph.rehearsal import BESIDE, graph_to_rehearse_on
 from inspection.graph.zone_index import ZoneIndex
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.ways_taken import FlightClass
 from missions.routing import exact
 from missions.routing.problem import Amounts, End, Objective, Problem, UavStart, Visit
+from missions.routing.reachability import Flight, reach
 from missions.routing.solver import solve
 from missions.routing.terminals import AccessRules, Terminal, ways_between
 
 
 def rehearse() -> None:
-    """Find the ways of a UAV and a target; solve problems that are proven and searched, and one with wind, batteries and sorties."""
-    ways_between(
-        graph_to_rehearse_on(),
-        ZoneIndex([], [], []),
-        [Terminal(BESIDE)],
-        [Terminal(BESIDE)],
-        [Terminal(BESIDE)],
-        AccessRules(1_000.0, 1_000.0, on_asset_m=1.0, off_network_factor=2.0, zone_clearance_m=0.0),
-    )
+    """Find the ways of a UAV and a target, and what else it reaches.
+
+    Solve problems that are proven and searched, and one with wind, batteries and sorties.
+    """
+    graph, zones = graph_to_rehearse_on(), ZoneIndex([], [], [])
+    access = AccessRules(1_000.0, 1_000.0, on_asset_m=1.0, off_network_factor=2.0, zone_clearance_m=0.0)
+    ways_between(graph, zones, [Terminal(BESIDE)], [Terminal(BESIDE)], [Terminal(BESIDE)], access)
+    network = Network(**{field.name: getattr(graph, field.name) for field in fields(Network)})
+    flights = [Flight(BESIDE, End.RETURN, 1_000.0, lands=True, flying=FlightClass(Performance(battery_wh=50.0), 10.0))]
+    reach(network, graph, graph, zones, zones, flights, [], access)
     for targets in (2, exact.MAX_TARGETS + 1):
         places = np.arange(1.0, targets + 1.0)
         for objective in (Objective.TOTAL, Objective.MAKESPAN):

@@ -25,6 +25,7 @@ def unfolded(problem: Problem) -> Problem:
         to_start_m=problem.to_start_m[:, rows],
         to_base_m=None if problem.to_base_m is None else problem.to_base_m[:, rows],
         allowed=None if problem.allowed is None else problem.allowed[rows],
+        cannot_end=None if problem.cannot_end is None else problem.cannot_end[:, rows],
         locks=tuple(replace(lock, uav=first_row[lock.uav] if 0 <= lock.uav < len(most) else len(rows)) for lock in problem.locks),
         seconds=None if problem.seconds is None else problem.seconds.of_uavs(rows),
         wh=None if problem.wh is None else problem.wh.of_uavs(rows),

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import short_distance_m
-from inspection.graph.access import clear_legs
+from inspection.graph.access import MOST_ROUND, band_of_legs, clear_legs
+from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.graph.nearness import chord
 from inspection.graph.node_tree import points_on_sphere
+from inspection.graph.round_zones import Errand, ways_round
 from inspection.graph.route_index import asset_places, node_tree
 from inspection.graph.ways import Travel, travel_between_places
 from inspection.graph.zone_index import ZoneIndex
@@ -31,10 +33,16 @@ _NO_WAY_TO_GO = np.zeros(1)  # metres from a place to its own node
 
 @dataclass(frozen=True)
 class Terminal:
-    """One end of a visit, or a UAV's start. `asset` is the asset that it lies on, if any."""
+    """One end of a visit, or a UAV's start. `asset` is the asset that it lies on, if any; height_m its height, None if not known."""
 
     position: LonLat
     asset: int | None = None
+    height_m: float | None = None
+
+    @property
+    def known_height_m(self) -> float | None:
+        """Where there is no asset there is nothing to be flown over."""
+        return 0.0 if self.asset is None else self.height_m
 
 
 @dataclass(frozen=True)
@@ -46,6 +54,7 @@ class AccessRules:
     on_asset_m: float  # how far a place on a line or railway may lie from the graph's edge: the spacing of thinned vertices
     off_network_factor: float
     zone_clearance_m: float
+    heights: FlownHeights | None = None  # without them zones count at all heights
 
 
 def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> Attachments:
@@ -55,15 +64,23 @@ def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, ru
         node = places.node_of(terminal.asset)
         if node is not None and graph.position[node].tolist() == [*terminal.position]:
             return Attachments(np.array([node], dtype=np.int32), _NO_WAY_TO_GO, _NO_WAY_TO_GO)
-        along = _along_own_line(graph, zones, terminal.position, places.edges_of(terminal.asset), rules)
+        along = _along_own_line(graph, zones, terminal, places.edges_of(terminal.asset), rules)
         if len(along):
             return along
     return access_legs(graph, zones, terminal, rules)
 
 
 def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> Attachments:
+    """Legs that are clear of zones, and the nearest places behind zones round these."""
     return clear_legs(
-        graph, zones, terminal.position, radius_m=rules.access_leg_m, factor=rules.off_network_factor, clearance_m=rules.zone_clearance_m
+        graph,
+        zones,
+        terminal.position,
+        radius_m=rules.access_leg_m,
+        factor=rules.off_network_factor,
+        clearance_m=rules.zone_clearance_m,
+        heights=rules.heights,
+        height_m=terminal.known_height_m,
     )
 
 
@@ -74,11 +91,12 @@ def is_near_network(graph: InspectionGraph, position: LonLat, radius_m: float) -
 
 
 def _along_own_line(
-    graph: InspectionGraph, zones: ZoneIndex, position: LonLat, edges: NDArray[np.int64], rules: AccessRules
+    graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, edges: NDArray[np.int64], rules: AccessRules
 ) -> Attachments:
     """Legs to both ends of the asset's edge nearest to the position; flown along the asset, they cost what they measure."""
     if not len(edges):
         return NO_LEGS
+    position = terminal.position
     frame = LocalFrame.around(position.lon, position.lat)
     tail, head = frame.to_metres(graph.position[graph.edge[edges, 0]]), frame.to_metres(graph.position[graph.edge[edges, 1]])
     along = head - tail
@@ -91,7 +109,8 @@ def _along_own_line(
     nodes = graph.edge[edges[nearest]]
     here = np.broadcast_to(np.array(position), (2, 2))
     length_m = distance_m(here, graph.position[nodes])
-    clear = ~zones.meets(here, graph.position[nodes], rules.zone_clearance_m)
+    low_m, high_m = band_of_legs(graph, nodes, rules.heights, terminal.known_height_m)
+    clear = ~zones.meets(here, graph.position[nodes], rules.zone_clearance_m, low_m, high_m)
     if (length_m == 0).any():
         clear &= length_m == 0  # the place is a node
     return Attachments(nodes[clear], length_m[clear], length_m[clear])
@@ -107,17 +126,57 @@ def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLa
 
 
 def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: ZoneIndex, rules: AccessRules) -> list[DirectLeg]:
-    """Legs straight from place to place, no longer than the rule allows and clear of zones."""
+    """Legs from place to place, no longer than the rule allows: straight where that is clear of zones, else round these.
+
+    Ways round are looked for to the MOST_ROUND nearest sinks that zones stand before.
+    """
     start = np.array([place.position for place in sources], dtype=np.float64).reshape(-1, 2)
     end = np.array([place.position for place in sinks], dtype=np.float64).reshape(-1, 2)
     source, sink, length_m = _near_pairs(start, end, float(rules.direct_leg_m), chord(float(rules.direct_leg_m)))
     if not len(source):
         return []
-    clear = ~zones.meets(start[source], end[sink], rules.zone_clearance_m)
-    return [
+    start_band, end_band = _bands(sources, rules), _bands(sinks, rules)
+    low_m, high_m = np.minimum(start_band[source, 0], end_band[sink, 0]), np.maximum(start_band[source, 1], end_band[sink, 1])
+    clear = ~zones.meets(start[source], end[sink], rules.zone_clearance_m, low_m, high_m)
+    straight = [
         DirectLeg(*leg, leg[2] * rules.off_network_factor)
         for leg in zip(source[clear].tolist(), sink[clear].tolist(), length_m[clear].tolist(), strict=True)
     ]
+    if clear.all():
+        return straight
+    behind = np.flatnonzero(~clear)
+    behind = behind[np.lexsort((length_m[behind], source[behind]))]
+    first_of_source = np.searchsorted(source[behind], source[behind])
+    behind = behind[np.arange(len(behind)) - first_of_source < MOST_ROUND]
+    groups = np.split(behind, np.flatnonzero(np.diff(source[behind])) + 1)
+    errands = [
+        Errand(
+            np.concatenate([start[source[legs[:1]]], end[sink[legs]]]),
+            np.column_stack([np.zeros(len(legs), dtype=np.int64), np.arange(1, len(legs) + 1)]),
+            float(low_m[legs].min()),
+            float(high_m[legs].max()),
+        )
+        for legs in groups
+    ]
+    found = ways_round(zones, errands, rules.zone_clearance_m, rules.direct_leg_m)
+    bent = [
+        DirectLeg(
+            int(source[leg]), int(sink[leg]), way.length_m, way.length_m * rules.off_network_factor, tuple(map(tuple, way.bend.tolist()))
+        )
+        for legs, ways in zip(groups, found, strict=True)
+        for leg, way in zip(legs, ways, strict=True)
+        if way is not None
+    ]
+    return straight + bent
+
+
+def _bands(places: Sequence[Terminal], rules: AccessRules) -> FloatArray:
+    """Lowest and highest above ground at which each place is come to or left, (n, 2)."""
+    if rules.heights is None:
+        return np.tile([-np.inf, np.inf], (len(places), 1))
+    height_m = np.array([place.known_height_m for place in places], dtype=np.float64)  # None becomes NaN
+    low_m, high_m = rules.heights.band_m(np.nan_to_num(height_m))
+    return np.column_stack([low_m, np.where(np.isnan(height_m), np.inf, high_m)])
 
 
 @njit(cache=True, nogil=True)

@@ -107,3 +107,11 @@ class RouteExplanationSerializer(serializers.Serializer):
     zones = ZoneDetourSerializer(many=True)
     heaviest = HeaviestSerializer(allow_null=True)
     alternative = AlternativeSerializer(allow_null=True)
+    used_wh = serializers.FloatField(allow_null=True, help_text="of the battery; null without one")
+    usable_wh = serializers.FloatField(allow_null=True, help_text="of all flights together, the reserve taken off")
+    flown_s = serializers.FloatField(help_text="from take-off to the end")
+    wind_s = serializers.FloatField(help_text="how much longer than in calm air; below 0: the wind helps")
+    binds = serializers.ListField(
+        child=serializers.ChoiceField(choices=["battery", "range", "most_targets", "zone", "wind", "balance"]),
+        help_text="what keeps the route from more targets, or from being quicker; balance: another UAV's route is the longest",
+    )

@@ -1,5 +1,6 @@
 """What comes in: UAVs, targets, options, plans and missions."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
 
@@ -11,6 +12,7 @@ from rest_framework import serializers
 from missions.fields import FiniteFloatField, PositionField
 from missions.fleet_selectors import performance_of, uavs_of_organisation
 from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
+from missions.flight_plan.lost_link import LostLink
 from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
 from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
@@ -27,8 +29,10 @@ from missions.serializers.limits import (
     LONGEST_SENSOR,
     LONGEST_UAV_NAME,
     MOST_DAYS_AHEAD,
+    MOST_RALLY_POINTS,
     MOST_RESERVE_PERCENT,
     MOST_SENSORS_OF_UAV,
+    MOST_SORTIES,
     MOST_TARGETS,
     MOST_WIND_LAYERS,
     STRONGEST_WIND_MPS,
@@ -44,6 +48,7 @@ from missions.services import (
     refuse_contradictions,
     with_bases,
 )
+from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
 
 
 class TaskSerializer(serializers.Serializer):
@@ -122,6 +127,12 @@ class UavInputSerializer(PerformanceFieldsSerializer):
     most_targets = serializers.IntegerField(
         required=False, allow_null=True, min_value=1, max_value=MOST_TARGETS, help_text="null or missing: not limited"
     )
+    sorties = serializers.IntegerField(
+        required=False,
+        min_value=1,
+        max_value=MOST_SORTIES,
+        help_text="flights that it makes at most, each on a full battery; more than one only for a UAV that returns to its start",
+    )
     sensors = serializers.ListField(
         child=serializers.CharField(max_length=LONGEST_SENSOR),
         required=False,
@@ -173,6 +184,14 @@ class TargetInputSerializer(serializers.Serializer):
         return attrs
 
 
+class LostLinkSerializer(serializers.Serializer):
+    """What UAVs do when their link is lost: go on, or hold for a while and return, or return to their start or the nearest rally point."""
+
+    behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
+    rally_points = serializers.ListField(child=PositionField(), required=False, max_length=MOST_RALLY_POINTS)
+    hold_s = FiniteFloatField(required=False, min_value=0, max_value=MAX_HOLD_S, help_text="before it returns; only with hold")
+
+
 class LockListSerializer(serializers.ListSerializer):
     """Counts before it looks at each: a target can be locked once, so that more than a plan may have are too many."""
 
@@ -222,6 +241,11 @@ class OptionsSerializer(serializers.Serializer):
     charging_w = FiniteFloatField(
         required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="power of charging at towers on the way; null: there is none"
     )
+
+    lost_link = LostLinkSerializer(required=False, allow_null=True)
+
+    def validate_lost_link(self, value: dict[str, Any] | None) -> LostLinkRequest:
+        return lost_link_from_json(value or {})
 
     def validate_charging_w(self, value: float | None) -> float | None:
         return above_zero(value)
@@ -312,6 +336,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         most_targets=values.get("most_targets"),
         sensors=tuple(values["sensors"]),
         performance=performance_from_json(performance),
+        sorties=values.get("sorties", 1),
     )
 
 
@@ -346,7 +371,7 @@ class PlanInputSerializer(OptionsSerializer):
         return attrs
 
     def to_request(self) -> PlanRequest:
-        return plan_request(self.validated_data)
+        return replace(plan_request(self.validated_data), organisation=self.context["organisation"].pk)
 
 
 class MissionInputSerializer(OptionsSerializer):
@@ -380,6 +405,7 @@ def plan_request(values: dict[str, Any]) -> PlanRequest:
         departs_at=values.get("departs_at"),
         conditions=values.get("conditions", CALM),
         charging_w=values.get("charging_w"),
+        lost_link=values.get("lost_link", GO_ON),
     )
 
 

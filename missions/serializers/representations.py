@@ -9,6 +9,7 @@ from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
 from missions.selectors import open_plan_of_mission
 from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
+from missions.services.requests import lost_link_from_json, lost_link_to_json
 from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
 
 
@@ -25,6 +26,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "departs_at": mission.departs_at,
         "conditions": conditions_to_json(conditions_from_json(mission.conditions)),
         "charging_w": mission.charging_w,
+        "lost_link": lost_link_to_json(lost_link_from_json(mission.lost_link)),
         "revision": mission.revision,
         "created_at": mission.created_at,
         "updated_at": mission.updated_at,
@@ -80,6 +82,7 @@ def _uav(row: MissionUav) -> dict[str, Any]:
         "end_action": row.end_action,
         "most_targets": row.most_targets,
         "sensors": row.sensors,
+        "sorties": row.sorties,
         **performance_to_json(performance_from_json(row.performance)),
     }
 
@@ -121,6 +124,7 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "departs_at": mission.departs_at,
         "conditions": conditions_to_json(conditions_from_json(mission.conditions)),
         "separation": mission.separation,
+        "lost_link": mission.lost_link_check,
         "graph_version": mission.graph_version,
         "ground_revision": mission.ground_revision,
         "flat_ground_assumed": mission.flat_ground_assumed,
@@ -154,6 +158,8 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "arrival_s": [waypoint.arrival_s for waypoint in waypoints],
         "used_wh": None if route.energy_wh is None else [waypoint.used_wh for waypoint in waypoints],
         "battery_left_percent": None if route.energy_wh is None else [waypoint.battery_left_percent for waypoint in waypoints],
+        "charging": route.charging,
+        "by_hand": [place for place, waypoint in enumerate(waypoints) if waypoint.is_by_hand],
         "targets": targets,
         "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),
         "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,

@@ -3,6 +3,7 @@
 from rest_framework import serializers
 
 from missions.fields import PositionField
+from missions.flight_plan.lost_link import LostLink, Trouble
 from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
 from missions.routing.problem import TaskKind
 
@@ -28,6 +29,13 @@ class WaypointSerializer(serializers.Serializer):
     altitude_relative_m = serializers.FloatField(help_text="above the take-off point")
 
 
+class ChargingSerializer(serializers.Serializer):
+    waypoint = serializers.IntegerField(help_text="its place in the route; what is done there comes after")
+    charging_s = serializers.FloatField()
+    charged_wh = serializers.FloatField()
+    stopped_s = serializers.FloatField(help_text="with the way down to the tower and up again")
+
+
 class RouteSerializer(serializers.Serializer):
     """One UAV's part, in the order of the request's UAVs."""
 
@@ -48,6 +56,10 @@ class RouteSerializer(serializers.Serializer):
         child=serializers.FloatField(), allow_null=True, help_text="for each waypoint, since take-off; null without a battery"
     )
     battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="for each waypoint")
+    charging = ChargingSerializer(many=True, help_text="stops at towers on the way")
+    by_hand = serializers.ListField(
+        child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or flies at another height"
+    )
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
     locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
@@ -137,6 +149,28 @@ class SeparationSerializer(serializers.Serializer):
     unresolved = serializers.ListField(child=serializers.DictField(), help_text="conflicts that could not be solved")
 
 
+class FailedReturnSerializer(serializers.Serializer):
+    """A waypoint from which a UAV that has lost its link cannot return as wished."""
+
+    route = serializers.IntegerField(help_text="index of the UAV")
+    waypoint = serializers.IntegerField(help_text="its place in the route")
+    haven = serializers.IntegerField(help_text="where it would return to: 0 its start, n the n-th rally point")
+    trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
+    missing_wh = serializers.FloatField(allow_null=True)
+    zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
+    over_m = serializers.FloatField(allow_null=True, help_text="by how much it would fly above the limit")
+
+
+class LostLinkOutputSerializer(serializers.Serializer):
+    behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
+    rally_points = serializers.ListField(child=PositionField())
+    hold_s = serializers.FloatField()
+
+
+class LostLinkCheckSerializer(LostLinkOutputSerializer):
+    failed = FailedReturnSerializer(many=True)
+
+
 class PlanSerializer(QualitySerializer):
     objective = serializers.ChoiceField(choices=Objective.choices)
     return_to_start = serializers.BooleanField()
@@ -147,6 +181,7 @@ class PlanSerializer(QualitySerializer):
     departs_at = serializers.DateTimeField(allow_null=True, help_text="null: the plan keeps clear of zones at any time")
     conditions = ConditionsOutputSerializer()
     separation = SeparationSerializer(allow_null=True, help_text="null in plans of before")
+    lost_link = LostLinkCheckSerializer(allow_null=True, help_text="null in plans of before")
     graph_version = serializers.IntegerField()
     ground_revision = serializers.IntegerField()
     flat_ground_assumed = serializers.BooleanField()
@@ -210,6 +245,7 @@ class MissionUavSerializer(serializers.Serializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices)
     most_targets = serializers.IntegerField(allow_null=True)
     sensors = serializers.ListField(child=serializers.CharField())
+    sorties = serializers.IntegerField(help_text="flights that it makes at most")
     battery_wh = serializers.FloatField(allow_null=True, help_text="null: its energy is not counted")
     mass_kg = serializers.FloatField(allow_null=True)
     reserve_percent = serializers.FloatField()
@@ -247,6 +283,15 @@ class StaleCauseSerializer(serializers.Serializer):
         child=serializers.CharField(allow_blank=True), allow_null=True, help_text="between which targets; empty for a flight's start or end"
     )
     position = PositionField(allow_null=True)
+    agl_m = serializers.ListField(
+        child=serializers.FloatField(), allow_null=True, help_text="where a zone is met: lowest and highest planned height above ground"
+    )
+    to = serializers.DateTimeField(allow_null=True)
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        return super().get_fields() | {
+            "from": serializers.DateTimeField(allow_null=True, help_text="when a zone is met; null: at any time")
+        }
 
 
 class MissionSerializer(serializers.Serializer):
@@ -259,6 +304,7 @@ class MissionSerializer(serializers.Serializer):
     departs_at = serializers.DateTimeField(allow_null=True, help_text="planned take-off; null: at any time")
     conditions = ConditionsOutputSerializer()
     charging_w = serializers.FloatField(allow_null=True)
+    lost_link = LostLinkOutputSerializer()
     revision = serializers.IntegerField(help_text="the ETag")
     created_at = serializers.DateTimeField()
     updated_at = serializers.DateTimeField()

@@ -1,5 +1,6 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
+from missions.services.by_hand import HandPoint, change_route
 from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet import (
     change_base,
@@ -59,6 +60,7 @@ __all__ = [
     "FleetChanged",
     "FleetRowInUse",
     "GraphOutdated",
+    "HandPoint",
     "InvalidRequest",
     "LockRequest",
     "MissionChange",
@@ -73,6 +75,7 @@ __all__ = [
     "UavRequest",
     "change_base",
     "change_mission",
+    "change_route",
     "change_uav",
     "change_uav_type",
     "create_base",

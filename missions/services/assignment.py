@@ -1,26 +1,31 @@
 """From places and ways to the solver's problem with all that is wished; and what the locked runs cost."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from missions.flight_plan.costs import FlightCosts
 from missions.flight_plan.duration import ready_s
 from missions.flight_plan.rules import FlightRules
 from missions.models import EndAction
 from missions.routing.exact import MAX_TARGETS
-from missions.routing.problem import BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
+from missions.routing.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
 from missions.routing.progress import OnProgress, Progress
-from missions.routing.solver import Stop, solve
+from missions.routing.solver import PROVEN_GAP, Stop, solve
 from missions.routing.sorties import merit_of
 from missions.routing.terminals import Ways
 from missions.services.places import Place
 from missions.services.refusals import Grounding
-from missions.services.requests import LockRequest, PlanRequest
+from missions.services.requests import LockRequest, PlanRequest, UavRequest
 from missions.services.wishes import may_do
 
-UNCOUNTED_S = 0.1  # that a finished route takes beyond what the search counted: rounding
+CHARGED_WH = 1e6
+COUNTED_CLOSE = 1e-4  # by less of the battery do what is counted and what is drawn differ over ground that is known
+NOTHING_TAKEN_OFF: Mapping[int, float] = {}
+# What a finished route takes beyond what the search counted, in the objective's unit, and still is rounding.
+UNCOUNTED = {Objective.TOTAL: math.inf, Objective.MAKESPAN: 0.1, Objective.TIME: 0.1, Objective.ENERGY: 0.01}
 _ENDS = {EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
 
 
@@ -54,13 +59,33 @@ def assignment(
     ways: Ways,
     grounded: dict[int, Grounding],
     ready: Sequence[float],
+    costs: FlightCosts | None = None,
+    usable_share: Mapping[int, float] = NOTHING_TAKEN_OFF,
+    no_landing: Collection[int] = (),
+    turnaround_s: float = 0.0,
 ) -> Assignment:
-    """uavs: those that fly, by their places in the request; visits: of the places, by their numbers; ready [s]: of each UAV's route."""
+    """uavs: those that fly, by their places in the request; visits: of the places, by their numbers; ready [s]: of each UAV's route.
+
+    costs: seconds and Wh where they do not follow from the metres; ready, and what the visits take, are then among them. usable_share:
+    of a UAV's usable battery, by its place in the request, what the search may count on. no_landing: places, by their numbers, where a
+    UAV must not go down to the ground.
+    """
+    if not uavs:
+        costs = None  # nothing flies: there is nothing to count
     targets = [request.targets[place.target] for place in places]
     ends = {request.end_action(uav) for uav in uavs}
     free = Problem(
         uavs=tuple(
-            UavStart(asked.max_range_m, route_end(request, uav), asked.cruise_speed_mps, asked.most_targets, own_ready_s)
+            UavStart(
+                asked.max_range_m,
+                route_end(request, uav),
+                asked.cruise_speed_mps,
+                asked.most_targets,
+                own_ready_s,
+                usable_wh=_usable_wh(asked, usable_share.get(uav, 1.0), request.charging_w),
+                sorties=asked.sorties,
+                turnaround_s=turnaround_s,
+            )
             for uav, asked, own_ready_s in ((uav, request.uavs[uav], own_ready_s) for uav, own_ready_s in zip(uavs, ready, strict=True))
         ),
         visits=tuple(visits),
@@ -68,15 +93,33 @@ def assignment(
         from_start_m=ways.from_start_m,
         between_m=ways.between_m,
         to_start_m=ways.to_start_m,
-        objective=request.objective,
+        objective=request.objective if uavs else Objective.TOTAL,
         to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(uavs))) if EndAction.BASE in ends else None,
         allowed=_allowed(request, uavs, places, visits) if any(target.uav or target.sensor for target in targets) else None,
         priorities=tuple(target.priority for target in targets) if any(target.priority != Priority.NORMAL for target in targets) else (),
+        seconds=None if costs is None else Amounts(**vars(costs.seconds)),
+        wh=None if costs is None else Amounts(**vars(costs.wh)),
+        class_of=() if costs is None else costs.class_of,
+        cannot_end=_cannot_end(request, uavs, visits, no_landing) if no_landing else None,
     )
     if not request.locks:
         return Assignment(free, None, {})
     held_back, locks = _runs(request, uavs, places, grounded)
     return Assignment(replace(free, locks=locks, allowed=_without(free, held_back)), free, held_back)
+
+
+def _cannot_end(request: PlanRequest, uavs: Sequence[int], visits: Sequence[Visit], no_landing: Collection[int]) -> BoolArray:
+    """(v, u): visits of the places at which UAVs that land at their last target must not do so."""
+    lands = np.array([request.end_action(uav) is EndAction.LAND for uav in uavs], dtype=bool)
+    return np.array([visit.target in no_landing for visit in visits], dtype=bool)[:, None] & lands
+
+
+def _usable_wh(asked: UavRequest, share: float, charging_w: float | None) -> float | None:
+    """What the search may count on; where a UAV charges on the way, and nothing has shown yet that it cannot, as much as it likes."""
+    usable_wh = asked.performance.usable_wh
+    if usable_wh is not None and charging_w is not None and share == 1.0 and asked.sorties == 1:
+        return CHARGED_WH
+    return None if usable_wh is None else usable_wh * share * (1.0 - COUNTED_CLOSE)
 
 
 def _allowed(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit]) -> BoolArray:
@@ -163,24 +206,46 @@ def _cost(problem: Problem, solution: Solution, free: Solution) -> LockCost:
     )
 
 
-def quality_of(solution: Solution, cost: LockCost | None, objective: Objective, *, total_m: float, longest_s: float) -> dict[str, object]:
+def quality_of(
+    solution: Solution, cost: LockCost | None, objective: Objective, *, value: float, share_of_freest: float | None = 1.0
+) -> dict[str, object]:
     """Bound, gap, method and the cost of the locks in the shape of the API.
 
-    total_m and longest_s are of the finished routes; the bound stays below them, whatever the drawing has rounded. What the search does
-    not count (climbs over hills and tall assets) makes the longest route longer than it thought, and the gap wider: a plan is proven
-    only if its finished routes are.
+    value is of the finished routes, in what the objective counts; the bound stays below it, whatever the drawing has rounded. What the
+    search does not count (climbs over hills and tall assets, where no battery or wind makes it count them) makes routes longer than it
+    thought, and the gap wider: a plan is proven only if its finished routes are.
+
+    Where zones are in force for a part of the flight, `solution` is that on the fewest zones, and share_of_freest what it is worth
+    beside this plan: as far as it is better, this plan is not proven. None: it leaves out other targets, and tells nothing.
     """
-    is_total = objective is Objective.TOTAL
-    bound = min(solution.lower_bound, total_m if is_total else longest_s)
-    gap, is_proven = solution.gap, solution.is_proven
-    if not is_total and longest_s - solution.longest_s > UNCOUNTED_S:
-        gap, is_proven = (longest_s - bound) / longest_s, False
+    bound: float | None = min(solution.lower_bound, value)
+    gap: float | None = solution.gap
+    is_proven = solution.is_proven
+    if share_of_freest is None:
+        bound, gap, is_proven = None, None, False
+    elif share_of_freest < 1.0 - PROVEN_GAP:
+        bound = value * share_of_freest * (1.0 - solution.gap)
+        gap, is_proven = 1.0 - share_of_freest * (1.0 - solution.gap), False
+    elif value - _own_value(solution, objective) > UNCOUNTED[objective]:
+        gap, is_proven = (value - bound) / value, False
+    in_seconds = objective in (Objective.MAKESPAN, Objective.TIME)
     return {
-        "lower_bound_m": math.floor(bound * 1_000) / 1_000 if is_total else None,
-        "lower_bound_s": None if is_total else math.floor(bound * 10) / 10,
-        "lower_bound_wh": None,
-        "gap": round(gap, 6),
+        "lower_bound_m": math.floor(bound * 1_000) / 1_000 if bound is not None and objective is Objective.TOTAL else None,
+        "lower_bound_s": math.floor(bound * 10) / 10 if bound is not None and in_seconds else None,
+        "lower_bound_wh": math.floor(bound * 100) / 100 if bound is not None and objective is Objective.ENERGY else None,
+        "gap": None if gap is None else round(gap, 6),
         "is_proven": is_proven,
         "method": solution.method,
         "wish": None if cost is None else {name: value if value is None else round(value, 3) for name, value in vars(cost).items()},
     }
+
+
+def _own_value(solution: Solution, objective: Objective) -> float:
+    """What the search thought the plan to be worth."""
+    values = {
+        Objective.TOTAL: solution.total_m,
+        Objective.MAKESPAN: solution.longest_s,
+        Objective.TIME: solution.total_s,
+        Objective.ENERGY: solution.total_wh or 0.0,
+    }
+    return values[objective]

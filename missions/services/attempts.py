@@ -5,12 +5,14 @@ from dataclasses import dataclass
 
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
-from missions.routing.problem import Solution
+from missions.models import EndAction
+from missions.routing.problem import Problem, Solution
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import Stop
 from missions.routing.terminals import Terminal, ways_between
 from missions.services.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch
+from missions.services.counted import counted, needs_counting
 from missions.services.drawing import Drawing
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
@@ -31,11 +33,25 @@ class Attempt:
     solution: Solution
     lock_cost: LockCost | None
     drawing: Drawing
+    problem: Problem
+
+    def most_counted_wh(self, uav: int) -> float:
+        """What the search thought that the UAV, by its number in the request, takes for the flight that takes most."""
+        start = self.uavs.index(uav)
+        return max((self.problem.route_wh(start, order) or 0.0 for order in self.solution.sorties[start]), default=0.0)
 
     def routes(self, request: PlanRequest, ground: GroundHeights | None) -> list[PlannedRoute]:
         """Drawn over this ground, one for each UAV of the request."""
-        flown = self.drawing.routes(self.uavs, self.solution.routes, ground)
+        flown = self.drawing.routes(self.uavs, self.solution.sorties, ground)
         return [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
+
+    def weights(self, request: PlanRequest) -> list[float]:
+        """What the ways of each UAV's route cost for each metre: 1 along infrastructure, more away from it."""
+        weights = [1.0] * len(request.uavs)
+        for start, (uav, orders) in enumerate(zip(self.uavs, self.solution.sorties, strict=True)):
+            if orders:
+                weights[uav] = self.drawing.weight(start, uav, orders)
+        return weights
 
 
 def attempt(
@@ -48,8 +64,9 @@ def attempt(
     on_progress: OnPlanProgress,
     seed: int,
     search_s: float,
+    usable_share: Mapping[int, float],
 ) -> Attempt:
-    """every_place: the request's targets on the ground, `gone` those that are no longer there."""
+    """every_place: the request's targets on the ground, `gone` those that are no longer there; usable_share as in `assignment`."""
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]
@@ -59,26 +76,40 @@ def attempt(
 
     on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
     agl_m = [inspection_agl_m(place_height_m(place, scene), scene.flight) for place in places]
-    takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
+    counts = needs_counting(request)
+    takes_s = None
+    if not counts:
+        takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
     visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
-        scene.zones,
+        scene.leg_zones,
         starts=[Terminal(request.uavs[uav].position) for uav in uavs],
         entries=[Terminal(course[0], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
     )
-    ready = [least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
-    asked = assignment(request, uavs, places, visits, ways, grounded, ready)
+    costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
+    ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
+    no_landing = _no_landing(request, uavs, places, scene)
+    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s)
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
-    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene)
+    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing)
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
-    return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing)
+    return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
+
+
+def _no_landing(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], scene: Scene) -> dict[int, str]:
+    """If a UAV is to land at its last target: places, by their numbers, with a zone between the height of inspection and the ground."""
+    if all(request.end_action(uav) is not EndAction.LAND for uav in uavs):
+        return {}
+    return {
+        number: zone for number, place in enumerate(places) for at in {place.course[0], place.course[-1]} if (zone := zone_at(at, scene))
+    }
 
 
 def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:

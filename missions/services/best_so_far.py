@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.passed import passed_on
 from missions.flight_plan.heights import FloatArray
 from missions.routing.problem import End, Objective, Problem, Routes
 from missions.routing.progress import Progress
@@ -78,14 +78,16 @@ class Sketch:
         }
 
     def _line(self, uav: int, route: Sequence[int]) -> FloatArray:
-        position = self.graph.position
-        parts = [np.array([self.starts[uav]]), position[self.ways.out(uav, route[0])], np.array(self.courses[route[0]])]
-        for left, right in pairwise(route):
-            parts += [position[self.ways.onward(left, right)], np.array(self.courses[right])]
-        if self.problem.uavs[uav].end is End.RETURN:
-            parts += [position[self.ways.home(route[-1], uav)], np.array([self.starts[uav]])]
-        elif self.problem.uavs[uav].end is End.ANY_BASE:
-            parts += [position[self.ways.to_base(route[-1])], np.array([self.bases[self.ways.nearest_base[route[-1]]]])]
+        end = self.problem.uavs[uav].end
+        ways = passed_on(self.ways.travel, np.array(self.ways.of_route(uav, route, end), dtype=np.int64), self.graph.position)
+        legs = np.split(ways.position, ways.first[1:-1])
+        parts = [np.array([self.starts[uav]])]
+        for leg, visit in zip(legs, route, strict=False):
+            parts += [leg, np.array(self.courses[visit])]
+        if end is End.RETURN:
+            parts += [legs[-1], np.array([self.starts[uav]])]
+        elif end is End.ANY_BASE:
+            parts += [legs[-1], np.array([self.bases[self.ways.nearest_base[route[-1]]]])]
         return np.concatenate(parts)
 
 

@@ -1,15 +1,24 @@
 """From the visits of each UAV to what it flies: points, heights, length and time."""
 
+import math
 from collections.abc import Mapping, Sequence
 from itertools import accumulate, chain, pairwise
 
 import numpy as np
+from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
-from missions.flight_plan.duration import duration_s
+from inspection.graph.inspection_graph import NodeKind
+from inspection.graph.passed import BEND, passed_on
+from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
+from missions.flight_plan.obstacles import rising_over, tall_things
+from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
+from missions.flight_plan.sorties import joined_sorties, timing_of_route
+from missions.flight_plan.timing import Timing
+from missions.flight_plan.waypoints import NONE, Waypoints
 from missions.models import EndAction
 from missions.routing.problem import Routes, Visit
 from missions.routing.terminals import Ways
@@ -17,7 +26,7 @@ from missions.services.assignment import route_end
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import Scene
-from missions.services.requests import BaseRequest, PlanRequest
+from missions.services.requests import BaseRequest, InvalidRequest, PlanRequest
 
 
 class Drawing:
@@ -43,45 +52,99 @@ class Drawing:
         self.ways = ways
         self.bases = bases
 
-    def routes(self, uavs: Sequence[int], orders: Routes, ground: GroundHeights | None) -> Mapping[int, PlannedRoute]:
+    def routes(self, uavs: Sequence[int], sorties: Sequence[Routes], ground: GroundHeights | None) -> Mapping[int, PlannedRoute]:
         """What each UAV that has visits flies, by its number in the request; uavs are the numbers of those that fly.
 
-        ground: the terrain model's heights; None: there is none.
+        sorties: the visits of each in order, flight by flight. ground: the terrain model's heights; None: there is none.
         """
-        flying = [(start, uav, order) for start, (uav, order) in enumerate(zip(uavs, orders, strict=True)) if order]
+        flying = [(start, uav, order) for start, (uav, orders) in enumerate(zip(uavs, sorties, strict=True)) for order in orders]
         ways = [self.ways.of_route(start, order, route_end(self.request, uav)) for start, uav, order in flying]
-        passed = self._passed(ways)
-        return {uav: self._route(uav, order, nodes, ground) for (_, uav, order), nodes in zip(flying, passed, strict=True)}
+        flights: dict[int, list[tuple[Sequence[int], PassedNodes]]] = {}
+        for (_start, uav, order), passed in zip(flying, self._passed(ways), strict=True):
+            flights.setdefault(uav, []).append((order, passed))
+        return {uav: self._route(uav, own, ground) for uav, own in flights.items()}
 
-    def _route(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> PlannedRoute:
+    def weight(self, start: int, uav: int, orders: Routes) -> float:
+        """What a route's ways cost for each metre, stretches included; `start` is the UAV's number in the ways."""
+        ways = [way for order in orders for way in self.ways.of_route(start, order, route_end(self.request, uav))]
+        source, sink = np.array(ways).T
+        along_m = sum(self.visits[visit].length_m for order in orders for visit in order)
+        length_m = float(self.ways.travel.length_m[source, sink].sum()) + along_m
+        return (float(self.ways.travel.cost[source, sink].sum()) + along_m) / length_m if length_m else 1.0
+
+    def _route(self, uav: int, flights: Sequence[tuple[Sequence[int], PassedNodes]], ground: GroundHeights | None) -> PlannedRoute:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)
-        base = self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None
+        drawn = [self._flight(uav, order, passed, ground) for order, passed in flights]
+        waypoints = drawn[0][0] if len(drawn) == 1 else joined_sorties([own for own, _length_m, _is_flat in drawn], flight.turnaround_s)
+        base = self._base(action, flights[-1][0])
+        try:
+            clock = timing_of_route(
+                waypoints,
+                cruise_speed_mps=asked.cruise_speed_mps,
+                performance=asked.performance,
+                conditions=self.request.conditions,
+                lands=action is not EndAction.HOVER,
+                rules=flight,
+            )
+        except NoHeadway as error:  # over hills the wind of another height is met than was counted with
+            raise InvalidRequest({"conditions": _("The wind is too strong for %(uav)s on its route.") % {"uav": asked.name}}) from error
+        stops: tuple[ChargingStop, ...] = ()
+        lacks_wh = 0.0
+        if self.request.charging_w is not None and len(drawn) == 1:
+            try:
+                stops = self._charging(uav, waypoints, clock)
+                clock = with_stops(clock, stops, asked.performance.battery_wh or math.inf)
+            except CannotCharge as error:
+                lacks_wh = error.missing_wh
+        return PlannedRoute(
+            targets=tuple(self.places[self.visits[visit].target].target for order, _passed in flights for visit in order),
+            waypoints=waypoints,
+            line=line_of(waypoints.points),
+            length_m=sum(length_m for _waypoints, length_m, _is_flat in drawn),
+            duration_s=clock.total_s,
+            end_action=action,
+            base=None if base is None else base.name,
+            is_flat=any(is_flat for _waypoints, _length_m, is_flat in drawn),
+            timing=clock,
+            charging=stops,
+            lacks_wh=lacks_wh,
+        )
+
+    def _charging(self, uav: int, waypoints: Waypoints, clock: Timing) -> tuple[ChargingStop, ...]:
+        """Where the UAV charges at towers that it passes, if it has to. Raises CannotCharge or ChargerTooWeak."""
+        graph, points = self.scene.graph, waypoints.points
+        passed = np.unique(points.asset[points.asset != NONE])
+        towers = passed[np.isin(passed, graph.node_asset[graph.node_kind == NodeKind.SUPPORT])].tolist()
+        return charging_stops(
+            waypoints,
+            clock,
+            towers=places_over(points, towers),
+            charging_w=self.request.charging_w or 0.0,
+            performance=self.request.uavs[uav].performance,
+            conditions=self.request.conditions,
+            rules=self.scene.flight,
+        )
+
+    def _flight(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> tuple[Waypoints, float, bool]:
+        """Waypoints and metres of one flight, and whether flat ground had to be assumed."""
+        flight, at = self.scene.flight, self.request.uavs[uav].position
+        action = self.request.end_action(uav)
+        base = self._base(action, order)
         points = route_points(
-            start=asked.position,
+            start=at,
             transit_agl_m=flight.transit_agl_m,
             targets=[self._target(visit) for visit in order],
             ways=passed,
-            home=asked.position if action is EndAction.RETURN else None if base is None else base.position,
+            home=at if action is EndAction.RETURN else None if base is None else base.position,
         )
+        points = rising_over(points, tall_things(self.scene.whole_graph, flight))
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
-        return PlannedRoute(
-            targets=tuple(self.places[self.visits[visit].target].target for visit in order),
-            waypoints=waypoints,
-            line=line_of(waypoints.points),
-            length_m=length_m,
-            duration_s=duration_s(
-                waypoints,
-                length_m=length_m,
-                cruise_speed_mps=asked.cruise_speed_mps,
-                lands=action is not EndAction.HOVER,
-                rules=flight,
-            ),
-            end_action=action,
-            base=None if base is None else base.name,
-            is_flat=is_flat,
-        )
+        return waypoints, length_m, is_flat
+
+    def _base(self, action: EndAction, order: Sequence[int]) -> BaseRequest | None:
+        return self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None
 
     def _target(self, visit: int) -> TargetPoints:
         place = self.places[self.visits[visit].target]
@@ -91,12 +154,14 @@ class Drawing:
         """What is passed on the ways of each route, looked up for all of them at once."""
         if not ways:
             return []
-        graph = self.scene.graph
-        nodes, first = self.ways.travel.paths(np.array(list(chain.from_iterable(ways)), dtype=np.int64))
-        position, asset = graph.position[nodes], graph.node_asset[nodes]
-        agl_m = pass_agl_m(node_heights_m(graph, nodes), self.scene.flight)
+        graph, flight = self.scene.graph, self.scene.flight
+        told = passed_on(self.ways.travel, np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
+        is_node = told.node != BEND
+        nodes = told.node[is_node]
+        asset, agl_m = np.full(len(told.node), NONE, dtype=np.int64), np.full(len(told.node), flight.transit_agl_m)
+        asset[is_node], agl_m[is_node] = graph.node_asset[nodes], pass_agl_m(node_heights_m(graph, nodes), flight)
         passed = []
         for begin, end in pairwise([0, *accumulate(map(len, ways))]):
-            own = slice(first[begin], first[end])
-            passed.append(PassedNodes(position[own], agl_m[own], asset[own], first[begin : end + 1] - first[begin]))
+            own = slice(told.first[begin], told.first[end])
+            passed.append(PassedNodes(told.position[own], agl_m[own], asset[own], told.first[begin : end + 1] - told.first[begin]))
         return passed

@@ -65,10 +65,10 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
 
 
 def _that_counts(request: PlanRequest) -> PlanRequest:
-    """The request with those sensors alone that a target needs: a UAV of the fleet may have got others since the mission was stored."""
+    """The request with those sensors alone that a target needs, as a UAV may have got others since, and without whose it is."""
     needed = [target.sensor for target in request.targets if target.sensor]
     uavs = (replace(uav, sensors=tuple(sensor for sensor in needed if has_sensor(uav, sensor))) for uav in request.uavs)
-    return replace(request, uavs=tuple(uavs))
+    return replace(request, uavs=tuple(uavs), organisation=None, mission=None)
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:
@@ -76,7 +76,7 @@ def plannable_request(*, mission: Mission) -> PlanRequest:
     request = request_of_mission(mission=mission)
     if not request.uavs or not request.targets:
         raise NothingToPlan
-    return with_bases(request, mission.organisation)
+    return replace(with_bases(request, mission.organisation), organisation=mission.organisation_id, mission=str(mission.pk))
 
 
 def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], str]) -> None:
@@ -112,6 +112,7 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
         locked.longest_route_m = plan["longest_route_m"]
         locked.total_energy_wh = plan.get("total_energy_wh")
         locked.separation = plan.get("separation")
+        locked.lost_link_check = plan.get("lost_link")
         locked.plan_warnings = plan["warnings"]
         locked.plan_quality = {name: plan.get(name) for name in QUALITY}
         locked.revision += 1
@@ -148,6 +149,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             duration_s=route["duration_s"],
             departs_s=route.get("departs_s", 0.0),
             energy_wh=route.get("energy_wh"),
+            charging=route.get("charging", []),
             battery_percent=route.get("battery_percent"),
             base_name=route.get("base") or "",
             lands_at=Point(*route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,

@@ -11,19 +11,23 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
+from missions.fleet_selectors import performance_of
 from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
-from missions.flight_plan.performance import performance_from_json, performance_to_json
+from missions.flight_plan.performance import Performance, performance_from_json, performance_to_json
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
 from missions.services.places import places_of
 from missions.services.requests import (
     LockRequest,
+    LostLinkRequest,
     PlanRequest,
     TargetRequest,
     UavRequest,
     lock_from_json,
     lock_to_json,
+    lost_link_from_json,
+    lost_link_to_json,
     moment_to_json,
     priority_from_json,
     priority_to_json,
@@ -73,6 +77,7 @@ class MissionChange:
     departure: Departure | None = None
     conditions: Conditions | None = None
     charging: Charging | None = None
+    lost_link: LostLinkRequest | None = None
 
     @property
     def drops_plan(self) -> bool:
@@ -94,6 +99,7 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
             departs_at=request.departs_at,
             conditions=conditions_to_json(request.conditions),
             charging_w=request.charging_w,
+            lost_link=lost_link_to_json(request.lost_link),
         )
         _store_uavs(mission, request.uavs)
         _store_targets(mission, targets)
@@ -125,6 +131,8 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             locked.conditions = conditions_to_json(change.conditions)
         if change.charging is not None:
             locked.charging_w = change.charging.power_w
+        if change.lost_link is not None:
+            locked.lost_link = lost_link_to_json(change.lost_link)
         if change.locks is not None:
             locked.locks = [lock_to_json(lock) for lock in change.locks]
         elif targets is not None:
@@ -199,7 +207,7 @@ def drop_plan(*, mission: Mission) -> None:
     mission.state = MissionState.DRAFT
     mission.planned_at = mission.graph_version = mission.ground_revision = mission.flat_ground_assumed = None
     mission.total_length_m = mission.longest_route_m = mission.total_energy_wh = None
-    mission.separation = None
+    mission.separation = mission.lost_link_check = None
     mission.plan_quality = None
     mission.plan_warnings = []
 
@@ -217,7 +225,8 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 uav=row.uav_id,
                 most_targets=row.most_targets,
                 sensors=tuple(row.sensors),
-                performance=performance_from_json(row.performance),
+                performance=_performance(row),
+                sorties=row.sorties,
             )
             for row in mission.mission_uavs.all()
         ),
@@ -239,7 +248,15 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
         departs_at=mission.departs_at,
         conditions=conditions_from_json(mission.conditions),
         charging_w=mission.charging_w,
+        lost_link=lost_link_from_json(mission.lost_link),
     )
+
+
+def _performance(row: MissionUav) -> Performance:
+    """As stored with the mission; a mission of before there were batteries has its UAV's of today."""
+    if row.performance or row.uav is None:
+        return performance_from_json(row.performance)
+    return performance_of(row.uav)
 
 
 def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:
@@ -284,6 +301,7 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             most_targets=uav.most_targets,
             sensors=list(uav.sensors),
             performance=performance_to_json(uav.performance),
+            sorties=uav.sorties,
         )
         for sequence, uav in enumerate(uavs)
     )
@@ -304,6 +322,7 @@ def _summary(mission: Mission) -> dict[str, Any]:
         "departs_at": moment_to_json(mission.departs_at),
         "conditions": mission.conditions,
         "charging_w": mission.charging_w,
+        "lost_link": mission.lost_link,
         "locks": len(mission.locks),
         "total_length_m": mission.total_length_m,
         "graph_version": mission.graph_version,

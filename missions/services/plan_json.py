@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from missions.flight_plan.charging import ChargingStop
 from missions.flight_plan.conditions import conditions_to_json
 from missions.flight_plan.heights import FloatArray
 from missions.flight_plan.timing import Timing
@@ -38,6 +39,8 @@ class PlannedRoute:
     is_flat: bool = False
     departs_s: float = 0.0  # after the plan's departure
     timing: Timing | None = None
+    charging: tuple[ChargingStop, ...] = ()
+    lacks_wh: float = 0.0  # however it charges on the way
 
 
 def plan_to_json(
@@ -51,6 +54,7 @@ def plan_to_json(
     has_terrain: bool,
     quality: Mapping[str, Any],
     separation: Mapping[str, Any],
+    lost_link: Mapping[str, Any],
     as_text: bool = False,
 ) -> dict[str, Any]:
     """as_text: lines and waypoints are ready JSON, which orjson alone takes; it writes the same bytes as of plain lists."""
@@ -68,6 +72,7 @@ def plan_to_json(
         "departs_at": moment_to_json(request.departs_at),
         "conditions": conditions_to_json(request.conditions),
         "separation": separation,
+        "lost_link": lost_link,
         "graph_version": graph_version,
         "ground_revision": ground_revision,
         "flat_ground_assumed": flat_ground_assumed,
@@ -84,6 +89,8 @@ def plan_to_json(
                 "length_m": length_m,
                 "duration_s": round(route.duration_s, 1),
                 **timing_to_json(route, column),
+                "by_hand": [],
+                "charging": [charging_to_json(stop) for stop in route.charging],
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": coordinates(route.line)},
@@ -100,8 +107,8 @@ def plan_to_json(
 
 def total_energy_wh(routes: Sequence[PlannedRoute]) -> float | None:
     """Of the routes whose energy is counted; None if that is none of them."""
-    counted = [route.timing.used_wh for route in routes if route.timing is not None and route.timing.used_wh is not None]
-    return round(sum(float(used_wh[-1]) for used_wh in counted), 2) if counted else None
+    counted = [route.timing.total_wh for route in routes if route.timing is not None and route.timing.total_wh is not None]
+    return round(sum(counted), 2) if counted else None
 
 
 def timing_to_json(route: PlannedRoute, column: Callable[[FloatArray, int], Any]) -> dict[str, Any]:
@@ -115,10 +122,19 @@ def timing_to_json(route: PlannedRoute, column: Callable[[FloatArray, int], Any]
     return {
         "departs_s": round(route.departs_s, 1),
         "energy_wh": None if timing.total_wh is None else round(timing.total_wh, 2),
-        "battery_percent": None if timing.battery_percent is None else round(timing.battery_percent, 1),
+        "battery_percent": None if timing.end_percent is None else round(timing.end_percent, 1),
         "arrival_s": column(timing.arrival_s + route.departs_s, 1),
         "used_wh": None if timing.used_wh is None else column(timing.used_wh, 2),
         "battery_left_percent": None if timing.battery_left_percent is None else column(timing.battery_left_percent, 1),
+    }
+
+
+def charging_to_json(stop: ChargingStop) -> dict[str, Any]:
+    return {
+        "waypoint": stop.place,
+        "charging_s": round(stop.charging_s, 1),
+        "charged_wh": round(stop.charged_wh, 2),
+        "stopped_s": round(stop.stopped_s, 1),
     }
 
 

@@ -1,31 +1,148 @@
-"""One plan from request to answer: places, ways, assignment, waypoints, heights, and the last look at the zones."""
+"""One plan from request to answer: on which zones it stands, the attempts on them, and the last look before it leaves."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from django.conf import settings
 
-from inspection.selectors import ground_heights_m, ground_revision, terrain_edition
-from inspection.selectors.graph import zones_of_edition
-from inspection.selectors.planning import Edition, PlanningGround, edition_now, has_terrain_at, planning_read
-from missions.flight_plan.clearance import RouteMeetsZone, refuse_legs_in_zones
-from missions.flight_plan.flyable_graph import flyable_graph
+from inspection.geodesy import LonLat
+from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
+from missions.flight_plan.separation import Separation, separation_json
+from missions.flight_selectors import OtherFlights, flights_at_the_same_time
 from missions.routing.solver import Stop, never
-from missions.routing.terminals import AccessRules
+from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
-from missions.services.attempts import attempt
+from missions.services.attempts import Attempt, attempt
+from missions.services.battery import battery_overruns, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
-from missions.services.places import places_of, whole_assets
+from missions.services.last_look import keys_of_zones_met
+from missions.services.lost_link import lost_link_check
+from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
-from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
+from missions.services.scenes import scene_on
+from missions.services.worth import Worth, value_of, worth_of
+from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
+
+MOST_GROUNDS = 5  # that may follow one another while one plan is made
+MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
+MOST_TRIES = 6  # with more zones each time
 
 
 class GraphOutdated(Exception):
-    """A zone is in force that the graph does not know yet, and a route would meet it. A new graph is seconds away."""
+    """The zones change faster than a plan can be made."""
 
-    def __init__(self, zone_name: str) -> None:
-        super().__init__(f"{zone_name} has just changed, and the network is being rebuilt for it. Plan again in a moment.")
+    def __init__(self) -> None:
+        super().__init__("The no-fly zones are being changed just now. Plan again in a moment.")
+
+
+class ZoneNotAvoided(RuntimeError):
+    """A finished route meets zones that the planner has kept clear of: a fault of the planner. The plan does not leave."""
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """An attempt with its routes drawn. `met`: primary keys of the zones that they meet at their time and height."""
+
+    found: Attempt
+    routes: Sequence[PlannedRoute]
+    separation: Separation
+    others: OtherFlights
+    has_terrain: bool
+    met: frozenset[int]
+    worth: Worth
+    is_whole: bool  # the search could count on all of what the batteries hold
+
+
+@dataclass(frozen=True, eq=False)
+class _Planner:
+    """What stays the same from attempt to attempt."""
+
+    request: PlanRequest
+    places: Sequence[Place]
+    gone: Sequence[int]
+    stop: Stop
+    on_progress: OnPlanProgress
+    seed: int
+    search_s: float
+
+    def best_on(self, ground: PlanningGround) -> tuple[Finished, Finished]:
+        """The best plan that meets no zone of this ground, and the plan on the fewest zones, which might; often the same.
+
+        First all zones that can be in force at some time of the flight are kept clear of. If some of them are so for a part of it only,
+        plans that keep clear of fewer are tried: whatever such a plan really meets is added, until it meets nothing or is no better.
+        """
+        choice = zone_choice(ground.table, self.request.departs_at, settings.FLIGHT_RULES, self._positions())
+        share = 0.5 if choice.changes else 1.0
+        best = self._clean(ground, choice, choice.widest, share)
+        if not choice.changes:
+            return best, best
+        chosen, freest = choice.narrowest, None
+        for _ in range(MOST_TRIES):
+            tried = self._finished(ground, choice, chosen, share / MOST_TRIES)
+            freest = freest or tried
+            if not tried.worth < best.worth:
+                break
+            if not tried.met:
+                best = tried
+                break
+            chosen = choice.with_zones(chosen, tried.met)
+        return best, freest or best
+
+    def _positions(self) -> list[LonLat]:
+        request = self.request
+        ends = [*(uav.position for uav in request.uavs), *(base.position for base in request.bases)]
+        return [*ends, *(at for place in self.places for at in place.course)]
+
+    def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
+        """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""
+        for _ in range(MOST_TRIES):
+            tried = self._finished(ground, choice, chosen, share)
+            if not tried.met:
+                return tried
+            more = choice.with_zones(chosen, tried.met)
+            if (more == chosen).all():
+                raise ZoneNotAvoided(sorted(tried.met))
+            chosen = more
+        raise GraphOutdated
+
+    def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
+        """An attempt, drawn. Where a route takes more of its battery than the search had counted, it counts on so much less that this
+        route is out of the question, and tries again; in the end the UAV stays on the ground."""
+        scene = scene_on(ground, chosen)
+        has_terrain = has_terrain_at(ground.edition)
+        usable_share: dict[int, float] = {}
+        for number in range(MOST_TRIES):
+            found = attempt(
+                self.request, self.places, self.gone, scene,
+                stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share, usable_share=usable_share,
+            )  # fmt: skip
+            self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
+            alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+            over = battery_overruns(self.request, found, alone)
+            if not over:
+                break
+            if number == MOST_TRIES - 1:
+                found, alone = without_overruns(self.request, found, alone, over)
+            for uav, share_left in over.items():
+                usable_share[uav] = min(usable_share.get(uav, 1.0), share_left)
+        routes, separation, others = self._apart(alone, choice)
+        met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
+        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
+
+    def _apart(self, alone: Sequence[PlannedRoute], choice: ZoneChoice) -> tuple[list[PlannedRoute], Separation, OtherFlights]:
+        """A route that is put off until after the flights that were looked up may meet those that come later: these are looked up, too."""
+        window_s = settings.FLIGHT_RULES.longest_flight_s
+        for _ in range(MOST_WINDOWS):
+            others = _others_in_the_air(self.request, window_s)
+            routes, separation = routes_apart(self.request, alone, choice.table, others.routes)
+            ends_s = max((route.departs_s + route.duration_s for route in routes), default=0.0)
+            if ends_s <= window_s:
+                break
+            window_s = 2.0 * ends_s
+        return routes, separation, others
 
 
 def make_plan(
@@ -44,67 +161,49 @@ def make_plan(
     on_progress(PlanProgress(0.0, "Looking up the targets"))
     read = planning_read(whole_assets(request.targets))
     places, gone = places_of(request.targets, read.points)
-    scene = _scene_on(read.ground())
-    found = attempt(request, places, gone, scene, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
-
-    on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
-    edition = scene.edition
-    while True:
-        ground_before = terrain_edition() if edition != scene.edition else None
-        has_ground = has_terrain_at(edition)
-        routes = found.routes(request, ground_heights_m if has_ground else None)
-        now = _look_at_zones_again(routes, scene)
-        if now == edition or (ground_before is not None and terrain_edition() == ground_before):
-            break  # else the heights belong to another ground than the revision says
-        edition = now
+    planner = _Planner(request, places, gone, stop, on_progress, seed, search_s)
+    ground = read.ground()
+    for _ in range(MOST_GROUNDS):
+        terrain = terrain_at(ground.edition)  # before any height is read
+        plan, freest = planner.best_on(ground)
+        if edition_now() == ground.edition:
+            break
+        # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.
+        now = ground = planning_read().ground()
+        if terrain_at(now.edition) == terrain and not keys_of_zones_met(plan.routes, request.departs_at, now.table):
+            break
+    else:
+        raise GraphOutdated
     return plan_to_json(
         request,
-        routes,
-        found.left_out,
-        [{"code": why.code, "uav": number, "message": why.message} for number, why in found.grounded.items()],
-        graph_version=scene.graph.version,
-        ground_revision=now[0],
-        has_terrain=has_ground,
-        separation={},
-        quality=quality_of(
-            found.solution,
-            found.lock_cost,
-            request.objective,
-            total_m=sum(route.length_m for route in routes),
-            longest_s=max(route.duration_s for route in routes),
-        ),
+        plan.routes,
+        plan.found.left_out,
+        [{"code": why.code, "uav": number, "message": why.message} for number, why in plan.found.grounded.items()],
+        graph_version=plan.found.scene.graph.version,
+        ground_revision=ground.edition[0],
+        has_terrain=plan.has_terrain,
+        separation=separation_json(plan.separation, plan.others.untimed),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.whole_graph, has_terrain=plan.has_terrain),
+        quality=_quality(request, plan, freest),
         as_text=as_text,
     )
 
 
-def current_scene() -> Scene:
-    """Raises NoGraph."""
-    return _scene_on(planning_read().ground())
+def _others_in_the_air(request: PlanRequest, window_s: float) -> OtherFlights:
+    """A plan for any time cannot be kept apart from flights of a certain one; it gets a departure before it is flown."""
+    if request.departs_at is None or request.organisation is None:
+        return OtherFlights()
+    from_s = request.departs_at.timestamp()
+    return flights_at_the_same_time(request.organisation, from_s, from_s + window_s, but=request.mission)
 
 
-def _scene_on(ground: PlanningGround) -> Scene:
-    linking, routing, flight = settings.GRAPH_RULES, settings.ROUTING_RULES, settings.FLIGHT_RULES
-    access = AccessRules(
-        access_leg_m=routing.access_leg_m,
-        direct_leg_m=routing.direct_leg_m,
-        on_asset_m=linking.railway_spacing_m,
-        off_network_factor=linking.off_network_factor,
-        zone_clearance_m=linking.zone_clearance_m,
+def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str, object]:
+    """How good the plan is beside all others, those that fly through a zone while it is not in force included."""
+    share = freest.worth.value / plan.worth.value if plan.worth.value and freest.worth.left_out == plan.worth.left_out else None
+    return quality_of(
+        freest.found.solution,
+        plan.found.lock_cost,
+        request.objective,
+        value=value_of(request.objective, plan.routes),
+        share_of_freest=None if not (plan.is_whole and freest.is_whole) else 1.0 if plan is freest else share,
     )
-    return Scene(ground.graph, flyable_graph(ground.graph, flight), ground.zones, access, flight, ground.edition)
-
-
-def _look_at_zones_again(routes: Sequence[PlannedRoute], scene: Scene) -> Edition:
-    """Check every leg against the zones in force at this moment; returns the ground's edition that they belong to."""
-    now = edition_now()
-    zones = zones_of_edition(now)
-    for route in routes:
-        if route.line is None:
-            continue
-        try:
-            refuse_legs_in_zones(route.line, zones.polygons)
-        except RouteMeetsZone as error:
-            if scene.graph.ground_revision < ground_revision():  # asked anew: the zones may be younger than `now`
-                raise GraphOutdated(zones.names[error.zone]) from error
-            raise
-    return now

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from django.conf import settings
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import Edition
 from missions.fleet_selectors import states_out_of_service
-from missions.flight_plan.heights import is_above_limit
+from missions.flight_plan.heights import inspection_agl_m, is_above_limit
 from missions.flight_plan.rules import FlightRules
 from missions.models import UavState
 from missions.routing.terminals import AccessRules, tallest_support_m
@@ -20,11 +21,15 @@ from missions.services.requests import UavRequest
 
 @dataclass(frozen=True)
 class Scene:
-    """What every step of one plan looks at. `graph` is the part of `whole_graph` that can be flown over."""
+    """What every step of one plan looks at. `graph` is the part of `whole_graph` that can be flown over.
+
+    `zones` are all that are kept clear of, `leg_zones` those of them that reach the heights between targets.
+    """
 
     whole_graph: InspectionGraph
     graph: InspectionGraph
     zones: ZoneIndex
+    leg_zones: ZoneIndex
     access: AccessRules
     flight: FlightRules
     edition: Edition  # of the ground, when the plan was begun
@@ -44,16 +49,17 @@ def asset_gone(target: int) -> LeftOut:
 
 
 def refused_place(place: Place, scene: Scene) -> LeftOut | None:
-    """Why a place can be on no route at all, or None."""
+    """Why a place can be on no route at all, or None. Zones count at the heights between its inspection and the flight to it."""
+    height_m = place_height_m(place, scene)
+    agl_m = inspection_agl_m(height_m, scene.flight)
     if place.is_stretch:
-        zone = _zone_along(place.course, scene)
+        zone = _zone_along(place.course, agl_m, scene)
         if zone is not None:
             return LeftOut(place.target, "inside_zone", f"It runs through {zone}.")
     else:
-        zone = zone_at(place.course[0], scene)
+        zone = zone_at(place.course[0], scene, agl_m)
         if zone is not None:
             return LeftOut(place.target, "inside_zone", f"It stands inside {zone}.")
-    height_m = place_height_m(place, scene)
     if is_above_limit(height_m, scene.flight):
         needed_m = height_m + scene.flight.clearance_m
         limit_m = scene.flight.max_agl_m
@@ -94,21 +100,34 @@ def groundings(uavs: Sequence[UavRequest], scene: Scene) -> dict[int, Grounding]
     return found
 
 
-def zone_at(position: LonLat, scene: Scene) -> str | None:
-    """Name of the zone that holds the position; a place nearer to a zone than the clearance counts as inside it."""
-    if not len(scene.zones) or not scene.zones.contains([position], scene.access.zone_clearance_m)[0]:
+def zone_at(position: LonLat, scene: Scene, agl_m: float = 0.0) -> str | None:
+    """Name of the zone that holds the position between this height above ground and that of the flight to it.
+
+    A place nearer to a zone than the clearance counts as inside it.
+    """
+    if not len(scene.zones):
         return None
-    found = scene.zones.zone_at(position)
+    low_m, high_m = _column_m(agl_m, scene)
+    if not scene.zones.contains([position], scene.access.zone_clearance_m, low_m, high_m)[0]:
+        return None
+    found = scene.zones.zone_at(position, low_m, high_m)
     return found[1] if found else f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
 
 
-def _zone_along(course: tuple[LonLat, ...], scene: Scene) -> str | None:
+def _zone_along(course: tuple[LonLat, ...], agl_m: float, scene: Scene) -> str | None:
     line = np.array(course)
-    met = np.flatnonzero(scene.zones.meets(line[:-1], line[1:], scene.access.zone_clearance_m))
+    low_m, high_m = _column_m(agl_m, scene)
+    met = np.flatnonzero(scene.zones.meets(line[:-1], line[1:], scene.access.zone_clearance_m, low_m, high_m))
     if not len(met):
         return None
     for leg in met.tolist():
-        found = scene.zones.first_met(course[leg], course[leg + 1])
+        found = scene.zones.first_met(course[leg], course[leg + 1], low_m, high_m)
         if found is not None:
             return found[1]
     return f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
+
+
+def _column_m(agl_m: float, scene: Scene) -> tuple[float, float]:
+    """From this height to that of the flight to it, with all that a height may stray and that is kept from a zone's limits."""
+    give_m = scene.flight.terrain_tolerance_m + settings.ZONE_RULES.height_margin_m
+    return min(agl_m, scene.flight.transit_agl_m) - give_m, max(agl_m, scene.flight.transit_agl_m) + give_m

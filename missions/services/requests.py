@@ -6,6 +6,7 @@ from typing import Any
 
 from inspection.geodesy import LonLat
 from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
+from missions.flight_plan.lost_link import LostLink
 from missions.flight_plan.performance import Performance, performance_from_json, performance_to_json
 from missions.models import EndAction
 from missions.routing.problem import Objective, Priority, Task, TaskKind
@@ -25,6 +26,7 @@ class UavRequest:
     most_targets: int | None = None
     sensors: tuple[str, ...] = ()
     performance: Performance = NO_BATTERY
+    sorties: int = 1  # flights that it makes at most; several only where it returns
 
 
 @dataclass(frozen=True)
@@ -62,9 +64,22 @@ class BaseRequest:
 
 
 @dataclass(frozen=True)
+class LostLinkRequest:
+    """What UAVs do when their link is lost for good; hold_s before they return, only with hold."""
+
+    behaviour: LostLink = LostLink.GO_ON
+    rally_points: tuple[LonLat, ...] = ()
+    hold_s: float = 0.0
+
+
+GO_ON = LostLinkRequest()
+
+
+@dataclass(frozen=True)
 class PlanRequest:
     """`bases` are those of the organisation when the plan was asked for; only filled in where a UAV is to land at one.
 
+    `organisation` and `mission` are the keys of whose plan it is: other missions of the organisation that fly then are kept apart from.
     Without `departs_at` the plan is for any time. `charging_w` is the power of charging at towers on the way, if that is wished.
     """
 
@@ -77,6 +92,9 @@ class PlanRequest:
     departs_at: datetime | None = None
     conditions: Conditions = CALM
     charging_w: float | None = None
+    lost_link: LostLinkRequest = GO_ON
+    organisation: int | None = None
+    mission: str | None = None
 
     def end_action(self, uav: int) -> EndAction:
         """What the UAV does in the end: the wish that all return comes first."""
@@ -115,6 +133,22 @@ def lock_from_json(value: dict[str, Any]) -> LockRequest:
     return LockRequest(value["uav"], tuple(value["targets"]), value["at_start"], value["at_end"])
 
 
+def lost_link_to_json(lost_link: LostLinkRequest) -> dict[str, Any]:
+    return {
+        "behaviour": lost_link.behaviour.value,
+        "rally_points": [list(at) for at in lost_link.rally_points],
+        "hold_s": lost_link.hold_s,
+    }
+
+
+def lost_link_from_json(value: dict[str, Any]) -> LostLinkRequest:
+    return LostLinkRequest(
+        LostLink(value.get("behaviour", LostLink.GO_ON)),
+        tuple(LonLat(*at) for at in value.get("rally_points", ())),
+        float(value.get("hold_s", 0.0)),
+    )
+
+
 def moment_to_json(moment: datetime | None) -> str | None:
     return None if moment is None else moment.astimezone(UTC).isoformat().replace("+00:00", "Z")
 
@@ -136,6 +170,7 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "most_targets": uav.most_targets,
                 "sensors": list(uav.sensors),
                 "performance": performance_to_json(uav.performance),
+                "sorties": uav.sorties,
             }
             for uav in request.uavs
         ],
@@ -158,6 +193,9 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
         "departs_at": moment_to_json(request.departs_at),
         "conditions": conditions_to_json(request.conditions),
         "charging_w": request.charging_w,
+        "lost_link": lost_link_to_json(request.lost_link),
+        "organisation": request.organisation,
+        "mission": request.mission,
     }
 
 
@@ -175,6 +213,7 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 most_targets=uav.get("most_targets"),
                 sensors=tuple(uav.get("sensors", ())),
                 performance=performance_from_json(uav.get("performance", {})),
+                sorties=uav.get("sorties", 1),
             )
             for uav in value["uavs"]
         ),
@@ -197,4 +236,7 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
         departs_at=moment_from_json(value.get("departs_at")),
         conditions=conditions_from_json(value.get("conditions") or {}),
         charging_w=value.get("charging_w"),
+        lost_link=lost_link_from_json(value.get("lost_link") or {}),
+        organisation=value.get("organisation"),
+        mission=value.get("mission"),
     )

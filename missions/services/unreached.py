@@ -1,6 +1,6 @@
 """Why a target is left out after the routes are found: the solver's reason, and the wish, the distance or the zones behind it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,15 +19,25 @@ MOST_NAMED = 3  # UAVs that a reason names
 
 
 def unreached_places(
-    unassigned: Sequence[Unassigned], request: PlanRequest, asked: Assignment, places: Sequence[Place], ways: Ways, scene: Scene
+    unassigned: Sequence[Unassigned],
+    request: PlanRequest,
+    asked: Assignment,
+    places: Sequence[Place],
+    ways: Ways,
+    scene: Scene,
+    no_landing: Mapping[int, str],
 ) -> list[LeftOut]:
-    """The solver's reasons in full; ways and visits as it had them."""
+    """The solver's reasons in full; ways and visits as it had them. no_landing: zones in which UAVs would land at places, by number."""
     visits_of = asked.problem.visits_of_target()
     crew: _Crew | None = None
     in_runs = {target for lock in asked.problem.locks if len(lock.targets) > 1 for target in lock.targets}
     found = []
     for item in unassigned:
         place, visits = places[item.target], visits_of[item.target]
+        if item.target in no_landing and item.reason is Reason.NO_PATH:
+            message = f"To land there is to fly through {no_landing[item.target]}."
+            found.append(LeftOut(place.target, "inside_zone", message))
+            continue
         if item.target in asked.held_back:
             found.append(LeftOut(place.target, Reason.NOT_ALLOWED.value, asked.held_back[item.target]))
             continue

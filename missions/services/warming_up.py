@@ -9,7 +9,7 @@ from inspection.graph.route_index import asset_places, node_tree, route_index
 from inspection.selectors import NoGraph
 from missions.flight_plan.rehearsal import rehearse as rehearse_drawing
 from missions.routing.rehearsal import rehearse as rehearse_solvers
-from missions.services.planning import current_scene
+from missions.services.scenes import current_scene
 
 logger = logging.getLogger(__name__)
 

@@ -7,26 +7,22 @@ from typing import Any
 
 import numpy as np
 import shapely
-from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m
-from inspection.graph.build import build
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.zone_index import ZoneIndex
-from inspection.selectors.ground_data import ground_without_zones
-from missions.flight_plan.flyable_graph import flyable_graph
 from missions.models import EndAction
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene
 from missions.services.refusals import Scene, zone_at
 from missions.services.requests import InvalidRequest, PlanRequest
+from missions.services.scenes import current_scene, scene_without_zones
 from missions.services.visits import visits_of_places
+from missions.services.why_binds import what_binds
 
 MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
 BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route
-MOST_BOX_DEG = 1.5  # a wider box would take too long to build without its zones
 LEAST_DETOUR_M = 20.0
 
 
@@ -47,9 +43,9 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
     """routes: for each UAV of the request its targets in order. Raises InvalidRequest or NoGraph."""
     if not routes[uav]:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
-    scene = current_scene()
+    scene = current_scene(request)
     wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
-    field = _field(request, wanted, scene, scene.graph, scene.zones)
+    field = _field(request, wanted, scene, scene.graph, scene.leg_zones)
     order = _best_order(request, field, uav, routes[uav])
     legs_m = _legs_m(request, field, uav, order)
     along_m = sum(field.along_m[visit] for visit in order)
@@ -69,7 +65,29 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
         "zones": _zones_met(detours or []),
         "heaviest": _heaviest(request, field, uav, order, legs_m),
         "alternative": _alternative(request, field, routes, uav, order) if len(wanted) == sum(map(len, routes)) else None,
+        **what_binds(
+            request,
+            scene,
+            field.places,
+            field.ways,
+            _orders(request, field, routes, uav, order),
+            uav,
+            length_m=length_m,
+            is_round_zones=bool(round_zones_m),
+        ),
     }
+
+
+def _orders(
+    request: PlanRequest, field: _Field, routes: Sequence[Sequence[int]], uav: int, order: Sequence[int]
+) -> dict[int, Sequence[int]]:
+    """The visits of each UAV whose targets are all looked at."""
+    others = {
+        other: _best_order(request, field, other, targets)
+        for other, targets in enumerate(routes)
+        if targets and other != uav and other in field.uav_of and all(target in field.visits_of for target in targets)
+    }
+    return {uav: order} | others
 
 
 def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: InspectionGraph, zones: ZoneIndex) -> _Field:
@@ -159,14 +177,12 @@ def _detours(
         *(at for place in places_of(request.targets)[0] if place.target in targets for at in place.course),
     ]
     (west, south), (east, north) = np.min(positions, axis=0) - BOX_MARGIN_DEG, np.max(positions, axis=0) + BOX_MARGIN_DEG
-    near = [polygon for polygon in scene.zones.polygons if shapely.box(west, south, east, north).intersects(polygon)]
-    if not near:
+    if not shapely.intersects(scene.zones.polygons, shapely.box(west, south, east, north)).any():
         return [(0.0, []) for _ in legs_m]
-    if max(east - west, north - south) > MOST_BOX_DEG:
-        return None
-    graph = flyable_graph(build(ground_without_zones((west, south, east, north)), settings.GRAPH_RULES).graph, scene.flight)
+    free = scene_without_zones()
+    graph = free.graph
     own = replace(request, uavs=(request.uavs[uav],), locks=())
-    field = _field(own, set(targets), scene, graph, ZoneIndex([], [], []))
+    field = _field(own, set(targets), scene, graph, free.leg_zones)
     order = _best_order(own, field, 0, targets)
     free_m = _legs_m(own, field, 0, order)
     if not np.isfinite(sum(free_m)):

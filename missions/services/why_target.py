@@ -19,9 +19,9 @@ from missions.routing.reach import needed_range_m
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene
 from missions.services.refusals import Scene, groundings, place_height_m, zone_at
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest
+from missions.services.scenes import current_scene
 from missions.services.visits import visits_of_places
 from missions.services.wishes import may_do, stored_bases
 from workspace.models import Organisation
@@ -32,7 +32,7 @@ LEAST_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not wort
 
 def explain_unreached_target(*, request: PlanRequest, target: int, organisation: Organisation) -> dict[str, Any]:
     """target is its place in the request. Raises InvalidRequest or NoGraph."""
-    scene = current_scene()
+    scene = current_scene(request)
     found, _ = places_of([request.targets[target]])
     said: dict[str, Any] = {
         "target": target,
@@ -161,7 +161,7 @@ def _needs(fleet: PlanRequest, place: Place, scene: Scene) -> tuple[Ways, np.nda
     visits, courses = visits_of_places([place])
     ways = ways_between(
         scene.graph,
-        scene.zones,
+        scene.leg_zones,
         starts=[Terminal(uav.position) for uav in fleet.uavs],
         entries=[Terminal(course[0], place.asset) for course in courses],
         exits=[Terminal(course[-1], place.asset) for course in courses],

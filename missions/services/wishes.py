@@ -10,6 +10,7 @@ from django.utils.translation import ngettext
 from inspection.geodesy import LonLat
 from missions.fleet_selectors import bases_of_organisation
 from missions.models import EndAction
+from missions.routing.problem import Objective
 from missions.services.requests import BaseRequest, InvalidRequest, LockRequest, PlanRequest, TargetRequest, UavRequest
 from workspace.models import Organisation
 
@@ -54,6 +55,13 @@ def refuse_contradictions(request: PlanRequest) -> None:
 
 def _faults(request: PlanRequest) -> Iterator[tuple[str, str]]:
     names = Counter(uav.name for uav in request.uavs)
+    if request.objective is Objective.ENERGY:
+        for number, uav in enumerate(request.uavs):
+            if uav.performance.battery_wh is None:
+                yield f"uavs.{number}.battery_wh", _("Without a battery %(uav)s has no energy to save.") % {"uav": uav.name}
+    for number, uav in enumerate(request.uavs):
+        if uav.sorties > 1 and request.end_action(number) is not EndAction.RETURN:
+            yield f"uavs.{number}.sorties", _("%(uav)s can fly again only where it returns to its start.") % {"uav": uav.name}
     for number, target in enumerate(request.targets):
         if target.uav:
             yield from _name_fault(f"targets.{number}.uav", target.uav, names)

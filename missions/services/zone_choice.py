@@ -1,20 +1,25 @@
 """Which zones a plan keeps clear of: all that can be in force while it is flown, or fewer where that brings a better plan."""
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
 import numpy as np
-from inspection.zones.reach import ZoneTable
-from numpy.typing import NDArray
 
+from inspection.geodesy import LonLat
+from inspection.zones.reach import BoolArray, FloatArray, ZoneTable
 from missions.flight_plan.rules import FlightRules
 
-BoolArray = NDArray[np.bool_]
+NEAR_SHARE = 0.5  # of what a plan extends over, on each side; ways lead farther round only where nothing nearer is left
+NEAR_DEG = 0.15  # some 15 km
 
 
 @dataclass(frozen=True, eq=False)
 class ZoneChoice:
-    """Zones that reach the heights of the flight. widest, narrowest (z,): in force at any moment of the window, through all of it."""
+    """widest, narrowest (z,): the zones that are in force at any moment of the flight, and those that are so all the time.
+
+    Zones that do not reach the heights of a flight are in both: they bar nothing.
+    """
 
     table: ZoneTable
     widest: BoolArray
@@ -23,20 +28,42 @@ class ZoneChoice:
     @property
     def changes(self) -> bool:
         """Whether a zone comes into force, or goes out of it, while the plan is flown."""
-        return bool((self.widest & ~self.narrowest).any())
+        return bool((self.widest != self.narrowest).any())
 
-    def numbers_of(self, ids: set[int]) -> BoolArray:
-        """Which zones have one of these primary keys, (z,)."""
-        mask: BoolArray = np.isin(self.table.ids, list(ids))
+    def with_zones(self, chosen: BoolArray, ids: Collection[int]) -> BoolArray:
+        """The mask, and the zones with these primary keys."""
+        mask: BoolArray = chosen | np.isin(self.table.ids, list(ids))
         return mask
 
 
-def zone_choice(table: ZoneTable, departs_at: datetime | None, flight: FlightRules) -> ZoneChoice:
-    """Without a departure every zone counts as in force at any time."""
-    near = table.only(table.reaching(0.0, flight.max_agl_m))
+def zone_choice(
+    table: ZoneTable, departs_at: datetime | None, flight: FlightRules, positions: Sequence[LonLat] | None = None
+) -> ZoneChoice:
+    """Without a departure every zone counts as in force at any time; with positions, so does a zone far from all of them.
+
+    A network that is cleared of one more zone far away is most often there already, for others, or for another departure.
+    """
     if departs_at is None:
-        always = np.ones(len(near), dtype=bool)
-        return ZoneChoice(near, always, always)
+        always = np.ones(len(table), dtype=bool)
+        return ZoneChoice(table, always, always)
     from_s = departs_at.timestamp()
     to_s = from_s + flight.longest_flight_s
-    return ZoneChoice(near, near.active_within(from_s, to_s), near.active_throughout(from_s, to_s))
+    no_matter = ~table.reaching(0.0, flight.max_agl_m)
+    if positions is not None:
+        no_matter |= ~_near(table, np.array(positions, dtype=np.float64).reshape(-1, 2))
+    some = ~no_matter
+    widest, narrowest = no_matter.copy(), no_matter.copy()
+    asked = table.only(some)
+    widest[some] = asked.active_within(from_s, to_s)
+    narrowest[some] = asked.active_throughout(from_s, to_s)
+    return ZoneChoice(table, widest, narrowest)
+
+
+def _near(table: ZoneTable, positions: FloatArray) -> BoolArray:
+    """Which zones come near the box of the positions, (z,)."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    about = np.maximum(NEAR_SHARE * (high - low), NEAR_DEG)
+    low, high = low - about, high + about
+    box = table.box
+    near: BoolArray = (box[:, 0] <= high[0]) & (box[:, 2] >= low[0]) & (box[:, 1] <= high[1]) & (box[:, 3] >= low[1])
+    return near

@@ -59,7 +59,7 @@ def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Respon
     return Response(mission_json(mission), status=status, headers=headers)
 
 
-def _expected_revision(request: Request) -> int | None:
+def expected_revision(request: Request) -> int | None:
     """The revision that If-Match names; None without the header or for any (*)."""
     text = request.headers.get("If-Match", "*").strip().removeprefix("W/").strip('"')
     if text == "*":
@@ -168,7 +168,7 @@ class MissionDetail(_PlansWhenAsked):
     )
     def patch(self, request: Request, mission_id: UUID) -> Response:
         user = request.user
-        expected = _expected_revision(request)
+        expected = expected_revision(request)
         mission = mission_or_404(user, mission_id)
         serializer = inputs.MissionPatchSerializer(data=request.data, context={"organisation": user.organisation})
         serializer.is_valid(raise_exception=True)
@@ -190,7 +190,7 @@ class MissionDetail(_PlansWhenAsked):
         responses={204: None, **CHANGED},
     )
     def delete(self, request: Request, mission_id: UUID) -> Response:
-        expected = _expected_revision(request)
+        expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
             services.delete_mission(mission=mission, actor=request.user, expected_revision=expected)
@@ -207,7 +207,7 @@ class MissionPlan(_PlansWhenAsked):
     )
     @idempotent
     def post(self, request: Request, mission_id: UUID) -> Response:
-        expected = _expected_revision(request)
+        expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
             return _plan_and_answer(request.user, mission, revision=mission.revision if expected is None else expected)

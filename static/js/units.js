@@ -42,6 +42,10 @@ export function lengthText(length_m) {
 export const LONG_UNIT = isImperial ? { unit: "mi", metres: MILE_M } : { unit: "km", metres: 1000 };
 /** What heights and short distances are typed in. */
 export const SHORT_UNIT = isImperial ? { unit: "ft", metres: FOOT_M } : { unit: "m", metres: 1 };
+/** What temperatures are typed in: `typed` from degrees Celsius, `celsius` back. */
+export const TEMPERATURE_UNIT = isImperial
+  ? { unit: "°F", typed: (celsius) => (celsius * 9) / 5 + 32, celsius: (typed) => ((typed - 32) * 5) / 9 }
+  : { unit: "°C", typed: (celsius) => celsius, celsius: (typed) => typed };
 /** What speeds are typed in. */
 export const SPEED_UNIT = isImperial ? { unit: "mph", mps: MPH_MPS } : { unit: "m/s", mps: 1 };
 
@@ -77,6 +81,19 @@ export function exactHeightText(height_m) {
 export function speedText(speed_mps) {
   if (isImperial) return withUnit(grouped(Math.round(speed_mps / MPH_MPS)), "mph");
   return withUnit(grouped(speed_mps, Number.isInteger(speed_mps) ? 0 : 1), "m/s");
+}
+
+export function temperatureText(temperature_c) {
+  return withUnit(grouped(Math.round(TEMPERATURE_UNIT.typed(temperature_c))), TEMPERATURE_UNIT.unit);
+}
+
+export function energyText(energy_wh) {
+  if (energy_wh === null || energy_wh === undefined) return "—";
+  return withUnit(grouped(Math.round(energy_wh)), "Wh");
+}
+
+export function powerText(power_w) {
+  return withUnit(grouped(Math.round(power_w)), "W");
 }
 
 export function percentText(percent) {
@@ -123,4 +140,44 @@ export function dayText(iso, now = new Date()) {
 /** Day, time and the zone's name in full: for tooltips. */
 export function exactText(iso) {
   return new Date(iso).toLocaleString(LOCALE, { ...zone, dateStyle: "medium", timeStyle: "long" });
+}
+
+/** "+12:05", "+1:02:05": time since a departure that has no date. */
+export function sinceText(seconds) {
+  const whole = Math.max(0, Math.round(seconds));
+  const two = (figure) => `${figure}`.padStart(2, "0");
+  const [hours, minutes] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60];
+  return hours ? `+${hours}:${two(minutes)}:${two(whole % 60)}` : `+${two(minutes)}:${two(whole % 60)}`;
+}
+
+/** Minutes by which the reader's clock is ahead of UTC at a moment [ms]. */
+function aheadOfUtc_min(moment) {
+  const part = new Intl.DateTimeFormat("en-US", { ...zone, timeZoneName: "longOffset" }).formatToParts(new Date(moment)).find(({ type }) => type === "timeZoneName").value;
+  const [, sign, hours, minutes] = /GMT(?:([+-])(\d\d):(\d\d))?/.exec(part);
+  return sign ? (sign === "-" ? -1 : 1) * (Number(hours) * 60 + Number(minutes)) : 0;
+}
+
+/** "Europe/Berlin, UTC+1": by which clock the reader's times are, at a moment. */
+export function zoneText(iso) {
+  const name = preferences.timeZone || new Intl.DateTimeFormat().resolvedOptions().timeZone;
+  const ahead = aheadOfUtc_min(Date.parse(iso));
+  const rest = Math.abs(ahead) % 60;
+  const figure = `UTC${ahead < 0 ? "−" : "+"}${Math.floor(Math.abs(ahead) / 60)}${rest ? `:${`${rest}`.padStart(2, "0")}` : ""}`;
+  return name === "UTC" ? "UTC" : `${name}, ${figure}`;
+}
+
+/** "2026-11-21T19:30": a moment by the reader's clock, as a field for date and time takes it. */
+export function typedMoment(iso) {
+  const moment = Date.parse(iso);
+  return new Date(moment + aheadOfUtc_min(moment) * 60_000).toISOString().slice(0, 16);
+}
+
+/** The moment that a field for date and time says, by the reader's clock; an hour that a change of the clocks leaves out is the one after it. */
+export function momentTyped(typed) {
+  const asUtc = Date.parse(`${typed}Z`);
+  if (!Number.isFinite(asUtc)) return null;
+  const guess = asUtc - aheadOfUtc_min(asUtc) * 60_000;
+  const moment = asUtc - aheadOfUtc_min(guess) * 60_000;
+  const isThere = asUtc - aheadOfUtc_min(moment) * 60_000 === moment;
+  return new Date(isThere ? moment : Math.max(guess, moment)).toISOString();
 }

@@ -44,7 +44,7 @@ def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor
     opens_mission(page, "Two ways", more=[{"position": FAR_AWAY}])
     facts = page.locator("#plan-facts")
     even, least = (
-        page.locator("#objective label").filter(has_text="Even routes"),
+        page.locator("#objective label").filter(has_text="Finish soonest"),
         page.locator("#objective label").filter(has_text="Fly least"),
     )
     expect(even).to_contain_text(re.compile(r"\d+\smin, \d+\.\d\skm"))
@@ -57,7 +57,7 @@ def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor
     expect(facts).to_contain_text(figures["least"])
     expect(facts).not_to_contain_text("for the selection before")
     page.keyboard.press("Control+z")
-    expect(objective(page, "Even routes")).to_be_checked()
+    expect(objective(page, "Finish soonest")).to_be_checked()
     expect(facts).to_contain_text(figures["even"])
 
 

@@ -153,6 +153,7 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     dialog.get_by_label("At most this many targets").fill("2")
     dialog.get_by_label("End, where").select_option("Land at the nearest base")
     dialog.get_by_role("button", name="Change").click()
+    page.mouse.move(0, 0)  # a notice under the pointer would stay
     kite = page.get_by_role("listitem").filter(has=page.get_by_role("button", name="Change Kite in this mission"))
     expect(kite).to_contain_text("at most 2 targets")
     expect(kite).to_contain_text("lands at the nearest base")

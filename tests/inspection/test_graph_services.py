@@ -2,6 +2,9 @@
 
 import json
 import shutil
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict
 from io import StringIO
 from pathlib import Path
 
@@ -16,13 +19,21 @@ from django.utils import timezone
 from inspection import selectors, services, tasks
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import flyable_part
-from inspection.graph.inspection_graph import NodeKind
+from inspection.graph.inspection_graph import InspectionGraph, NodeKind
 from inspection.graph.legs import Attachment
 from inspection.graph.route_index import route_index
 from inspection.graph.rules import LinkingRules
+from inspection.graph.snapshot_file import CLEARED, NETWORKS
 from inspection.graph.ways import travel_between
+from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
+from inspection.selectors import graph as graph_selectors
+from inspection.selectors.graph import KEPT, _Kept, graph_for
+from inspection.selectors.planning import planning_read
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
+from tests.inspection.graph.drawn_graphs import drawn_graph
+
+GRAPH, OTHER = drawn_graph([], []), drawn_graph([], [])
 
 pytestmark = pytest.mark.django_db
 
@@ -85,11 +96,12 @@ def test_nothing_is_built_while_nothing_has_changed(line, settings):
     assert services.build_graph().version > forced.version
 
 
-def test_a_zone_takes_nodes_and_edges_out(line):
+def test_a_zone_takes_nodes_and_edges_out_and_is_gone_round(line):
+    """Two towers are left, and two bends round the zone between them."""
     services.build_graph()
     zone = add_zone(9.0015, 46.999, 9.0025, 47.001)
     snapshot = services.build_graph()
-    assert (snapshot.nodes, snapshot.edges, snapshot.components) == (2, 0, 2)
+    assert (snapshot.nodes, snapshot.edges, snapshot.components) == (4, 3, 1)
     assert (snapshot.excluded_nodes, snapshot.excluded_edges) == (1, 2)
     assert selectors.current_graph().zone_id.tolist() == [zone.pk]
     assert selectors.current_graph().zone_name == ("Airfield",)
@@ -109,7 +121,7 @@ def test_zones_in_force_are_those_of_now_not_of_the_graph(line):
 def test_a_process_loads_a_version_once_and_takes_up_the_next(line, django_assert_num_queries):
     services.build_graph()
     graph = selectors.current_graph()
-    with django_assert_num_queries(1):
+    with django_assert_num_queries(2):
         assert selectors.current_graph() is graph
     newer = services.build_graph(force=True)
     assert selectors.current_graph().version == newer.version
@@ -207,12 +219,13 @@ def test_build_graph_prints_its_figures(line):
     assert "3 nodes, 2 edges, 1 components" in printed.getvalue()
 
 
-def test_the_graph_is_exported_in_three_formats(line, tmp_path):
+def test_the_graph_is_exported_in_three_formats(line, settings, tmp_path):
     first = services.build_graph()
+    call_command("export_graph", "--format", "graphml", "--version", str(first.version), str(tmp_path / "all.graphml"), stdout=StringIO())
+    settings.GRAPH_RULES = LinkingRules(detour_m=0.0)
     add_zone(9.0025, 46.999, 9.0035, 47.001)
     services.build_graph()
 
-    call_command("export_graph", "--format", "graphml", "--version", str(first.version), str(tmp_path / "all.graphml"), stdout=StringIO())
     copy = nx.read_graphml(tmp_path / "all.graphml")
     assert (len(copy), copy.number_of_edges(), copy.graph["graph_version"]) == (3, 2, first.version)
     assert {data["kind"] for _, data in copy.nodes(data=True)} == {"support", "line_vertex"}
@@ -239,19 +252,139 @@ def test_an_export_without_a_graph_or_to_no_folder_says_why(line, tmp_path):
     assert not connection.needs_rollback
 
 
+def cleared_files(settings) -> set[str]:
+    return {path.name for path in (settings.GRAPH_CACHE_DIR / CLEARED).iterdir()}
+
+
 def test_the_task_leaves_the_index_ready_for_planners(line, settings):
-    snapshot = services.build_graph()
-    assert (settings.GRAPH_CACHE_DIR / str(snapshot.version) / "labels.label_hub.npy").exists()
+    services.build_graph()
+    (name,) = cleared_files(settings)
+    assert (settings.GRAPH_CACHE_DIR / CLEARED / name / "labels.label_hub.npy").exists()
     index = route_index(selectors.current_graph())
     assert isinstance(index.labels.label_cost.base, np.memmap)
+    assert cleared_files(settings) == {name}
 
 
-def test_an_old_snapshot_without_an_index_gets_one_when_it_is_loaded(line, settings):
+def test_an_old_snapshot_without_files_gets_them_when_it_is_loaded(line, settings):
     snapshot = services.build_graph()
     shutil.rmtree(settings.GRAPH_CACHE_DIR)
     graph = selectors.graph_of_version(snapshot.version)
     assert isinstance(route_index(graph).labels.label_cost.base, np.memmap)
     assert travel_between(graph, [[Attachment(0, 0.0, 0.0)]], [[Attachment(1, 0.0, 0.0)]]).length_m[0, 0] > 0
+
+
+@pytest.mark.parametrize("spoiled", [CLEARED, NETWORKS])
+def test_broken_files_are_made_anew_from_what_is_not_broken(line, settings, monkeypatch, spoiled):
+    """A broken network from the database, a broken graph from the network."""
+    snapshot = services.build_graph()
+    whole = graph_of_plans()
+    for path in (settings.GRAPH_CACHE_DIR / spoiled).glob("*/position.npy"):
+        content = bytearray(path.read_bytes())
+        content[-1] ^= 1
+        path.unlink()  # what is mapped stays as it is
+        path.write_bytes(bytes(content))
+    monkeypatch.setattr(graph_selectors, "_graphs", _Kept())
+    add_zone(9.1, 47.1, 9.2, 47.2)  # beside everything: another set of zones, the same graph
+    for zones in (selectors.zones_in_force(), selectors.zones_in_force().where([])):
+        again = graph_for(snapshot.version, zones)
+        assert again.position.tobytes() == whole.position.tobytes()
+        assert isinstance(again.position.base, np.memmap)
+
+
+def graph_of_plans() -> InspectionGraph:
+    ground = planning_read().ground()
+    return ground.graph(ground.zones())
+
+
+def test_a_saved_zone_is_in_force_before_there_is_a_new_snapshot(line):
+    snapshot = services.build_graph()
+    zone = add_zone(9.0015, 46.999, 9.0025, 47.001)
+    graph = graph_of_plans()
+    assert (graph.version, np.unique(graph.node_kind).tolist()) == (snapshot.version, [NodeKind.SUPPORT, NodeKind.BEND])
+    assert graph.zone_id.tolist() == [zone.pk]
+
+
+def test_a_snapshot_after_a_change_of_zones_has_the_network_of_before(line, settings):
+    first = services.build_graph()
+    add_zone(9.0015, 46.999, 9.0025, 47.001)
+    second = services.build_graph()
+    assert second.arrays_sha256 == first.arrays_sha256
+    assert len(list((settings.GRAPH_CACHE_DIR / NETWORKS).iterdir())) == 1
+    assert len(cleared_files(settings)) == 2
+
+
+def test_each_set_of_zones_has_its_graph(line):
+    row = services.build_graph()
+    west, east = (add_zone(lon - 0.0001, 46.999, lon + 0.0001, 47.001, name) for lon, name in ((9.0, "west"), (9.004, "east")))
+    both = selectors.zones_in_force()
+    graphs = [graph_for(row.version, both.where(chosen)) for chosen in ([0], [1], [])]
+    assert [graph.zone_id.tolist() for graph in graphs] == [[west.pk], [east.pk], []]
+    assert [graph.node_count for graph in graphs] == [2, 2, 3]
+    assert graph_for(row.version, both.where([1])) is graphs[1]
+
+
+def test_a_zone_above_what_is_flown_takes_nothing(line):
+    """Towers of 30 m and untagged vertices of 45 m are passed at 60 m, at most 80 m with tolerance and margin."""
+    row = services.build_graph()
+    add_zone(9.0015, 46.999, 9.0025, 47.001)
+    polygons = selectors.zones_in_force().polygons
+    graphs = [graph_for(row.version, ZoneIndex(polygons, [1], ["Airfield"], floor_agl_m=[floor_m])) for floor_m in (80.0, 80.5)]
+    assert [(graph.node_kind == NodeKind.LINE_VERTEX).sum() for graph in graphs] == [0, 1]
+
+
+def test_a_snapshot_of_an_earlier_layout_is_no_graph_until_it_is_made_anew(line, settings):
+    snapshot = services.build_graph()
+    GraphSnapshot.objects.filter(pk=snapshot.pk).update(rules=asdict(settings.GRAPH_RULES), arrays=b"of another layout")
+    with pytest.raises(selectors.NoGraph):
+        selectors.current_graph()
+    with pytest.raises(selectors.NoGraph):
+        selectors.graph_of_version(snapshot.version)
+    with pytest.raises(selectors.NoGraph):
+        graph_of_plans()
+    tasks.refresh_graph()
+    assert selectors.current_graph().node_count == graph_of_plans().node_count == 3
+
+
+def test_of_threads_that_want_the_same_graph_one_makes_it():
+    """And one that wants another is not held up: it comes back while the first is still being made."""
+    kept, made = _Kept(), []
+    is_making, may_end = threading.Event(), threading.Event()
+
+    def slowly():
+        made.append("slow")
+        is_making.set()
+        may_end.wait()
+        return GRAPH
+
+    with ThreadPoolExecutor() as threads:
+        first = threads.submit(kept.get, "slow", slowly)
+        is_making.wait()
+        second = threads.submit(kept.get, "slow", slowly)
+        assert kept.get("other", lambda: OTHER) is OTHER
+        assert not first.done()
+        may_end.set()
+        assert first.result() is second.result() is GRAPH
+    assert made == ["slow"]
+
+
+def test_a_graph_that_could_not_be_made_is_tried_again():
+    kept = _Kept()
+    with pytest.raises(selectors.NoGraph):
+        kept.get("key", fail)
+    assert kept.get("key", lambda: GRAPH) is GRAPH
+
+
+def fail() -> None:
+    raise selectors.NoGraph
+
+
+def test_the_graphs_used_last_are_kept_in_memory():
+    kept = _Kept()
+    for number in range(KEPT):
+        kept.get(number, lambda: GRAPH)
+    assert kept.get(0, lambda: OTHER) is GRAPH
+    kept.get("one more", lambda: GRAPH)
+    assert [kept.get(number, lambda: OTHER) is GRAPH for number in (0, 1)] == [True, False]
 
 
 def test_a_tower_too_tall_to_be_flown_over_is_left_out_of_the_stored_part(line, settings):

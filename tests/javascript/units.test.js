@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { coordinateText, countText, durationText, lengthText, voltageText, whenText } from "../../static/js/units.js";
+import { coordinateText, countText, durationText, lengthText, momentTyped, sinceText, typedMoment, voltageText, whenText } from "../../static/js/units.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 
@@ -48,4 +48,15 @@ test("times are said as people say them", () => {
   assert.equal(whenText(new Date(2026, 8, 11, 9, 12).toISOString(), now), "yesterday, 09:12");
   assert.equal(plain(whenText(new Date(2026, 8, 1, 9, 12).toISOString(), now)), "1 Sept");
   assert.equal(plain(whenText(new Date(2025, 8, 1, 9, 12).toISOString(), now)), "1 Sept 2025");
+});
+
+test("time since a departure is minutes and seconds, with hours where there are some", () => {
+  assert.equal(sinceText(0), "+00:00");
+  assert.equal(sinceText(725.4), "+12:05");
+  assert.equal(sinceText(3725), "+1:02:05");
+});
+
+test("a typed moment and the moment are the same there and back", () => {
+  for (const iso of ["2026-11-21T19:30:00.000Z", "2026-03-29T00:59:00.000Z", "2026-12-31T23:59:00.000Z"]) assert.equal(momentTyped(typedMoment(iso)), iso);
+  assert.equal(momentTyped(""), null);
 });

@@ -6,9 +6,7 @@ import pytest
 from django.test import Client
 
 from inspection.models import Asset
-from inspection.selectors.ground_data import ground_without_zones
 from missions.models import Uav
-from missions.services import why_route as why_route_service
 from tests.inspection import ground
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
@@ -165,17 +163,6 @@ def test_a_route_with_no_way_to_a_base_is_not_explained(here: World, client: Cli
     refused_route(client, plan_body(here.towers[2]) | {"uavs": [TERN | {"end_action": "base"}]})
 
 
-def test_a_route_is_explained_where_the_zones_alone_cannot_be_thought_away(here: World, client: Client, monkeypatch: Any) -> None:
-    far = ground.tower((10.09, 56.0))
-    power_line([here.towers[5], far])
-    zone_around((10.010, 56.003), half_deg=0.0005)
-    body = plan_body(far, return_to_start=True)
-    monkeypatch.setattr(why_route_service, "ground_without_zones", lambda box: ground_without_zones((0.0, 0.0, 0.001, 0.001)))
-    said, plan = why_route(client, body)
-    assert said["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
-    assert (said["round_zones_m"], said["zones"]) == (None, [])
-
-
 def test_a_place_where_there_is_no_network_at_all_has_no_distance_to_it(here: World, client: Client) -> None:
     Asset.objects.all().delete()
     rebuild()
@@ -221,3 +208,25 @@ def test_a_question_about_another_plan_is_refused(here: World, client: Client, p
     response = post(client, path, plan_body(here.towers[0]) | more)
     assert response.status_code == 400
     assert place in response.json()["error"]["details"]
+
+
+def test_what_binds_a_route_is_said(here: World, client: Client) -> None:
+    iris = TERN | {
+        "position": [10.0, 55.9999],
+        "cruise_speed_mps": 8.0,
+        "battery_wh": 56.6,
+        "max_airspeed_mps": 11.0,
+        "end_action": "return",
+    }
+    body = plan_body(here.towers[5], uavs=[iris])
+    calm, plan = why_route(client, body)
+    assert calm["binds"] == []
+    assert calm["used_wh"] == pytest.approx(plan["total_energy_wh"], rel=0.01)
+    assert calm["wind_s"] == pytest.approx(0.0, abs=0.01)
+    tight = iris | {"battery_wh": 1.02 * plan["total_energy_wh"] / 0.8, "most_targets": 1}
+    wind = {"wind": [{"altitude_agl_m": 60.0, "speed_mps": 7.0, "from_deg": 90.0}]}
+    bound, _ = why_route(client, plan_body(here.towers[5], uavs=[tight]))
+    assert bound["binds"] == ["battery", "most_targets"]
+    windy, _ = why_route(client, body | {"conditions": wind})
+    assert "wind" in windy["binds"]
+    assert windy["wind_s"] > 10.0

@@ -337,6 +337,7 @@ def test_who_has_seen_a_type_before_the_admin_changed_it_does_not_overwrite_that
         "cruise_speed_mps": 14,
         "battery_wh": "",
         "mass_kg": "",
+        "reserve_percent": 20,
         "sensors": "",
     }
     administrator = client_of(somebody(Role.ADMINISTRATOR))

@@ -251,7 +251,8 @@ def test_a_stale_mission_names_zone_leg_and_place(here: World, client: Client) -
     stale = client.get(f"/api/v1/missions/{mission['id']}").json()
     [cause] = stale["stale_causes"]
     assert (cause["what"], cause["uav"], cause["leg"]) == ("zone", 0, ["A1", "A2"])
-    assert cause["message"] == "Fire brigade touches the leg from A1 to A2 of Tern."
+    assert cause["message"] == "Fire brigade touches the leg from A1 to A2 of Tern. It is flown 60 m above ground."
+    assert (cause["agl_m"], cause["from"], cause["to"]) == ([60.0, 60.0], None, None)
     assert cause["position"] == pytest.approx([10.012, 56.0], abs=0.005)
     assert stale["stale_reason"] == f"A zone changed since this was planned. {cause['message']}"
 

@@ -177,6 +177,7 @@ def test_missions_of_another_organisation_do_not_exist(here: World, client: Clie
     answers = [
         stranger.get(f"/api/v1/{path}"), patch(stranger, path, {"name": "Taken"}), stranger.delete(f"/api/v1/{path}"),
         post(stranger, f"{path}/plan"), post(stranger, f"{path}/restore"), stranger.get(f"/api/v1/{path}/history"),
+        stranger.get(f"/api/v1/{path}/legal-windows"),
     ]  # fmt: skip
     assert {answer.status_code for answer in answers} == {404}
     assert stranger.get("/api/v1/missions").json()["results"] == []
@@ -229,7 +230,8 @@ def test_a_zone_put_over_a_route_makes_the_mission_stale_and_says_which(here: Wo
     zone_around((10.008, 56.0), name="Fire brigade")
     stale = client.get(f"/api/v1/missions/{mission['id']}").json()
     assert stale["is_stale"]
-    assert stale["stale_reason"] == "A zone changed since this was planned. Fire brigade touches the leg from the start to A1 of Tern."
+    touched = "Fire brigade touches the leg from the start to A1 of Tern. It is flown 60 m above ground."
+    assert stale["stale_reason"] == f"A zone changed since this was planned. {touched}"
     assert client.get("/api/v1/missions").json()["results"][0]["is_stale"]
     again = post(client, f"missions/{mission['id']}/plan").json()
     assert not again["is_stale"]
@@ -371,6 +373,7 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
             "end_action": "hover",
             "most_targets": None,
             "sensors": [],
+            "sorties": 1,
             **performance_to_json(Performance()),
         }
     ]

@@ -12,7 +12,7 @@ from inspection.models import Asset
 from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import BaseRequest, TargetRequest, make_plan
-from missions.services.planning import solve_assignment
+from missions.services.attempts import solve_assignment
 from tests.missions.worlds import World, request, uav, world
 
 pytestmark = pytest.mark.django_db
@@ -32,7 +32,7 @@ def counted_s(asked: Any) -> tuple[dict[str, Any], float]:
         solutions.append(solve_assignment(*args, **options))
         return solutions[-1]
 
-    with mock.patch("missions.services.planning.solve_assignment", solve):
+    with mock.patch("missions.services.attempts.solve_assignment", solve):
         plan = make_plan(request=asked)
     return plan, solutions[0][0].longest_s
 

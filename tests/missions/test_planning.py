@@ -1,20 +1,24 @@
 """From a request to a plan on a small world."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
-from django.contrib.gis.geos import Point
+from django.contrib.gis.geos import LineString, MultiPolygon, Point, Polygon
 
 from inspection.geodesy import LonLat, path_length_m
+from inspection.models import NoFlyZone
 from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import EndAction, Uav
 from missions.routing.problem import Objective, Task, TaskKind
-from missions.services import BaseRequest, GraphOutdated, InvalidRequest, TargetRequest, make_plan
+from missions.services import BaseRequest, InvalidRequest, TargetRequest, make_plan
+from missions.services.best_so_far import PlanProgress
+from tests.exact_geometry import segment_meets_polygon
 from tests.inspection import ground
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, island, power_line, rebuild, request, uav, world, zone_around
 
@@ -27,6 +31,15 @@ def reasons(plan: dict[str, Any]) -> dict[int, str]:
 
 def places(route: dict[str, Any], kind: str | None = None) -> list[tuple[float, float]]:
     return [tuple(waypoint["position"]) for waypoint in route["waypoints"] if kind in {None, waypoint["kind"]}]
+
+
+def assert_clear_of_zones(plan: dict[str, Any]) -> None:
+    """No leg of any route, as its waypoints say it, shares a point with a zone: by exact arithmetic."""
+    for route in plan["routes"]:
+        for start, end in pairwise(places(route)):
+            for zone in NoFlyZone.objects.all():
+                for rings in zone.geometry.coords:
+                    assert not segment_meets_polygon(start, end, rings)
 
 
 def test_a_route_follows_the_line_to_its_target() -> None:
@@ -119,12 +132,19 @@ def test_points_far_from_their_asset_and_unknown_assets_are_refused_with_their_p
 
 
 def test_a_detour_leads_around_a_zone_and_the_target_in_it_is_left_out() -> None:
+    """The line goes on behind the zone: the route leaves it at the tower before, and joins it again at the tower behind."""
     here = world()
     zone_around((10.008, 56.0))
-    plan = make_plan(request=request(here.towers[2], here.towers[4]))
+    plan = make_plan(request=request(here.towers[2], here.towers[4], uavs=(uav((10.0, 55.9999)),)))
     assert reasons(plan) == {0: "inside_zone"}
     assert plan["unassigned"][0]["message"] == "It stands inside Airport."
-    assert plan["routes"][0]["targets"] == [1]
+    (route,) = plan["routes"]
+    assert route["targets"] == [1]
+    assert_clear_of_zones(plan)
+    bends = [waypoint for waypoint in route["waypoints"] if waypoint["kind"] == "pass" and waypoint["asset"] is None]
+    assert len(bends) == 2
+    assert {waypoint["altitude_agl_m"] for waypoint in bends} == {60.0}
+    assert route["length_m"] == pytest.approx(path_length_m(np.array(route["geometry"]["coordinates"])), abs=0.01)
 
 
 def test_a_line_that_runs_through_a_zone_cannot_be_flown_end_to_end() -> None:
@@ -138,9 +158,38 @@ def test_a_line_that_runs_through_a_zone_cannot_be_flown_end_to_end() -> None:
 def test_an_access_leg_goes_round_a_zone_between_the_uav_and_the_nearest_tower() -> None:
     here = world()
     zone_around((10.0005, 55.9975), half_deg=0.0012)
-    (route,) = make_plan(request=request(here.towers[0]))["routes"]
+    plan = make_plan(request=request(here.towers[0]))
+    (route,) = plan["routes"]
     assert route["targets"] == [0]
     assert places(route)[1] != (TOWER_LONS[0], LINE_LAT)
+    assert_clear_of_zones(plan)
+
+
+def test_a_target_behind_a_wide_zone_is_reached_round_it_and_the_way_home_too() -> None:
+    """A wall of 6 km between the UAV and the whole network, but for its western end."""
+    here = world()
+    wall = MultiPolygon(Polygon.from_bbox((9.99, 55.9972, 10.09, 55.9978)), srid=4326)
+    NoFlyZone.objects.create(identifier="wall", name="wall", geometry=wall)
+    rebuild()
+    plan = make_plan(request=request(here.towers[0], uavs=(uav(end_action=EndAction.RETURN),)))
+    (route,) = plan["routes"]
+    assert route["targets"] == [0]
+    assert_clear_of_zones(plan)
+    assert route["length_m"] == pytest.approx(path_length_m(np.array(route["geometry"]["coordinates"])), abs=0.01)
+    assert sum(waypoint["asset"] is None and waypoint["kind"] == "pass" for waypoint in route["waypoints"]) >= 4
+
+
+def test_a_bare_position_behind_a_zone_is_reached_round_it() -> None:
+    """Nearer than the network: a direct leg with bends, in both directions."""
+    world()
+    zone_around((10.001, 55.985), half_deg=0.002)
+    asked = request(TargetRequest(None, LonLat(10.001, 55.980)), uavs=(uav((10.001, 55.990), end_action=EndAction.RETURN),))
+    plan = make_plan(request=asked)
+    (route,) = plan["routes"]
+    assert route["targets"] == [0]
+    assert_clear_of_zones(plan)
+    straight_m = 2 * 0.010 * 111_360
+    assert straight_m < route["length_m"] < 1.1 * straight_m
 
 
 def test_an_island_out_of_reach_has_no_path() -> None:
@@ -315,13 +364,28 @@ def test_with_terrain_data_all_three_heights_agree(tmp_path: Path) -> None:
         assert waypoint["altitude_relative_m"] == pytest.approx(amsl_m - take_off_m, abs=0.05)
 
 
-def test_a_zone_that_the_graph_does_not_know_yet_stops_the_plan() -> None:
+def test_a_saved_zone_is_in_force_before_the_graph_is_built_anew() -> None:
     here = world()
+    before = make_plan(request=request(here.towers[5]))
     zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False, name="Fire brigade")
-    with pytest.raises(GraphOutdated, match="Fire brigade"):
-        make_plan(request=request(here.towers[5]))
-    rebuild()
-    assert make_plan(request=request(here.towers[5]))["routes"][0]["targets"] == [0]
+    after = make_plan(request=request(here.towers[5]))
+    assert after["routes"][0]["targets"] == [0]
+    assert after["graph_version"] == before["graph_version"]
+    assert after["ground_revision"] > before["ground_revision"]
+    assert_clear_of_zones(after)
+
+
+def test_a_zone_saved_while_a_plan_is_made_is_kept_clear_of() -> None:
+    here = world()
+    zones: list[NoFlyZone] = []
+
+    def save_a_zone(progress: PlanProgress) -> None:
+        if progress.message.startswith("Working out heights") and not zones:
+            zones.append(zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False))
+
+    plan = make_plan(request=request(here.towers[5]), on_progress=save_a_zone)
+    assert zones
+    assert not LineString(plan["routes"][0]["geometry"]["coordinates"]).intersects(zones[0].geometry)
 
 
 def test_without_a_graph_there_is_no_plan() -> None:

@@ -21,8 +21,8 @@ from missions.routing.terminals import Terminal, Ways, access_legs, attachments,
 from missions.services import PlanRequest, make_plan
 from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
-from missions.services.planning import current_scene
 from missions.services.refusals import Scene
+from missions.services.scenes import current_scene
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.routing.random_problems import best_merit
@@ -154,7 +154,9 @@ class _Model:
         direct = {(leg.source, leg.sink): leg.cost for leg in direct_legs(sources, sinks, scene.zones, scene.access)}
         for row, outward in enumerate([*ways.uav_legs, *ways.exit_legs]):
             for leg in outward:
-                assert leg.length_m == distance_m(np.array(sources[row].position), scene.graph.position[leg.node])[0]
+                line = np.array([sources[row].position, *leg.bends, scene.graph.position[leg.node]])
+                assert leg.length_m == pytest.approx(path_length_m(line), abs=1e-6)
+                assert not scene.zones.meets(line[:-1], line[1:], scene.access.zone_clearance_m).any()
             network.add_weighted_edges_from(("source", leg.node, leg.cost) for leg in outward)
             cost = nx.single_source_dijkstra_path_length(network, "source") if outward else {}
             network.remove_nodes_from(["source"])

@@ -16,7 +16,7 @@ from missions.routing.problem import End, Objective, Priority, Problem, Routes, 
 from missions.routing.terminals import Terminal, ways_between
 from missions.services import BaseRequest, LockRequest, PlanRequest, TargetRequest, UavRequest, make_plan
 from missions.services.places import places_of
-from missions.services.planning import current_scene
+from missions.services.scenes import current_scene
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.routing.random_problems import every_plan
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, World, island, world, zone_around

@@ -16,13 +16,15 @@ export const bodies = {
     name: uav.name, type: uav.type, base: uav.base, position: uav.position, serial_number: uav.serial_number, mavlink_system_id: uav.mavlink_system_id,
     max_range_m: own(uav, "max_range_m"), cruise_speed_mps: own(uav, "cruise_speed_mps"), battery_percent: uav.battery_percent, sensor: uav.sensor, end_action: uav.end_action,
   }),
-  types: ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, sensors }) => ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, sensors }),
+  types: ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, sensors }) => ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, sensors }),
   bases: ({ name, position, note }) => ({ name, position, note }),
 };
 
+const USUAL_RESERVE_PERCENT = 20;
+
 export const BLANK = {
   uavs: { name: "", type: null, base: null, position: null, serial_number: "", mavlink_system_id: null, max_range_m: null, cruise_speed_mps: null, battery_percent: null, sensor: "", end_action: "hover", from_type: [] },
-  types: { name: "", max_range_m: null, cruise_speed_mps: 12, battery_wh: null, mass_kg: null, sensors: [] },
+  types: { name: "", max_range_m: null, cruise_speed_mps: 12, battery_wh: null, mass_kg: null, reserve_percent: USUAL_RESERVE_PERCENT, max_airspeed_mps: null, sensors: [] },
   bases: { name: "", position: null, note: "" },
 };
 
@@ -83,10 +85,12 @@ function typeFields(type) {
   const speed = numberField("cruise_speed_mps", t("Speed"), type.cruise_speed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, required: true });
   const battery = numberField("battery_wh", t("Battery"), type.battery_wh, { unit: "Wh", min: 0.1 });
   const mass = numberField("mass_kg", t("Mass"), type.mass_kg, { unit: "kg", min: 0.01, hint: t("At take-off.") });
+  const reserve = numberField("reserve_percent", t("Kept in reserve"), type.reserve_percent, { unit: "%", min: 0, max: 95, digits: 1, required: true, hint: t("Of the battery; a plan does not use it.") });
+  const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, hint: t("Against the wind; empty: not limited.") });
   const sensors = textField("sensors", t("Sensors"), type.sensors.join(", "), { maxlength: 600, hint: t("Divided by commas.") });
   const list = sensors.read;
   sensors.read = () => words(list());
-  return { fields: [name, range, speed, battery, mass, sensors], elements: [name.element, pair(range, speed), pair(battery, mass), sensors.element] };
+  return { fields: [name, range, speed, battery, mass, reserve, airspeed, sensors], elements: [name.element, pair(range, speed), pair(battery, mass), pair(reserve, airspeed), sensors.element] };
 }
 
 function baseFields(base, { place }) {
@@ -149,7 +153,7 @@ export function createForm({ tab, body, types, bases, isNew, onMove, onSave, onC
       if (value === null || value === "" || (Array.isArray(value) && !value.length)) return t("not stated");
       if (name === "position") return coordinateText(value);
       if (name === "max_range_m") return lengthText(value);
-      if (name === "cruise_speed_mps") return speedText(value);
+      if (name === "cruise_speed_mps" || name === "max_airspeed_mps") return speedText(value);
       return names(name, value) ?? (Array.isArray(value) ? value.join(", ") : `${value}`);
     },
   };

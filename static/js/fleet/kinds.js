@@ -2,7 +2,7 @@
 
 import { h } from "../dom.js";
 import { t, tn } from "../text.js";
-import { coordinateText, speedText } from "../units.js";
+import { coordinateText, percentText, speedText } from "../units.js";
 import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, stateChip, uavsText, wattHours } from "./words.js";
 
 const caption = (words) => words && h("span", { class: "caption" }, words);
@@ -63,6 +63,8 @@ export const KINDS = {
       term(t("Speed"), speedText(type.cruise_speed_mps)),
       term(t("Battery"), wattHours(type.battery_wh)),
       term(t("Mass"), kilograms(type.mass_kg)),
+      term(t("Kept in reserve"), type.reserve_percent === null || type.reserve_percent === undefined ? "—" : percentText(type.reserve_percent)),
+      term(t("Highest airspeed"), type.max_airspeed_mps ? speedText(type.max_airspeed_mps) : t("not limited")),
       term(t("Sensors"), type.sensors.join(", ") || t("not stated")),
       term(t("UAVs"), type.uav_count ? uavsText(type.uav_count) : t("none")),
     ],

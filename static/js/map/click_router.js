@@ -1,6 +1,7 @@
 /** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
 
 import { inWords } from "./asset_names.js";
+import { swallowDrawnClick } from "./drawn_click.js";
 import { drawLassos } from "./lasso.js";
 import { PICKABLE, TILES } from "./style.js";
 
@@ -78,7 +79,7 @@ function dragBoxes(map, canvas, on) {
   map.boxZoom.disable();
   let start = null;
   let frame = null;
-  let isDrawn = false; // the click that ends a box picks nothing
+  const click = swallowDrawnClick(canvas);
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
@@ -87,7 +88,7 @@ function dragBoxes(map, canvas, on) {
   canvas.addEventListener(
     "pointerdown",
     (event) => {
-      isDrawn = false;
+      click.begins();
       if (event.button !== 0 || (on.tool() !== "box" && !event.shiftKey)) return;
       event.stopPropagation();
       event.preventDefault();
@@ -114,7 +115,7 @@ function dragBoxes(map, canvas, on) {
     frame.remove();
     map.dragPan.enable();
     if (event.type === "pointerup" && Math.hypot(to[0] - from[0], to[1] - from[1]) > 6) {
-      isDrawn = true;
+      click.ends();
       const corners = [map.unproject(from), map.unproject(to)];
       const longitudes = corners.map((corner) => corner.lng);
       const latitudes = corners.map((corner) => corner.lat);
@@ -123,12 +124,4 @@ function dragBoxes(map, canvas, on) {
   };
   canvas.addEventListener("pointerup", end);
   canvas.addEventListener("pointercancel", end);
-  canvas.addEventListener(
-    "click",
-    (event) => {
-      if (isDrawn) event.stopImmediatePropagation();
-      isDrawn = false;
-    },
-    true,
-  );
 }

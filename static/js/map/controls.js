@@ -19,7 +19,8 @@ const COPIED_DIGITS = 6; // some 0.1 m
 const ASK_AGAIN_MS = 8_000;
 
 /**
- * act: { fit(), recoloured(palette)?, isBusy()?: the pointer belongs to something else, measures(isOn)? }
+ * act: { fit(), recoloured(palette)?, isBusy()?: the pointer belongs to something else, measures(isOn)?,
+ * layers()?: more of them for the menu }
  * Returns { hover(place), click(place): true where the click was for the measuring, setGround(ground), closeTop(), isMeasuring(), bindings }.
  */
 export function mountControls(view, page, act) {
@@ -67,7 +68,7 @@ export function mountControls(view, page, act) {
       rememberUnder(name);
     },
   };
-  layers.addEventListener("click", () => toggleMenu(layers, () => layersMenu({ under: choices, shown })));
+  layers.addEventListener("click", () => toggleMenu(layers, () => layersMenu({ under: choices, shown, more: act.layers?.() })));
 
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
   const middle = () => map.getCenter().toArray();

@@ -28,6 +28,18 @@ function hatch(palette) {
   return pixels(pen);
 }
 
+/** The same in strokes with gaps: a zone that applies at times. */
+function timedHatch(palette) {
+  const pen = canvasOf(HATCH_PX);
+  pen.strokeStyle = palette.zone;
+  pen.lineWidth = 1.1;
+  pen.beginPath();
+  pen.moveTo(1, HATCH_PX - 1);
+  pen.lineTo(HATCH_PX / 2 + 1, HATCH_PX / 2 - 1);
+  pen.stroke();
+  return pixels(pen);
+}
+
 function arrow(palette, colour) {
   const pen = canvasOf(14);
   pen.fillStyle = colour;
@@ -45,8 +57,32 @@ function arrow(palette, colour) {
   return pixels(pen);
 }
 
+/** Where a UAV waits: a square for a base, a bolt on a disc for charging. */
+function stop(palette, kind) {
+  const pen = canvasOf(20);
+  pen.fillStyle = palette.raised;
+  pen.strokeStyle = palette.ink;
+  pen.lineWidth = 1.75;
+  pen.lineJoin = "round";
+  pen.beginPath();
+  if (kind === "base") pen.rect(4, 4, 12, 12);
+  else pen.arc(10, 10, 8, 0, 2 * Math.PI);
+  pen.fill();
+  pen.stroke();
+  if (kind === "base") return pixels(pen);
+  pen.fillStyle = palette.ink;
+  pen.beginPath();
+  for (const [x, y] of [[11, 4], [6.5, 11], [9.5, 11], [9, 16], [13.5, 9], [10.5, 9]]) pen.lineTo(x, y);
+  pen.closePath();
+  pen.fill();
+  return pixels(pen);
+}
+
 function draw(id, palette) {
   if (id === "hatch") return hatch(palette);
+  if (id === "hatch-timed") return timedHatch(palette);
+  const kind = /^stop-(base|charging)$/.exec(id)?.[1];
+  if (kind) return stop(palette, kind);
   const number = /^arrow-(\d+)$/.exec(id)?.[1];
   return number ? arrow(palette, palette.routes[number - 1] ?? palette.inkSecond) : null;
 }

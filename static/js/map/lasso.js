@@ -1,6 +1,7 @@
 /** A line drawn by hand round what is meant: the ring in lon lat, or nothing where it encloses too little. */
 
 import { svg } from "../dom.js";
+import { swallowDrawnClick } from "./drawn_click.js";
 
 const STEP_PX = 4; // between kept points
 const LEAST_PX = 24; // a smaller drawing was a click
@@ -10,7 +11,7 @@ export function drawLassos(map, canvas, on) {
   let points = null; // on the screen
   let drawing = null;
   let line = null;
-  let isDrawn = false; // the click that ends a drawing, or drops it, picks nothing
+  const click = swallowDrawnClick(canvas);
 
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -30,7 +31,7 @@ export function drawLassos(map, canvas, on) {
   canvas.addEventListener(
     "pointerdown",
     (event) => {
-      isDrawn = false;
+      click.begins();
       if (event.button !== 0 || on.tool() !== "lasso" || event.shiftKey || !event.isPrimary) return;
       event.stopPropagation();
       event.preventDefault();
@@ -54,19 +55,11 @@ export function drawLassos(map, canvas, on) {
   canvas.addEventListener("pointerup", () => {
     const drawn = stop();
     if (!drawn || !isWide(drawn)) return;
-    isDrawn = true;
+    click.ends();
     on.lasso(drawn.map((point) => map.unproject(point)).map(({ lng, lat }) => [lng, lat]));
   });
   canvas.addEventListener("pointercancel", stop);
-  addEventListener("keydown", (event) => event.key === "Escape" && stop() && (isDrawn = true), true);
-  canvas.addEventListener(
-    "click",
-    (event) => {
-      if (isDrawn) event.stopImmediatePropagation();
-      isDrawn = false;
-    },
-    true,
-  );
+  addEventListener("keydown", (event) => event.key === "Escape" && stop() && click.ends(), true);
 }
 
 /** Whether a drawing is meant to go round something. */

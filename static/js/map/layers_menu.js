@@ -6,8 +6,8 @@ import { bandSample, legendItems } from "./legend.js";
 import { bandName, groupName } from "./shown.js";
 import { BANDS, GROUPS } from "./style.js";
 
-/** under: { choices: [{ value, words }], chosen(), choose(value) }; shown: createShown's. */
-export function layersMenu({ under, shown }) {
+/** under: { choices: [{ value, words }], chosen(), choose(value) }; shown: createShown's; more: layers of the page: [{ words, isOn(), turn(isOn) }]. */
+export function layersMenu({ under, shown, more = [] }) {
   const menu = h("div", { class: "menu float layers-menu", role: "group", "aria-label": t("Layers") });
   const check = (words, isOn, turn, drawing = null) =>
     h("label", {}, h("input", { type: "checkbox", class: "check", checked: isOn, onchange: (event) => (turn(event.target.checked), tellAll()) }), drawing, words);
@@ -27,6 +27,7 @@ export function layersMenu({ under, shown }) {
         key === "lines" && h("div", { class: "layers-more", role: "group", "aria-label": t("Voltages") }, BANDS.map((band) => check(bandName(band), shown.hasBand(band), (isOn) => shown.showBand(band, isOn), bandSample(band)))),
         key === "zones" && h("div", { class: "layers-more" }, check(t("Also zones not in force now"), shown.hasResting(), shown.showResting)),
       ]).filter(Boolean),
+      ...more.map(({ words, isOn, turn }) => check(words, isOn(), turn)),
       all,
       h("h2", { class: "legend-head" }, t("Legend")),
       h("ul", { class: "legend" }, legendItems()),

@@ -31,7 +31,17 @@ const ROWS = [
   },
   {
     layer: "zones-fill",
-    rests: true,
+    kind: "timed",
+    words: t("No-fly zone at times"),
+    draw: () =>
+      sample(
+        svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3, "stroke-dasharray": "6 1.5 1 1.5" }),
+        svg("path", { d: "M5 9l3-3M10 5l3-3M11 9l3-3M16 5l3-3M17 9l3-3", stroke: "var(--zone)", "stroke-width": 0.9 }),
+      ),
+  },
+  {
+    layer: "zones-fill",
+    kind: "resting",
     words: t("No-fly zone, not in force now"),
     draw: () => sample(svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3, "stroke-dasharray": "4 3" })),
   },
@@ -45,6 +55,13 @@ const ROWS = [
     words: t("Route, flown to the arrow"),
     draw: () => sample(stroke("--route-1", 3), svg("path", { d: "M17 6L10 2L12 6L10 10Z", fill: "var(--route-1)", stroke: "var(--map-casing)", "stroke-width": 1 })),
   },
+  {
+    layer: "route-stops",
+    kind: "charging",
+    words: t("Charging stop"),
+    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 5.25, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.25 }), svg("path", { d: "M13.7 2L10.5 6.8H12.7L12.2 10L15.5 5.3H13.2Z", fill: "var(--ink)" })),
+  },
+  { layer: "route-stops", kind: "base", words: t("Base between two flights"), draw: () => sample(svg("rect", { x: 9, y: 2, width: 8, height: 8, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.5 })) },
   {
     layer: "many-targets",
     words: t("Target"),
@@ -74,7 +91,15 @@ function isWithin(element, frame) {
   return inner.right > outer.left && inner.left < outer.right && inner.bottom > outer.top && inner.top < outer.bottom;
 }
 
-const keyOf = (layer, band = "", rests = false) => `${layer}/${band}/${rests}`;
+const keyOf = (layer, kind = "") => `${layer}/${kind}`;
+
+/** Which of a layer's rows shows a feature: its voltage, or whether a zone applies at times and rests now. */
+function kindOf({ layer, properties, state }) {
+  if (layer.id === "lines") return voltageBand(properties.voltage);
+  if (layer.id === "route-stops") return properties.kind;
+  if (layer.id !== "zones-fill" || properties.schedule === undefined) return "";
+  return state.resting ? "resting" : "timed";
+}
 
 /** A legend of what is in view. */
 export function mountLegend(map) {
@@ -83,8 +108,8 @@ export function mountLegend(map) {
   map.on("idle", () => {
     const layers = [...new Set(ROWS.map((row) => row.layer))].filter((id) => map.getLayer(id));
     const seen = new Set();
-    for (const { layer, properties, state } of map.queryRenderedFeatures({ layers })) seen.add(keyOf(layer.id, layer.id === "lines" ? voltageBand(properties.voltage) : "", Boolean(state.resting)));
-    const rows = ROWS.filter((row) => seen.has(keyOf(row.layer, row.layer === "lines" ? row.band : "", Boolean(row.rests))));
+    for (const feature of map.queryRenderedFeatures({ layers })) seen.add(keyOf(feature.layer.id, kindOf(feature)));
+    const rows = ROWS.filter((row) => seen.has(keyOf(row.layer, row.kind ?? (row.layer === "lines" ? row.band : ""))));
     if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer()))) rows.push(UAV_ROW);
     const words = rows.map((row) => row.words).join();
     if (words === shown) return;

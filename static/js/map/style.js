@@ -1,5 +1,7 @@
 /** The map's look as data: sources and layers in the order from below, made from the palette. */
 
+import { t } from "../text.js";
+
 const NOTHING = { type: "FeatureCollection", features: [] };
 export const TILES = "ground-tiles";
 
@@ -12,7 +14,7 @@ export const GROUPS = [
   { key: "towers", layers: ["towers", "towers-high", "towers-ring", "tower-labels"] },
   { key: "railways", layers: ["railways", "railways-ties"] },
   { key: "bridges", layers: ["bridges-fill", "bridges", "bridge-points"] },
-  { key: "zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zones-outline-resting", "zones-lit", "zone-labels"] },
+  { key: "zones", layers: ["zones-fill", "zones-hatch", "zones-outline", "zones-outline-timed", "zones-outline-resting", "zones-lit", "zone-labels"] },
 ];
 
 const voltage = ["coalesce", ["get", "voltage"], -1];
@@ -25,6 +27,7 @@ export const BANDS = ["380", "200", "100", "50", "0", "none"];
 export const bandOf = byVoltage("none", "0", "50", "100", "200", "380");
 export const voltageBand = (voltage_kv) => (voltage_kv === undefined || voltage_kv === null ? "none" : BANDS.find((band) => voltage_kv >= Number(band)));
 const whereResting = (yes, no) => ["case", ["boolean", ["feature-state", "resting"], false], yes, no]; // a zone that its schedule does not put in force now
+const isTimed = ["has", "schedule"];
 const WIDTHS_PX = [1.2, 0.8, 1.1, 1.6, 2.2, 3]; // at zoom 12: not stated, under 50, 50, 100, 200, 380 kV and over
 const widthsTimes = (factor, more = 0) => byVoltage(...WIDTHS_PX.map((width) => width * factor + more));
 const lineWidth = (more = 0) => ["interpolate", ["linear"], ["zoom"], 5, widthsTimes(0.5, more), 9, widthsTimes(0.75, more), 12, widthsTimes(1, more), 17, widthsTimes(1.7, more)];
@@ -73,6 +76,7 @@ export function mapStyle(palette, options) {
       [TILES]: { type: "vector", tiles: [options.tilesAddress], minzoom: 0, maxzoom: 15 },
       "picked-shapes": { type: "geojson", data: NOTHING },
       routes: { type: "geojson", data: NOTHING },
+      "route-stops": { type: "geojson", data: NOTHING },
       "routes-so-far": { type: "geojson", data: NOTHING },
       "strip-point": { type: "geojson", data: NOTHING },
       "many-targets": { type: "geojson", data: NOTHING },
@@ -100,7 +104,7 @@ function infrastructureLayers(palette) {
   const lineColour = byVoltage(palette.voltUnknown, palette.volt20, palette.volt66, palette.volt132, palette.volt220, palette.volt400);
   return [
     tiles("zones-fill", "fill", "zones", { paint: { "fill-color": palette.zone, "fill-opacity": palette.isDark ? 0.08 : 0.07 } }),
-    tiles("zones-hatch", "fill", "zones", { paint: { "fill-pattern": "hatch", "fill-opacity": whereResting(0, 0.75) } }),
+    tiles("zones-hatch", "fill", "zones", { paint: { "fill-pattern": ["case", isTimed, "hatch-timed", "hatch"], "fill-opacity": whereResting(0, 0.75) } }),
     tiles("railways", "line", "railways", {
       minzoom: 8,
       paint: { "line-color": palette.railway, "line-width": ["interpolate", ["linear"], ["zoom"], 8, 1, 12, 1.8, 15, 2.6] },
@@ -136,7 +140,8 @@ function infrastructureLayers(palette) {
         "circle-stroke-width": ["case", isPole, 1, 1.4],
       },
     }),
-    tiles("zones-outline", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.75, "line-opacity": whereResting(0, 1) } }),
+    tiles("zones-outline", "line", "zones", { filter: ["!", isTimed], paint: { "line-color": palette.zone, "line-width": 1.75, "line-opacity": whereResting(0, 1) } }),
+    tiles("zones-outline-timed", "line", "zones", { filter: isTimed, paint: { "line-color": palette.zone, "line-width": 2, "line-dasharray": [6, 1.5, 1, 1.5], "line-opacity": whereResting(0, 1) } }),
     tiles("zones-outline-resting", "line", "zones", { paint: { "line-color": palette.zone, "line-width": 1.5, "line-dasharray": [5, 4], "line-opacity": whereResting(1, 0) } }),
     tiles("zones-lit", "line", "zones", {
       layout: { "line-join": "round" },
@@ -186,6 +191,12 @@ function routeLayers(palette) {
       },
     },
     {
+      id: "route-stops",
+      type: "symbol",
+      source: "route-stops",
+      layout: { "icon-image": ["concat", "stop-", ["get", "kind"]], "icon-allow-overlap": true },
+    },
+    {
       id: "strip-point",
       type: "circle",
       source: "strip-point",
@@ -232,7 +243,7 @@ function labelLayers(palette) {
       "source-layer": "zone_labels",
       minzoom: 9,
       filter: ["any", [">=", ["zoom"], NEAR_ZOOM], [">=", zoneWidth_px, zoneNameWidth_px]],
-      layout: { ...text(12), "text-field": zoneName, "text-max-width": 9 },
+      layout: { ...text(12), "text-field": ["case", isTimed, ["concat", zoneName, "\n", t("at times")], zoneName], "text-max-width": 9 },
       paint: { ...halo, "text-color": palette.zone },
     },
   ];

@@ -1,13 +1,11 @@
 /** What the tooltip of the map says of an asset or a zone. A zone's times and source are asked for when it is looked at. */
 
-import { get } from "../api.js";
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { lengthText, whenText } from "../units.js";
 import { bandDrawing, heightsText } from "../zones/heights.js";
 import { isInForce } from "../zones/in_force.js";
-
-const KEPT_MS = 60_000;
+import { zoneDetails, zoneDetailsKept } from "./zone_details.js";
 
 const KIND_WORDS = () => ({
   tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge"), pole: t("Pole"), portal: t("Portal"),
@@ -45,23 +43,13 @@ export function tipOf(thing, refresh) {
   ].filter(Boolean);
 }
 
-const known = new Map(); // zone → { at, properties }
-
-async function detailsOf(id) {
-  const kept = known.get(id);
-  if (kept && Date.now() - kept.at < KEPT_MS) return kept.properties;
-  const { properties } = (await get(`/zones/${id}`)).data;
-  known.set(id, { at: Date.now(), properties });
-  return properties;
-}
-
 function zoneTip(thing, refresh) {
-  const kept = known.get(thing.id);
-  detailsOf(thing.id).then(
-    (details) => kept?.properties !== details && refresh(zoneContent(thing, details)),
+  const kept = zoneDetailsKept(thing.id);
+  zoneDetails(thing.id).then(
+    (details) => kept !== details && refresh(zoneContent(thing, details)),
     () => refresh(zoneContent(thing, null, t("Times and source cannot be read now."))),
   );
-  return zoneContent(thing, kept?.properties ?? null);
+  return zoneContent(thing, kept);
 }
 
 const limitOf = (value_m, reference) => (value_m === undefined || value_m === null ? null : { value_m, reference: reference ?? "" });
@@ -89,7 +77,7 @@ function zoneContent({ properties, place }, details, problem = "") {
     ),
     why && h("div", {}, why),
     quiet(problem || (details ? sourceWords(details) : t("Reading times and source…"))),
-    quiet(t("Plans count it at all heights and times.")),
+    quiet(properties.schedule ? t("A plan with a departure counts it at its times, any other plan at all times.") : ""),
   ].filter(Boolean);
 }
 

@@ -4,6 +4,7 @@ import { ApiError, signInAddress } from "../api.js";
 import { t } from "../text.js";
 import { createConflicts } from "./conflicts.js";
 import { createFleetActions } from "./fleet_actions.js";
+import { createHandEditing } from "./hand_editing.js";
 import { createLocking } from "./locking.js";
 import { settled } from "./locks.js";
 import { createPicking } from "./picking.js";
@@ -52,5 +53,5 @@ export function createActions(store, history, page, drafts) {
   let saving = null;
   const conflicts = createConflicts(context, () => saving, showBoth);
   saving = createSaving(context, { waitForJob, makeRoom }, conflicts);
-  return { failed, ...createPicking(context), ...createLocking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context) };
+  return { failed, ...createPicking(context), ...createLocking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context), ...createHandEditing(context, saving) };
 }

@@ -47,9 +47,10 @@ export function isAskedFor({ base_name, sensors, type_name }, { base = "", senso
 const END_WORDS = { hover: t("hovers at the end"), land: t("lands at the end"), return: t("returns to start"), base: t("lands at the nearest base") };
 
 /** "range 80 km · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends. */
-export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, most_targets = null, type_name, sensors = [] }, returnsToStart) {
+export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, most_targets = null, sorties = 1, type_name, sensors = [] }, returnsToStart) {
   const most = most_targets === null ? [] : [tn(most_targets, "at most {count} target", "at most {count} targets")];
   const facts = [...most, max_range_m ? t("range {length}", { length: lengthText(max_range_m) }) : t("range not stated")];
+  if (sorties > 1) facts.push(tn(sorties, "{count} flight", "up to {count} flights"));
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
   const end = END_WORDS[returnsToStart ? "return" : end_action];
   return [...facts, end, sensors.join(", "), type_name].filter(Boolean).join(" · ");

@@ -12,6 +12,7 @@ import { standingUavs } from "./fleet.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map_panel.js";
 import { mountFinder } from "./panels/finder.js";
+import { mountFlightOptions } from "./panels/flight_options.js";
 import { mountFoot } from "./panels/foot.js";
 import { mountHeader } from "./panels/header.js";
 import { mountOptions } from "./panels/options.js";
@@ -35,8 +36,8 @@ const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
   plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
-  lastPlan: null, planningBeside: null, why: null, along: null,
-  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null,
+  lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
+  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], hand: null,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -51,8 +52,10 @@ mountHeader(store, actions, page.canPlan, { showPlace: (position) => map.goTo({ 
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
 uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
-if (page.canPlan) mountOptions(store, actions, page.canPlan);
-else mountOptionsRead(store);
+if (page.canPlan) {
+  mountOptions(store, actions, page.canPlan);
+  mountFlightOptions(store, actions);
+} else mountOptionsRead(store);
 mountFoot(store, actions);
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });
@@ -93,8 +96,8 @@ function planningKeys() {
   return [
     { keys: ["p"], words: t("Plan, plan again"), act: actions.plan },
     { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => void actions.save() },
-    { keys: ["mod+z"], words: t("Undo"), act: actions.undo },
-    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: actions.redo },
+    { keys: ["mod+z"], words: t("Undo"), act: () => (store.state.hand ? actions.undoByHand() : actions.undo()) },
+    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: () => (store.state.hand ? actions.redoByHand() : actions.redo()) },
     { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
     { keys: ["l"], words: t("Lock or unlock the chosen target"), act: lockChosen },
     { keys: ["alt+arrowup"], words: t("The chosen target earlier"), act: () => shiftChosen(-1) },
@@ -109,6 +112,7 @@ function planningKeys() {
 }
 
 function removeChosen() {
+  if (store.state.hand) return actions.removeByHand(store.state.hand.chosen);
   const { chosenTargets } = store.state;
   if (!chosenTargets.length) return false;
   actions.removeTargets(chosenTargets);

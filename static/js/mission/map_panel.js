@@ -9,6 +9,7 @@ import { partOfLine } from "../map/line_part.js";
 import * as routesLayer from "../map/layers/routes.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createTargets } from "../map/layers/targets.js";
+import * as zonesLayer from "../map/layers/zones.js";
 import { createUavs } from "../map/layers/uavs.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { goTo } from "../map/places_found.js";
@@ -17,6 +18,9 @@ import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";
 import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
+import { staysOf } from "./route_times.js";
+import { mountHandMap } from "./hand_map.js";
+import { mountReachLayer } from "./reach_layer.js";
 import { createMapPicking } from "./map_picking.js";
 import { isWhole, nameOf } from "./selection.js";
 
@@ -38,8 +42,9 @@ export function mountMap(store, actions, page, { askForUav }) {
     onLook: (sequence) => store.update({ lookedAt: store.state.plan ? sequence : null }),
   });
   const tip = createTip(frame);
+  let [handMap, reachLayer] = [null, null]; // once the map has its style
 
-  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => store.state.tool === "place", measures: (isOn) => isOn && store.update({ tool: "point" }) });
+  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => store.state.tool === "place", measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => (handMap?.recolour(), reachLayer?.recolour()), layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []) });
 
   // clicks
 
@@ -54,7 +59,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   function click(thing, place, point) {
     picking.close();
     tip(null);
-    if (controls.click(place)) return;
+    if (controls.click(place) || handMap?.isOn()) return;
     const { tool } = store.state;
     if (tool === "place") {
       askForUav(place.map((degrees) => Number(degrees.toFixed(6))));
@@ -65,10 +70,18 @@ export function mountMap(store, actions, page, { askForUav }) {
     if (!thing) return;
     if (!page.canPlan || thing.kind === "zone") {
       // with a finger there is no hovering: what cannot be picked is told
-      tip(`${thing.kind} ${thing.id}`, point, (refresh) => tipOf({ ...thing, place }, refresh), { soon: true });
+      tip(`${thing.kind} ${thing.id}`, point, (refresh) => saidOf({ ...thing, place }, refresh), { soon: true });
       return;
     }
     picking.pick(thing, place, point);
+    if (["no", "partly"].includes(reachLayer?.verdict(thing.id))) tip(`${thing.kind} ${thing.id}`, point, (refresh) => saidOf({ ...thing, place }, refresh), { soon: true });
+  }
+
+  /** What the tooltip says, with the reason why the asset can be inspected or not while that layer is shown. */
+  function saidOf(thing, refresh) {
+    const said = tipOf(thing, refresh);
+    const words = thing.kind === "zone" ? "" : reachLayer?.textOf(thing.id);
+    return words ? [...said, h("div", { class: "reach-said" }, words)] : said;
   }
 
   routeClicks(map, {
@@ -80,8 +93,8 @@ export function mountMap(store, actions, page, { askForUav }) {
       const target = point && targets.at(point);
       if (target !== (store.state.litTarget ?? null) && (target || litHere)) store.update({ litTarget: target });
       litHere = Boolean(target);
-      if (controls.isMeasuring() || target || picking.isOpen()) thing = null;
-      tip(thing ? `${thing.kind} ${thing.id}` : null, point, (refresh) => tipOf({ ...thing, place }, refresh));
+      if (controls.isMeasuring() || target || picking.isOpen() || handMap?.isOn()) thing = null;
+      tip(thing ? `${thing.kind} ${thing.id}` : null, point, (refresh) => saidOf({ ...thing, place }, refresh));
       const next = thing && thing.kind !== "zone" && !picking.isOpen() ? thing : null;
       if (next?.id === pointed?.id && next?.kind === pointed?.kind) return;
       pointed = next;
@@ -157,6 +170,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     store.listen(["selection", "plan"], drawTargets);
     store.listen(["plan"], ({ plan }) => {
       routesLayer.update(map, routesOf(plan));
+      routesLayer.showStops(map, routesOf(plan).flatMap((route) => staysOf(route).map(({ kind, index }) => ({ kind, position: route.waypoints[index].position }))));
       // A plan that was just made is looked at. A stored one is what the map opened at, but the dock took room from it; after saving nothing moves.
       if (plan && !store.state.planIsStored) fit();
       else if (plan && !opensAtPlace && !wasFitted) fit({ animate: false });
@@ -173,6 +187,9 @@ export function mountMap(store, actions, page, { askForUav }) {
     });
     store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);
+    handMap = mountHandMap(map, store, actions);
+    reachLayer = mountReachLayer(map, frame, store);
+    store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
     store.listen(["ground"], ({ ground }) => {
@@ -219,8 +236,8 @@ export function mountMap(store, actions, page, { askForUav }) {
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
     bindings: controls.bindings,
     closeTop: () => {
-      if (controls.closeTop()) return true;
-      return picking.close();
+      if (controls.closeTop() || picking.close()) return true;
+      return Boolean(reachLayer?.close());
     },
     centre: () => map.getCenter().toArray(),
     box: () => map.getBounds().toArray().flat(),

@@ -2,17 +2,22 @@
 
 import { t, tn } from "../text.js";
 import { areContrary, settled } from "./locks.js";
-import { wishesOf } from "./selection.js";
+import { flightOptionsOf } from "./flight_options.js";
+import { PERFORMANCE, wishesOf } from "./selection.js";
 
-const SINGLE = ["objective", "return_to_start"];
+/** Options that each have one value. */
+const optionsOf = ({ objective, return_to_start, ...selection }) => ({ objective, return_to_start, ...flightOptionsOf(selection) });
+const areSameValues = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const keyOfTarget = ({ key }) => key;
 const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav.name}` : `id ${uav.id}`);
 /** Without a task a target has its kind's own, which the server writes down: that is the same. */
 const isSameTask = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
 const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
-const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null }) =>
-  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets]);
-const isSameUav = (a, b) => uavFacts(a) === uavFacts(b);
+const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null, sorties = 1 }) =>
+  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets, sorties ?? 1]);
+/** What nobody has said of a UAV is its type's, which the server writes down: that is the same. */
+const isSamePerformance = (a, b) => PERFORMANCE.every((fact) => a[fact] === undefined || b[fact] === undefined || a[fact] === b[fact]);
+const isSameUav = (a, b) => uavFacts(a) === uavFacts(b) && isSamePerformance(a, b);
 
 /** Items of three lists by their keys: theirs, with what I added, changed and took away. */
 function mergedList(base, mine, theirs, keyOf, isSame) {
@@ -64,8 +69,8 @@ function mergedLocks(base, mine, theirs, targets) {
 export function merged(base, mine, theirs) {
   const clashes = [];
   const single = (part, old, own, their) => {
-    if (own === their || own === old) return their;
-    if (their !== old) clashes.push(part);
+    if (areSameValues(own, their) || areSameValues(own, old)) return their;
+    if (!areSameValues(their, old)) clashes.push(part);
     return own;
   };
   const name = single("name", base.name, mine.name.trim() || base.name, theirs.name);
@@ -75,7 +80,8 @@ export function merged(base, mine, theirs) {
     selection[part] = list;
     if (isClash) clashes.push(part);
   }
-  for (const part of SINGLE) selection[part] = single(part, base.selection[part], mine.selection[part], theirs.selection[part]);
+  const [old, own, their] = [base, mine, theirs].map((version) => optionsOf(version.selection));
+  for (const part of Object.keys(their)) selection[part] = single(part, old[part], own[part], their[part]);
   const { isClash, ...agreed } = mergedLocks(base.selection, mine.selection, theirs.selection, selection.targets);
   if (isClash) clashes.push("locks");
   return { name, selection: settled({ ...selection, ...agreed }), clashes };
@@ -95,7 +101,7 @@ export const uavDifferences = (before, after) => differences(before.uavs, after.
 
 /** Whether two ask for the same; what one of them leaves to the server counts as the same. */
 export function isAlike(a, b) {
-  if (a.name !== b.name || SINGLE.some((part) => a.selection[part] !== b.selection[part]) || !areSameLocks(a.selection, b.selection)) return false;
+  if (a.name !== b.name || !areSameValues(optionsOf(a.selection), optionsOf(b.selection)) || !areSameLocks(a.selection, b.selection)) return false;
   return [targetDifferences(a.selection, b.selection), uavDifferences(a.selection, b.selection)].every((found) => Object.values(found).every((list) => !list.length));
 }
 
@@ -111,7 +117,7 @@ export function wordsOfChange(before, after) {
   if (uavs.added.length) words.push(tn(uavs.added.length, "{count} UAV added", "{count} UAVs added"));
   if (uavs.removed.length) words.push(tn(uavs.removed.length, "{count} UAV removed", "{count} UAVs removed"));
   if (uavs.changed.length) words.push(tn(uavs.changed.length, "{count} UAV changed", "{count} UAVs changed"));
-  if (SINGLE.some((part) => before.selection[part] !== after.selection[part])) words.push(t("options changed"));
+  if (!areSameValues(optionsOf(before.selection), optionsOf(after.selection))) words.push(t("options changed"));
   if (!areSameLocks(before.selection, after.selection)) words.push(t("locks changed"));
   return words;
 }

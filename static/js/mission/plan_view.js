@@ -2,7 +2,7 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
-import { durationText, lengthText, numberText } from "../units.js";
+import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { basisOf, withoutWishes } from "./selection.js";
@@ -11,6 +11,7 @@ const REASONS = {
   no_path: t("No way along the network leads there."),
   inside_zone: t("It stands inside a no-fly zone."),
   beyond_range: t("It is out of range."),
+  beyond_energy: t("No battery lasts for the way there and back."),
   too_far_from_network: t("It is too far from the network."),
   above_height_limit: t("It is higher than may be flown."),
   asset_gone: t("It is no longer in the data."),
@@ -19,11 +20,17 @@ const REASONS = {
 };
 
 export const OBJECTIVES = [
-  { value: "makespan", words: t("Even routes"), meaning: t("The longest route as short as possible") },
+  { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },
   { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
+  { value: "time", words: t("Least flying time"), meaning: t("All UAVs together as few minutes in the air as possible") },
+  { value: "energy", words: t("Least energy"), meaning: t("All UAVs together with as little of their batteries as possible") },
 ];
 
-export const otherObjective = (objective) => (objective === "total" ? "makespan" : "total");
+/** The one to set beside another: the soonest end, beside which the fewest metres. */
+export const otherObjective = (objective) => (objective === "makespan" ? "total" : "makespan");
+
+/** A plan that counts no energy is of UAVs without a battery: least energy means nothing for them. */
+export const isWithoutBattery = (plan) => plan !== null && (plan.result.total_energy_wh ?? null) === null;
 
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
 export function routesOf(plan) {
@@ -60,11 +67,12 @@ export function unreachedOf(plan) {
   }));
 }
 
+/** From the mission's departure until the last UAV is done. */
 export function longestDuration_s(result) {
-  return Math.max(0, ...result.routes.map((route) => route.duration_s));
+  return Math.max(0, ...result.routes.map((route) => route.duration_s + (route.departs_s ?? 0)));
 }
 
-/** "Even routes 56 min, 79.5 km": what an objective gives, where it has been planned. */
+/** "56 min, 79.5 km": what an objective gives, where it has been planned. */
 export function figuresOf(result) {
   return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
 }
@@ -81,44 +89,60 @@ export function sentenceOf(plan) {
   const time = durationText(longestDuration_s(plan.result));
   const endsAfield = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start);
   const sentence = endsAfield ? t("Done in {time}", { time }) : t("All back in {time}", { time });
-  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m)].join(" · ") };
+  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m), ...energyFacts(plan.result)].join(" · ") };
 }
+
+const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)]);
 
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
 
-const LEFT_TO_THE_SEARCH = ["beyond_range", "most_targets"]; // others no plan reaches
+const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
 
 /** How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
  *
  * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
  * out, a figure would be taken for more than it is.
  */
-export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, wish, routes, unassigned = [] }) {
-  const isTotal = objective === "total";
-  const bound = isTotal ? lower_bound_m : lower_bound_s;
+export function qualityOf({ objective, lower_bound_m, lower_bound_s, lower_bound_wh, gap, is_proven, wish, routes, unassigned = [] }) {
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
   const above = gap / (1 - gap); // `gap` is a share of this plan
-  if (is_proven) return { isProven: true, words: provenWords(isTotal, Boolean(wish), unassigned.length > 0), detail: "" };
+  if (is_proven) return { isProven: true, words: provenWords(objective, Boolean(wish), unassigned.length > 0), detail: "" };
   if (unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
-  const figure = bound === null || bound === undefined ? "" : isTotal ? t("No plan can fly less than {length}.", { length: lengthText(bound) }) : t("No plan can be done in less than {time}.", { time: durationText(bound) });
+  const bound = { total: lower_bound_m, energy: lower_bound_wh }[objective] ?? (["makespan", "time"].includes(objective) ? lower_bound_s : null);
   const share = shareText(above);
   const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
-  return { isProven: false, words, detail: figure };
+  return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
 }
 
-function provenWords(isTotal, isLocked, leavesOut) {
-  if (leavesOut && isLocked) return isTotal ? t("Proven shortest with what is locked, of plans that reach as many targets.") : t("Proven soonest with what is locked, of plans that reach as many targets.");
-  if (leavesOut) return isTotal ? t("Proven shortest of plans that reach as many targets.") : t("Proven soonest of plans that reach as many targets.");
-  if (isLocked) return isTotal ? t("Proven shortest with what is locked.") : t("Proven soonest with what is locked.");
-  return isTotal ? t("Proven shortest.") : t("Proven soonest.");
+function boundWords(objective, bound) {
+  if (objective === "total") return t("No plan can fly less than {length}.", { length: lengthText(bound) });
+  if (objective === "energy") return t("No plan can use less than {energy}.", { energy: energyText(bound) });
+  if (objective === "time") return t("No plan can be in the air for less than {time}.", { time: durationText(bound) });
+  return t("No plan can be done in less than {time}.", { time: durationText(bound) });
 }
+
+/** By objective: as it is, with locks, where targets are left out, with both. */
+const PROVEN = {
+  total: [t("Proven shortest."), t("Proven shortest with what is locked."), t("Proven shortest of plans that reach as many targets."), t("Proven shortest with what is locked, of plans that reach as many targets.")],
+  makespan: [t("Proven soonest."), t("Proven soonest with what is locked."), t("Proven soonest of plans that reach as many targets."), t("Proven soonest with what is locked, of plans that reach as many targets.")],
+  time: [
+    t("Proven least flying time."), t("Proven least flying time with what is locked."), t("Proven least flying time of plans that reach as many targets."),
+    t("Proven least flying time with what is locked, of plans that reach as many targets."),
+  ],
+  energy: [
+    t("Proven least energy."), t("Proven least energy with what is locked."), t("Proven least energy of plans that reach as many targets."),
+    t("Proven least energy with what is locked, of plans that reach as many targets."),
+  ],
+};
+
+const provenWords = (objective, isLocked, leavesOut) => PROVEN[objective][(isLocked ? 1 : 0) + (leavesOut ? 2 : 0)];
 
 /** What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked. */
 export function wishWordsOf({ objective, wish }) {
   if (!wish) return "";
-  const isTotal = objective === "total";
+  const isTotal = objective !== "makespan"; // what it costs in time in the air or in energy is not told: its metres are
   const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
   const leftOut = wish.left_out > 0 ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.") : "";
   if (cost === null || cost === undefined) return leftOut || t("What your wish costs is not known.");

@@ -5,7 +5,7 @@ import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "./compare.js";
-import { figuresOf, isPlanCurrent, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
+import { figuresOf, isPlanCurrent, isWithoutBattery, OBJECTIVES, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -13,8 +13,8 @@ const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at
 
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
 export function planOf(result, selection) {
-  const { targets, uavs } = selection;
-  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs };
+  const { targets, uavs, charging_w = null } = selection;
+  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs, charging_w };
 }
 
 /** Results by what they were made for; the oldest go. */
@@ -159,7 +159,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     const basis = picks.basisOf(state.selection);
     const known = state.figures[basis];
     if (known && state.plan?.basis !== basis) {
-      store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: state.why?.compare ? state.why : null });
+      store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: state.why?.compare || state.why?.alternatives ? state.why : null });
     }
     aside.keepOnlyFor(state.selection);
     const isShownAsStored = state.planIsStored && state.plan?.basis === basis;
@@ -184,7 +184,11 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     change({ ...selection(), targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])) });
   }
 
-  return { plan, stop, cancel, resume, replaceByStretches, waitForJob, makeRoom: aside.giveWay };
+  return {
+    plan, stop, cancel, resume, replaceByStretches, waitForJob, makeRoom: aside.giveWay,
+    planAlternatives: () => store.state.plan && isPlanCurrent(store.state) && aside.wantAll(selection()),
+    stopAlternatives: aside.stop,
+  };
 }
 
 function cancelJob(job) {
@@ -192,7 +196,8 @@ function cancelJob(job) {
 }
 
 /**
- * The same by the other objective, planned behind the page: its figures stand in the choice, and one click shows it.
+ * The same by another objective, planned behind the page: its figures stand in the choice, and one click shows it. All of them where somebody
+ * compares.
  *
  * A large one waits until the plan on the page is saved and nothing else of this person's runs, and gives way to what is asked for.
  */
@@ -242,36 +247,71 @@ function planBeside(store) {
     const other = { ...asked, objective: otherObjective(asked.objective) };
     const basis = picks.basisOf(other);
     if (store.state.figures[basis] || store.state.planningBeside === basis) return;
-    const own = new AbortController();
-    stopping = own;
-    running = asked;
-    store.update({ planningBeside: basis });
+    const own = begin(asked);
     try {
       if (asked.targets.length > MOST_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
-      const answer = await post("/plans", picks.requestOf(other)); // not cut short: a job that nobody knows of could not be stopped
-      const begun = answer.status === 202 ? answer.data.job : null;
-      if (own.signal.aborted) return void cancelJob(begun);
-      job = begun;
-      const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
-      const result = made && job ? { ...made, job } : made;
-      if (result) store.update({ figures: withResult(store.state.figures, basis, result) });
+      await make(other, own);
     } catch (error) {
       if (error.name !== "AbortError") say(t("The other way of planning has no figures: {reason}", { reason: error.message }));
     } finally {
-      if (stopping === own) {
-        [stopping, job, running] = [null, null, null];
-        store.update({ planningBeside: null });
-      }
+      end(own);
     }
+  }
+
+  /** One after the other; what is refused says why, and the next is made. */
+  async function wantAll(asked) {
+    stop();
+    const own = begin(asked);
+    try {
+      for (const { value } of OBJECTIVES) {
+        const other = { ...asked, objective: value };
+        if (own.signal.aborted) return;
+        if (store.state.figures[picks.basisOf(other)] || (value === "energy" && isWithoutBattery(store.state.plan))) continue;
+        try {
+          await make(other, own);
+        } catch (error) {
+          if (error.name === "AbortError") return;
+          store.update({ refusedBeside: { ...store.state.refusedBeside, [picks.basisOf(other)]: error.message } });
+        }
+      }
+    } finally {
+      end(own);
+    }
+  }
+
+  function begin(asked) {
+    stopping = new AbortController();
+    running = asked;
+    return stopping;
+  }
+
+  function end(own) {
+    if (stopping !== own) return;
+    [stopping, job, running] = [null, null, null];
+    store.update({ planningBeside: null });
+  }
+
+  async function make(other, own) {
+    const basis = picks.basisOf(other);
+    store.update({ planningBeside: basis });
+    const answer = await post("/plans", picks.requestOf(other)); // not cut short: a job that nobody knows of could not be stopped
+    const begun = answer.status === 202 ? answer.data.job : null;
+    if (own.signal.aborted) return void cancelJob(begun);
+    job = begun;
+    const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
+    job = null;
+    const result = made && begun ? { ...made, job: begun } : made;
+    if (result && !own.signal.aborted) store.update({ figures: withResult(store.state.figures, basis, result) });
   }
 
   return {
     want,
+    wantAll,
     stop,
     giveWay,
     keepOnlyFor(selection) {
       const { planningBeside } = store.state;
-      const wanted = ["total", "makespan"].map((objective) => picks.basisOf({ ...selection, objective }));
+      const wanted = OBJECTIVES.map(({ value }) => picks.basisOf({ ...selection, objective: value }));
       if (planningBeside && !wanted.includes(planningBeside)) stop();
     },
   };

@@ -1,15 +1,19 @@
-/** The flight of one UAV from the side: ground, zones beside it, flight height and task points, on the axis of the strips. */
+/** The flight of one UAV from the side: ground, zones beside it, flight height, task points and battery, on the axis of the strips. */
 
 import { post } from "../api.js";
 import { h, svg } from "../dom.js";
 import { t } from "../text.js";
-import { heightText, lengthText } from "../units.js";
+import { heightText, lengthText, percentText } from "../units.js";
+import { heightsText } from "../zones/heights.js";
+import { timeAt } from "./flight_options.js";
+import { staysOf, stayText } from "./route_times.js";
 import { rulesOf } from "../terrain/profile_chart.js";
 import { profileOf, scaleOf } from "./span_strip.js";
 
 export const PROFILE_HEIGHT_PX = 96;
 const TOP_PX = 14;
 const FLOOR_PX = PROFILE_HEIGHT_PX - 4;
+const BATTERY_PX = { full: PROFILE_HEIGHT_PX + 8, empty: PROFILE_HEIGHT_PX + 36 };
 const LEAST_SPAN_M = 60; // a plain must not look like mountains
 const NEAR_ZONE_M = 300;
 const MOST_VERTICES = 1_900; // of the 2,000 that the server takes
@@ -47,14 +51,28 @@ export function groundOf(profile, length_m) {
 }
 
 /** Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat. */
-export function flightOf(route, ground) {
+export function flightOf(route, ground, battery_wh = null) {
   const { places, targets } = profileOf(route.waypoints, route.length_m);
   const isFlat = route.waypoints.some(({ altitude_amsl_m }) => altitude_amsl_m === null);
   const heightOf = (waypoint) => (isFlat ? waypoint.altitude_relative_m : waypoint.altitude_amsl_m);
-  const path = route.waypoints.map((waypoint, index) => ({ at_m: places[index], height_m: heightOf(waypoint) }));
+  const stays = new Map(staysOf(route).map((stay) => [stay.index, stay]));
+  const path = route.waypoints.flatMap((waypoint, index) => {
+    const point = { at_m: places[index], height_m: heightOf(waypoint), arrival_s: route.arrival_s?.[index] ?? null, battery_percent: route.battery_left_percent?.[index] ?? null };
+    const stay = stays.get(index) ?? (waypoint.task?.hold_s ? { kind: "task", stay_s: waypoint.task.hold_s } : null);
+    return stay ? [point, afterStay(point, stay, battery_wh)] : [point];
+  });
   const under = isFlat ? [{ at_m: 0, ground_m: 0 }, { at_m: route.length_m, ground_m: 0 }] : (ground?.samples ?? []);
   const tasks = targets.map(({ target, at }) => ({ target, at_m: at, height_m: heightAt(path, at, "height_m") }));
-  return { isFlat, path, under, tasks, zones: ground?.zones ?? [] };
+  const waits = [...stays.values()].map((stay) => ({ ...stay, at_m: places[stay.index] }));
+  return { isFlat, path, under, tasks, waits, zones: ground?.zones ?? [], hasBattery: path.some(({ battery_percent }) => battery_percent !== null) };
+}
+
+/** The same place when it goes on from there: later, and with a battery that is full after a base and fuller after charging. */
+function afterStay(point, { kind, stay_s, charged_wh }, battery_wh) {
+  const { arrival_s, battery_percent } = point;
+  const gained = kind === "charging" && battery_wh ? (charged_wh / battery_wh) * 100 : 0;
+  const left = battery_percent === null ? null : kind === "base" ? 100 : Math.min(100, battery_percent + gained);
+  return { ...point, arrival_s: arrival_s === null ? null : arrival_s + stay_s, battery_percent: left };
 }
 
 /** The value of a name at a distance, straight between neighbours; null where one of them is unknown. */
@@ -69,11 +87,17 @@ export function heightAt(points, at_m, name) {
   return before[name] + (after[name] - before[name]) * share;
 }
 
-/** What is said at a distance: { at_m, height_m, ground_m, above_m }; unknown is null. */
+/** What is said at a distance: { at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }; unknown is null. */
 export function readingAt(flight, at_m) {
   const height_m = heightAt(flight.path, at_m, "height_m");
   const ground_m = heightAt(flight.under, at_m, "ground_m");
-  return { at_m, height_m, ground_m, above_m: height_m === null || ground_m === null ? null : height_m - ground_m };
+  return {
+    at_m, height_m, ground_m,
+    above_m: height_m === null || ground_m === null ? null : height_m - ground_m,
+    arrival_s: heightAt(flight.path, at_m, "arrival_s"),
+    battery_percent: heightAt(flight.path, at_m, "battery_percent"),
+    zones: flight.zones.filter(({ from_m, to_m }) => from_m <= at_m && at_m <= to_m),
+  };
 }
 
 /** Lowest and highest of what is drawn; a zone without a ceiling does not count. */
@@ -108,14 +132,17 @@ export function profileSentence(route, flight) {
   return names.length ? `${words} ${t("It passes near {zones}.", { zones: names.join(", ") })}` : words;
 }
 
-/** Draws it. onAlong(at_m or null), onTask(target or null). Returns { element, point(at_m or null), light(target or null) }. */
-export function drawProfile({ route, flight, longest_m, width_px, onAlong, onTask }) {
+/** Draws it. onAlong(at_m or null), onTask(target or null); reserve_percent: of the battery, or null. Returns { element, point(at_m or null), light(target or null) }. */
+export function drawProfile({ route, flight, longest_m, width_px, reserve_percent = null, onAlong, onTask }) {
   const { x, distanceAt } = scaleOf(longest_m, width_px);
   const span = spanOf(flight);
   const y = (height) => TOP_PX + ((span.high - height) / (span.high - span.low)) * (FLOOR_PX - TOP_PX);
   const end = x(route.length_m);
-  const element = svg("svg", { class: "route-profile-chart", role: "img", "aria-label": profileSentence(route, flight), width: width_px, height: PROFILE_HEIGHT_PX, viewBox: `0 0 ${width_px} ${PROFILE_HEIGHT_PX}` });
+  const bottom_px = flight.hasBattery ? BATTERY_PX.empty : FLOOR_PX;
+  const height_px = flight.hasBattery ? BATTERY_PX.empty + 4 : PROFILE_HEIGHT_PX;
+  const element = svg("svg", { class: "route-profile-chart", role: "img", "aria-label": profileSentence(route, flight), width: width_px, height: height_px, viewBox: `0 0 ${width_px} ${height_px}` });
   element.append(hatching());
+  if (flight.hasBattery) element.append(...batteryDrawing(flight.path, { x, width_px, reserve_percent }));
   for (const rule of rulesOf(span.low, span.high)) {
     element.append(svg("line", { class: "rule", x1: x(0), x2: width_px, y1: y(rule), y2: y(rule) }));
   }
@@ -130,7 +157,7 @@ export function drawProfile({ route, flight, longest_m, width_px, onAlong, onTas
     const { from, to } = bandOf(zone, flight, span);
     const [left, right] = [x(zone.from_m), Math.max(x(zone.to_m), x(zone.from_m) + 3)];
     element.append(
-      svg("rect", { class: "zone-band", x: left, width: right - left, y: y(to), height: Math.max(1, y(from) - y(to)), fill: "url(#zone-hatch)" }, svg("title", {}, zone.name)),
+      svg("rect", { class: "zone-band", x: left, width: right - left, y: y(to), height: Math.max(1, y(from) - y(to)), fill: "url(#zone-hatch)" }, svg("title", {}, `${zone.name}, ${heightsText(zone)}`)),
     );
   }
   element.append(svg("polyline", { class: "flight", points: flight.path.map(({ at_m, height_m }) => `${x(at_m).toFixed(1)},${y(height_m).toFixed(1)}`).join(" ") }));
@@ -142,7 +169,8 @@ export function drawProfile({ route, flight, longest_m, width_px, onAlong, onTas
     dots.get(task.target).push(dot);
     element.append(dot);
   }
-  const line = svg("line", { class: "strip-cursor", y1: 0, y2: FLOOR_PX, visibility: "hidden" });
+  for (const wait of flight.waits) element.append(svg("line", { class: "wait", x1: x(wait.at_m), x2: x(wait.at_m), y1: TOP_PX, y2: bottom_px }, svg("title", {}, stayText(wait))));
+  const line = svg("line", { class: "strip-cursor", y1: 0, y2: bottom_px, visibility: "hidden" });
   const dot = svg("circle", { class: "cursor-dot", r: 3.5, visibility: "hidden" });
   element.append(line, dot);
 
@@ -168,6 +196,20 @@ export function drawProfile({ route, flight, longest_m, width_px, onAlong, onTas
   };
 }
 
+/** What is left of the battery, from full to empty, with the reserve that no plan uses. */
+function batteryDrawing(path, { x, width_px, reserve_percent }) {
+  const y = (percent) => BATTERY_PX.empty - (Math.max(0, percent) / 100) * (BATTERY_PX.empty - BATTERY_PX.full);
+  const known = path.filter(({ battery_percent }) => battery_percent !== null);
+  const points = known.map(({ at_m, battery_percent }) => `${x(at_m).toFixed(1)},${y(battery_percent).toFixed(1)}`);
+  return [
+    svg("line", { class: "rule", x1: x(0), x2: width_px, y1: BATTERY_PX.empty, y2: BATTERY_PX.empty }),
+    svg("polygon", { class: "battery-left", points: [...points, `${x(known.at(-1).at_m).toFixed(1)},${BATTERY_PX.empty}`, `${x(known[0].at_m).toFixed(1)},${BATTERY_PX.empty}`].join(" ") }),
+    reserve_percent !== null && svg("line", { class: "battery-reserve", x1: x(0), x2: x(known.at(-1).at_m), y1: y(reserve_percent), y2: y(reserve_percent) }, svg("title", {}, t("Kept in reserve"))),
+    svg("polyline", { class: "battery-curve", points: points.join(" ") }),
+    svg("text", { class: "tick", x: x(0) + 2, y: BATTERY_PX.empty - 4 }, t("Battery")),
+  ].filter(Boolean);
+}
+
 function hatching() {
   return svg(
     "defs",
@@ -186,21 +228,22 @@ function knownPieces(samples) {
   return pieces.filter((piece) => piece.length > 1);
 }
 
-/** The profile as a table: each task point with distance, ground and height. */
-export function profileTable(route, flight, targets) {
+/** The profile as a table: each task point with distance, ground and height, and where they are known arrival and battery. */
+export function profileTable(route, flight, targets, departs_at) {
   const said = (height) => (height === null ? t("not known") : heightText(height));
   const height = flight.isFlat ? t("Height above take-off") : t("Height above sea level");
+  const hasTimes = flight.path.some(({ arrival_s }) => arrival_s !== null);
   return h(
     "table",
     { class: "unseen" },
     h("caption", {}, t("Heights of {name}", { name: route.name })),
-    h("thead", {}, h("tr", {}, [t("Target"), t("Distance flown"), t("Ground"), height].map((words) => h("th", { scope: "col" }, words)))),
+    h("thead", {}, h("tr", {}, [t("Target"), t("Distance flown"), t("Ground"), height, hasTimes && t("Arrival"), flight.hasBattery && t("Battery left")].filter(Boolean).map((words) => h("th", { scope: "col" }, words)))),
     h(
       "tbody",
       {},
       flight.tasks.map(({ target, at_m }) => {
         const at = readingAt(flight, at_m);
-        return h("tr", {}, [targets[target]?.label ?? t("Target"), lengthText(at_m), said(at.ground_m), said(at.height_m)].map((words) => h("td", {}, words)));
+        return h("tr", {}, [targets[target]?.label ?? t("Target"), lengthText(at_m), said(at.ground_m), said(at.height_m), hasTimes && timeAt(departs_at, at.arrival_s), flight.hasBattery && percentText(at.battery_percent)].filter(Boolean).map((words) => h("td", {}, words)));
       }),
     ),
   );

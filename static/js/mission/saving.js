@@ -5,6 +5,7 @@ import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { clockText, dayText } from "../units.js";
 import { draftDecision, isStarted } from "./draft.js";
+import { UNSAID } from "./flight_options.js";
 import { merged } from "./merge.js";
 import { isPlanCurrent, isUnsaved } from "./plan_view.js";
 import { planOf } from "./planning.js";
@@ -13,13 +14,14 @@ import * as picks from "./selection.js";
 export const RETRY_S = 8;
 const REST_MS = 1500; // after the last change
 const AT_ONCE_MS = 200;
-const PARTS = ["uavs", "targets", "objective", "return_to_start", "locks"];
+const UNASKED = { locks: [], ...UNSAID };
+const PARTS = ["uavs", "targets", "objective", "return_to_start", ...Object.keys(UNASKED)];
 
 const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 
 /** The parts of a selection that differ from what is stored, as the API takes them. */
 export function changedParts(selection, stored) {
-  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}].map((body) => ({ locks: [], ...body }));
+  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}].map((body) => ({ ...UNASKED, ...body }));
   const changed = PARTS.filter((part) => JSON.stringify(now[part]) !== JSON.stringify(before[part]));
   const movesPlaces = changed.includes("targets") || changed.includes("uavs"); // locks name UAVs and places in the list of targets
   if (movesPlaces && now.locks.length && !changed.includes("locks")) changed.push("locks");

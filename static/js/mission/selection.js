@@ -2,9 +2,10 @@
 
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
+import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
 
-/** Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js. */
-export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true, locks: [] });
+/** Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last three: flight_options.js. */
+export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true, locks: [], ...UNSAID });
 
 /** Two picks of the same place are one target: the asset whole, or one point of it. */
 export function keyOf({ asset, position, stretch }) {
@@ -117,6 +118,11 @@ export function uavOf(feature) {
   };
 }
 
+/** What a UAV's flying takes: missions/flight_plan/performance.py. */
+export const PERFORMANCE = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w"];
+/** What a mission may say of a UAV's flying; where it says nothing, the UAV's own or its type's counts. */
+const UAV_VALUES = ["max_range_m", "cruise_speed_mps", "end_action", "most_targets", ...PERFORMANCE];
+
 const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
 
 /** "Heron", or where one of the UAVs is called so "Heron 2": ties and locks name the one that they mean. */
@@ -175,7 +181,8 @@ export function requestOf(selection) {
       const body = { name: uav.name, position: uav.position };
       if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
       if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
-      for (const name of ["max_range_m", "cruise_speed_mps", "end_action", "most_targets"]) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
+      for (const name of UAV_VALUES) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
+      if (uav.sorties > 1) body.sorties = uav.sorties;
       if (body.id === undefined && uav.sensors?.length) body.sensors = uav.sensors; // one of the fleet brings its own
       return body;
     }),
@@ -193,6 +200,7 @@ export function requestOf(selection) {
     }),
     objective: selection.objective,
     return_to_start: selection.return_to_start,
+    ...flightOptionsAsked(selection),
     ...locksAsked(selection),
   };
 }
@@ -229,6 +237,7 @@ export function selectionOf(mission, fleet = []) {
     uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),
     objective: mission.objective,
     return_to_start: mission.return_to_start,
+    ...flightOptionsOf(mission),
     locks: (mission.locks ?? []).map(({ uav, targets: places, at_start, at_end }) => ({ uav, targets: places.map((place) => targets[place].key), at_start: Boolean(at_start), at_end: Boolean(at_end) })),
   };
 }

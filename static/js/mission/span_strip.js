@@ -122,16 +122,18 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
   return Array.from({ length: Math.floor(longest / step + 1e-9) + 1 }, (_, index) => Number((index * step).toPrecision(6)));
 }
 
-/** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name }].
+/** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name }], `waits`
+ * stops at bases and on towers: [{ index of the waypoint, kind, words }].
  *
  * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event, targets, label): a pill is
  * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or null, without) };
  * positionAt gives the place on the map.
  */
-export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], stopsOf = (targets) => targets, onAlong, onTarget, grab }) {
+export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], waits = [], stopsOf = (targets) => targets, onAlong, onTarget, grab }) {
   const flown = profileOf(waypoints, length_m);
   const profile = { ...flown, targets: stopsOf(flown.targets) };
-  const { element, plan, x, pills } = drawing({ profile, longest_m, width_px, label, zones, onTarget, grab });
+  const places = waits.map(({ index, ...wait }) => ({ ...wait, at: flown.places[index] }));
+  const { element, plan, x, pills } = drawing({ profile, longest_m, width_px, label, zones, waits: places, onTarget, grab });
   const { distanceAt } = scaleOf(longest_m, width_px);
   const cursor = svg("line", { y1: 0, y2: HEIGHT_PX, class: "strip-cursor", visibility: "hidden" });
   const gap = svg("line", { y1: 3, y2: HEIGHT_PX - 3, class: "strip-gap", visibility: "hidden" });
@@ -203,7 +205,7 @@ function drawPill({ x: at, width, label, targets, members }, { onTarget, grab })
   return { element, targets };
 }
 
-function drawing({ profile, longest_m, width_px, label, zones, onTarget, grab }) {
+function drawing({ profile, longest_m, width_px, label, zones, waits = [], onTarget, grab }) {
   const plan = layOut(profile, longest_m, width_px);
   const { x } = scaleOf(longest_m, width_px);
   const pills = plan.pills.map((pill) => drawPill(pill, { onTarget, grab }));
@@ -216,6 +218,7 @@ function drawing({ profile, longest_m, width_px, label, zones, onTarget, grab })
     plan.legs.map((leg) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: leg.offNetwork ? "strip-leg off" : "strip-leg" })),
     mark(plan.start),
     mark(plan.end),
+    waits.map(({ at, kind, words }) => svg("g", { class: "strip-wait" }, svg("title", {}, words), kind === "base" ? mark(x(at)) : svg("path", { d: `M${x(at) + 1} 2L${x(at) - 4} 9H${x(at)}L${x(at) - 1} 15L${x(at) + 4} 7.5H${x(at)}Z` }))),
     pills.map((pill) => pill.element),
   );
   return { element, plan, x, pills };

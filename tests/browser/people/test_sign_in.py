@@ -55,7 +55,7 @@ def test_a_viewer_has_nothing_to_edit_with(visitor: Visitor, size: tuple[int, in
     page.goto(address)
     wait_for_map(page)
     expect(page.locator("#target-list .target")).to_have_count(2)
-    expect(page.locator("#options-words")).to_contain_text("Even routes")
+    expect(page.locator("#options-words")).to_contain_text("Finish soonest")
     editing = page.locator("#side").locator(
         "input:not([readonly]), select, #tools, #undo:visible, #redo:visible, #clear-targets:visible, .target .icon-button, .uav button"
     )

@@ -197,23 +197,24 @@ def test_the_next_tower_is_taken_when_a_zone_stands_before_the_nearest():
     assert (around.excluded_nodes, around.excluded_edges) == (0, 1)
 
 
-def test_a_node_inside_a_zone_is_out_with_its_edges():
+def test_a_node_inside_a_zone_is_out_with_its_edges_and_gone_round():
     drawn = ground(
         supports=places(ROW, first_asset=100, osm=[1, 2, 3]),
         lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]),
         zones=[square((200, 0), 20)],
     )
     result = build(drawn, RULES)
-    assert result.graph.node_asset.tolist() == [100, 102]
-    assert result.graph.edge_count == 0
-    assert (result.excluded_nodes, result.excluded_edges, result.components) == (1, 2, 2)
+    assert result.graph.node_asset.tolist() == [100, 102, -1, -1]
+    assert result.graph.node_kind[2:].tolist() == [NodeKind.BEND] * 2
+    assert edges(result.graph, EdgeKind.LINE) == []
+    assert (result.excluded_nodes, result.excluded_edges, result.components) == (1, 2, 1)
 
 
 def test_an_edge_that_crosses_a_zone_is_out_though_its_ends_are_free():
     drawn = ground(lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=[square((100, 0), 20)])
     result = build(drawn, RULES)
-    assert result.graph.node_count == 3
-    assert result.graph.edge_count == 1
+    assert (result.graph.node_kind == NodeKind.LINE_VERTEX).sum() == 3
+    assert len(edges(result.graph, EdgeKind.LINE)) == 1
     assert (result.excluded_nodes, result.excluded_edges) == (0, 1)
 
 
@@ -221,7 +222,7 @@ def test_an_edge_that_crosses_a_zone_is_out_though_its_ends_are_free():
 def test_an_edge_is_out_when_a_corner_overlaps_it_touches_it_or_comes_within_5_m(gap_m, edges_left):
     """The corner of a triangle points at the middle of the first span from the south."""
     corner = zone((100, -gap_m), (60, -200), (140, -200))
-    assert built(lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=[corner]).edge_count == edges_left
+    assert len(edges(built(lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=[corner]), EdgeKind.LINE)) == edges_left
 
 
 def test_an_edge_between_two_zones_stays():
@@ -233,7 +234,7 @@ def test_without_clearance_only_touching_counts():
     for gap_m, edges_left in ((0.01, 2), (-0.01, 1)):
         corner = zone((100, -gap_m), (60, -200), (140, -200))
         rules = replace(RULES, zone_clearance_m=0.0)
-        assert built(rules, lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=[corner]).edge_count == edges_left
+        assert len(edges(built(rules, lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=[corner]), EdgeKind.LINE)) == edges_left
 
 
 def test_legs_across_the_antimeridian_are_not_made():

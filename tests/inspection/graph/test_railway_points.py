@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from shapely import LineString, Point
 
 from inspection.geodesy import distance_m, path_length_m
-from inspection.graph.build import NO_PLACES
 from inspection.graph.joining import join_vertices
+from inspection.graph.network import NO_PLACES
 from inspection.graph.railway_points import RailwayPoints, railway_points
 from tests.inspection.graph.drawn_ground import LAT, LON, lonlat, ways
 

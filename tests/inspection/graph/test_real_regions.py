@@ -10,7 +10,8 @@ import shapely
 from inspection import services
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.access import clear_legs
-from inspection.graph.build import BuiltGraph, build
+from inspection.graph.build import build
+from inspection.graph.clearing import ClearedGraph
 from inspection.graph.edges import component_labels
 from inspection.graph.ground_data import GroundData, Zones
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
@@ -60,7 +61,7 @@ def with_random_zones(ground: GroundData, seed: int, count: int = 40) -> GroundD
     )
 
 
-def assert_rules_hold(result: BuiltGraph) -> None:
+def assert_rules_hold(result: ClearedGraph) -> None:
     graph = result.graph
     start, end = graph.edge.T
     kinds = np.sort(np.column_stack([graph.node_kind[start], graph.node_kind[end]]), axis=1)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from inspection.graph.condensed import CORE, condense
 from inspection.graph.legs import Attachment, DirectLeg, NoWay
+from inspection.graph.passed import BEND, passed_on
 from inspection.graph.route_index import route_index
 from inspection.graph.ways import travel_between
 from tests.inspection.graph import search_oracle
@@ -230,3 +231,29 @@ def test_threads_that_share_an_index_get_their_own_answers():
         assert (travel.cost == expected.cost).all()
         if np.isfinite(travel.cost[0, 1]):
             assert travel.path(0, 1).tolist() == expected.path(0, 1).tolist()
+
+
+def test_what_a_way_passes_has_the_bends_of_its_legs_in_the_order_flown():
+    """x --(a, b)-- 0 --- 1 --- 2 --(c)-- y by the graph; x --(d)-- z straight, without it.
+
+    Whether the way meets in a hub or stays within one chain, the same.
+    """
+    place = [(9.0, 47.0), (9.001, 47.0), (9.002, 47.0), (9.003, 47.0)]
+    a, b, c, d = (8.9, 47.1), (8.95, 47.1), (9.05, 47.2), (8.8, 46.9)
+    for edges in ([(0, 1, 76.0), (1, 2, 76.0)], [(0, 1, 76.0), (1, 2, 76.0), (1, 3, 50.0)]):
+        graph = drawn_graph(place, edges)
+        x, y, z = [Attachment(0, 90.0, 180.0, (a, b))], [Attachment(2, 40.0, 80.0, (c,)), Attachment(1, 900.0, 900.0)], []
+        travel = travel_between(graph, [x], [y, z], [DirectLeg(0, 1, 50.0, 100.0, (d,))])
+        told = passed_on(travel, np.array([(0, 0), (0, 1)]), graph.position)
+        assert told.position.tolist() == [list(at) for at in (a, b, *place[:3], c, d)]
+        assert (told.node.tolist(), told.first.tolist()) == ([BEND, BEND, 0, 1, 2, BEND, BEND], [0, 6, 7])
+        assert travel.length_m.tolist() == [[90.0 + 152.0 + 40.0, 50.0]]
+        back = travel_between(graph, [y], [x])
+        assert passed_on(back, np.array([(0, 0)]), graph.position).position.tolist() == [list(at) for at in (c, *place[2::-1], b, a)]
+
+
+def test_without_bends_nodes_alone_are_passed():
+    graph = drawn_graph([(9.0, 47.0), (9.001, 47.0)], [(0, 1, 76.0)])
+    travel = travel_between(graph, [[Attachment(0, 1.0, 1.0)]], [[Attachment(1, 1.0, 1.0)]])
+    told = passed_on(travel, np.array([(0, 0)]), graph.position)
+    assert (told.node.tolist(), told.position.tolist()) == ([0, 1], graph.position.tolist())

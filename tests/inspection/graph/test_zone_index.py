@@ -13,7 +13,7 @@ from shapely.affinity import translate
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
-from inspection.graph.zone_index import ZoneIndex
+from inspection.graph.zone_index import MANY, ZoneIndex
 from tests.exact_geometry import segment_meets_polygon
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -170,3 +170,104 @@ assert all(check == checks[0] for check in checks)
 """
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)  # noqa: S603
     assert done.returncode == 0, done.stderr
+
+
+def banded(*bands: tuple[float, float]) -> ZoneIndex:
+    """The square once for each band."""
+    floors, ceilings = zip(*bands, strict=True)
+    return ZoneIndex(
+        [SQUARE] * len(bands),
+        range(1, len(bands) + 1),
+        [f"zone {number + 1}" for number in range(len(bands))],
+        floor_agl_m=floors,
+        ceiling_agl_m=ceilings,
+    )
+
+
+ACROSS = (9.9, 50.05), (10.2, 50.05)
+INSIDE = LonLat(10.05, 50.05)
+
+
+@pytest.mark.parametrize(
+    ("low_m", "high_m", "is_met"),
+    [
+        (0.0, 60.0, False),
+        (0.0, 99.9, False),
+        (0.0, 100.0, True),  # touches the floor
+        (120.0, 130.0, True),  # within
+        (0.0, 500.0, True),  # through
+        (150.0, 160.0, True),  # touches the ceiling
+        (150.1, 160.0, False),
+        (None, 99.0, False),
+        (None, 100.0, True),
+        (151.0, None, False),
+        (None, None, True),
+        (np.nan, np.nan, True),
+    ],
+)
+def test_a_zone_of_100_to_150_m_is_met_at_its_heights_alone(low_m, high_m, is_met):
+    zones = banded((100.0, 150.0))
+    assert zones.meets([ACROSS[0]], [ACROSS[1]], 5.0, low_m, high_m).tolist() == [is_met]
+    assert zones.contains([INSIDE], 5.0, low_m, high_m).tolist() == [is_met]
+    assert (zones.zone_at(INSIDE, low_m, high_m) is not None) == is_met
+    assert (zones.first_met(LonLat(*ACROSS[0]), LonLat(*ACROSS[1]), low_m, high_m) is not None) == is_met
+
+
+def test_each_leg_has_its_own_heights():
+    zones = banded((100.0, 150.0), (-np.inf, 30.0))
+    start, end = [ACROSS[0]] * 4, [ACROSS[1]] * 4
+    met = zones.meets(start, end, 5.0, np.array([40.0, 90.0, 20.0, 160.0]), np.array([80.0, 110.0, 25.0, 170.0]))
+    assert met.tolist() == [False, True, True, False]
+    assert zones.contains(start, 20_000.0, 40.0, np.array([80.0, 120.0, 80.0, 100.0])).tolist() == [False, True, False, True]
+
+
+@pytest.mark.parametrize("band", [(np.nan, np.nan), (np.nan, 10.0), (-np.inf, np.inf), (150.0, 100.0)])
+def test_a_limit_that_says_nothing_is_no_limit(band):
+    """A band that is upside down says nothing either."""
+    floor_m = 5.0 if band[1] == 10.0 else 60.0
+    assert banded(band).meets([ACROSS[0]], [ACROSS[1]], 0.0, floor_m, 80.0).tolist() == [True]
+
+
+def test_the_first_zone_met_is_the_first_at_this_height():
+    west, east = box(10.0, 50.0, 10.1, 50.1), box(10.3, 50.0, 10.4, 50.1)
+    zones = ZoneIndex([west, east], [1, 2], ["west", "east"], floor_agl_m=[100.0, 0.0], ceiling_agl_m=[200.0, 200.0])
+    leg = LonLat(9.9, 50.05), LonLat(10.5, 50.05)
+    assert (zones.first_met(*leg), zones.first_met(*leg, 0.0, 80.0)) == ((1, "west"), (2, "east"))
+    assert zones.zone_at(LonLat(10.05, 50.05), 0.0, 80.0) is None
+
+
+def test_some_of_the_zones_make_an_index():
+    zones = banded((0.0, 10.0), (20.0, 30.0), (40.0, 50.0))
+    some = zones.where([2, 0])
+    assert (some.ids.tolist(), some.names) == ([1, 3], ("zone 1", "zone 3"))
+    assert [some.zone_at(INSIDE, height_m, height_m) for height_m in (5.0, 25.0, 45.0)] == [(1, "zone 1"), None, (3, "zone 3")]
+    assert some.digest == zones.where(np.array([True, False, True])).digest != zones.digest
+    assert len(zones.where([])) == 0
+    assert zones.where([0, 1, 2]) is zones
+
+
+def test_very_many_legs_and_positions_get_the_answers_of_few():
+    """Which are the same whatever stands beside them."""
+    rng = np.random.default_rng(7)
+    boxes = [
+        box(*west_south, *(west_south + size))
+        for west_south, size in zip(rng.uniform(5, 15, (40, 2)), rng.uniform(0.001, 0.5, (40, 2)), strict=True)
+    ]
+    zones = ZoneIndex(boxes, range(40), [""] * 40, floor_agl_m=rng.choice([-np.inf, 50.0, 90.0], 40))
+    start = rng.uniform(4, 16, (2 * MANY, 2)).round(2)
+    end = start + rng.uniform(-0.2, 0.2, start.shape).round(2)
+    high_m = rng.uniform(0, 120, len(start))
+    for limits in ((), (0.0, high_m)):
+        few = [
+            zones.meets(start[first : first + 500], end[first : first + 500], 5.0, *(limits and (0.0, high_m[first : first + 500])))
+            for first in range(0, len(start), 500)
+        ]
+        assert zones.meets(start, end, 5.0, *limits).tolist() == np.concatenate(few).tolist()
+        few = [
+            zones.contains(start[first : first + 500], 5.0, *(limits and (0.0, high_m[first : first + 500])))
+            for first in range(0, len(start), 500)
+        ]
+        assert zones.contains(start, 5.0, *limits).tolist() == np.concatenate(few).tolist()
+        assert 0 < np.concatenate(few).sum() < len(start)
+    from_one = zones.meets(start[:1], end, 5.0)
+    assert from_one.tolist() == zones.meets(np.repeat(start[:1], len(end), axis=0), end, 5.0).tolist()

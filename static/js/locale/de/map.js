@@ -50,7 +50,6 @@ export default {
   "None": "Keine",
   "Not in force now": "Gilt jetzt nicht",
   "other": "Sonstiges",
-  "Plans count it at all heights and times.": "Pläne rechnen sie in allen Höhen und zu allen Zeiten.",
   "population": "Bevölkerung",
   "privacy": "Privatsphäre",
   "prohibited": "verboten",

@@ -92,7 +92,6 @@ export default {
   "Not known": "Nicht bekannt",
   "Not loaded: {reason}": "Nicht geladen: {reason}",
   "not needed": "nicht gebraucht",
-  "not planned": "nicht geplant",
   "Not planned yet": "Noch nicht geplant",
   "Not reached": "Nicht erreicht",
   "Not saved yet": "Noch nicht gespeichert",

@@ -55,7 +55,6 @@ export default {
   "Proven soonest.": "Bewiesen am schnellsten.",
   "Raise its limit to {count}": "Seine Grenze auf {count} erhöhen",
   "Sensors: {names}": "Sensoren: {names}",
-  "Start, range, speed, end, targets": "Start, Reichweite, Geschwindigkeit, Ende, Ziele",
   "Task and wishes: {name}": "Aufgabe und Wünsche: {name}",
   "The chosen target earlier": "Gewähltes Ziel früher",
   "The chosen target later": "Gewähltes Ziel später",

@@ -19,6 +19,11 @@ export function update(map, routes) {
   });
 }
 
+/** Places where UAVs wait: [{ kind: "base" | "charging", position }]. */
+export function showStops(map, stops) {
+  map.getSource("route-stops").setData({ type: "FeatureCollection", features: stops.map(({ kind, position }) => ({ type: "Feature", properties: { kind }, geometry: { type: "Point", coordinates: position } })) });
+}
+
 /** The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan. */
 export function showSoFar(map, lines) {
   map.getSource("routes-so-far").setData({

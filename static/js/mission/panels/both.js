@@ -3,8 +3,9 @@
 import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
-import { clockText } from "../../units.js";
+import { clockText, powerText } from "../../units.js";
 import { targetDifferences, uavDifferences } from "../merge.js";
+import { conditionsText, departureText } from "../flight_options.js";
 import { OBJECTIVES } from "../plan_view.js";
 
 const MOST_NAMES = 6;
@@ -45,6 +46,9 @@ export function showBoth(conflict, mine, ways) {
     [t("Targets"), ({ selection }) => listWords(selection, before, "targets", TARGETS)],
     [t("UAVs"), ({ selection }) => listWords(selection, before, "uavs", UAVS)],
     [t("Best at"), ({ selection }) => [objectiveWords(selection.objective)]],
+    [t("Departure"), ({ selection }) => [selection.departs_at ? departureText(selection.departs_at) : t("any time")]],
+    [t("Conditions"), ({ selection }) => [conditionsText(selection.conditions)]],
+    [t("Charging on towers"), ({ selection }) => [selection.charging_w ? powerText(selection.charging_w) : t("no")]],
     [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
     [t("Locked"), ({ selection }) => lockWords(selection)],
   ];

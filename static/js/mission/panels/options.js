@@ -1,4 +1,4 @@
-/** What the plan is to be best at, both with their figures once they are planned, and whether UAVs fly back. */
+/** What the plan is to be best at, each with its figures once it is planned, and whether UAVs fly back. */
 
 import { byId, h } from "../../dom.js";
 import { t } from "../../text.js";
@@ -34,7 +34,7 @@ export function mountOptions(store, actions, canPlan) {
     for (const choice of choices) {
       choice.radio.checked = selection.objective === choice.value;
       const basis = basisOf({ ...selection, objective: choice.value });
-      choice.figures.textContent = figures[basis] ? figuresOf(figures[basis]) : planningBeside === basis ? t("planning") : plan ? t("not planned") : "";
+      choice.figures.textContent = figures[basis] ? figuresOf(figures[basis]) : planningBeside === basis ? t("planning") : "";
     }
     meaning.textContent = OBJECTIVES.find(({ value }) => value === selection.objective)?.meaning ?? "";
     back.checked = selection.return_to_start;

@@ -2,11 +2,15 @@
 
 import { byId, h } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
-import { t } from "../../text.js";
-import { heightText, lengthText } from "../../units.js";
+import { t, tn } from "../../text.js";
+import { heightText, lengthText, percentText } from "../../units.js";
+import { timeAt } from "../flight_options.js";
 import { isPlanCurrent, lastPlanOf, shownRoute } from "../plan_view.js";
 import { drawProfile, flightOf, profileTable, readingAt } from "../profile.js";
+import { batteryOf, landing_s, stayText } from "../route_times.js";
 import { stripRoom } from "./routes.js";
+
+const MOST_WAITS = 3;
 
 export function mountProfile(store, { grounds }) {
   const dock = byId("dock");
@@ -14,6 +18,8 @@ export function mountProfile(store, { grounds }) {
   let drawn = null; // { route, flight, chart, width_px, longest_m }
 
   const longestOf = ({ plan, why, ...state }) => Math.max(plan.result.longest_route_m, ...(why?.compare ? (lastPlanOf(state)?.routes ?? []) : []).map((route) => route.length_m));
+
+  const departsAt = () => store.state.plan?.result.departs_at ?? null;
 
   async function draw(state) {
     const route = state.plan ? shownRoute(state) : null;
@@ -36,13 +42,14 @@ export function mountProfile(store, { grounds }) {
   }
 
   function put(route, ground, fault, width_px, longest_m) {
-    const flight = flightOf(route, ground);
-    const { targets } = store.state.plan;
+    const { targets, uavs } = store.state.plan;
+    const flight = flightOf(route, ground, uavs[route.sequence]?.battery_wh ?? null);
     const chart = drawProfile({
       route,
       flight,
       longest_m,
       width_px,
+      reserve_percent: store.state.plan.uavs[route.sequence]?.reserve_percent ?? null,
       onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
       onTask: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
     });
@@ -50,7 +57,7 @@ export function mountProfile(store, { grounds }) {
     place.className = `route-profile route-${routeNumber(route.sequence)}`;
     place.replaceChildren(
       h("div", { class: "profile-said" }, h("span", { class: "letter" }, route.letter), h("p", { id: "profile-words" })),
-      h("div", { class: "profile-place" }, chart.element, h("div", {}, profileTable(route, flight, targets))),
+      h("div", { class: "profile-place" }, chart.element, h("div", {}, profileTable(route, flight, targets, departsAt()))),
     );
     follow(store.state);
     light(store.state);
@@ -62,7 +69,7 @@ export function mountProfile(store, { grounds }) {
     const { route, flight, chart, fault } = drawn;
     const isHere = along?.sequence === route.sequence;
     chart.point(isHere ? along.at_m : null);
-    byId("profile-words").replaceChildren(...(isHere ? readingWords(readingAt(flight, along.at_m), flight) : wholeWords(route, flight, fault)));
+    byId("profile-words").replaceChildren(...(isHere ? readingWords(readingAt(flight, along.at_m), flight, departsAt()) : wholeWords(route, flight, fault, departsAt())));
   }
 
   function light(state) {
@@ -81,19 +88,29 @@ export function mountProfile(store, { grounds }) {
 
 const line = (words, isStrong = false) => h(isStrong ? "strong" : "span", {}, words);
 
-function readingWords({ at_m, height_m, ground_m, above_m }, { isFlat }) {
+function readingWords({ at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }, { isFlat }, departs_at) {
   const height = heightText(height_m);
+  const place = t("at {distance}", { distance: lengthText(at_m) });
   return [
-    line(t("at {distance}", { distance: lengthText(at_m) }), true),
+    line(arrival_s === null ? place : `${place} · ${timeAt(departs_at, arrival_s)}`, true),
     line(isFlat ? t("{height} above take-off", { height }) : t("{height} above sea level", { height })),
     line(isFlat ? t("flat ground assumed") : ground_m === null ? t("ground not known") : t("{height} above ground", { height: heightText(above_m) })),
-  ];
+    battery_percent !== null && line(t("battery {percent}", { percent: percentText(battery_percent) })),
+    zones.length > 0 && h("span", { class: "beside-zone" }, t("beside {zones}", { zones: zones.map((zone) => zone.name).join(", ") })),
+  ].filter(Boolean);
 }
 
-function wholeWords(route, flight, fault) {
+function wholeWords(route, flight, fault, departs_at) {
   const heights = flight.path.map(({ height_m }) => height_m);
   const height = heightText(Math.max(...heights));
   const lines = [line(route.name, true), line(flight.isFlat ? t("up to {height} above take-off", { height }) : t("up to {height} above sea level", { height }))];
+  const landing = landing_s(route);
+  if (landing !== null) lines.push(line(t("done at {time}", { time: timeAt(departs_at, landing) })));
+  const battery = batteryOf(route);
+  if (battery) lines.push(line(t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used })));
+  const rest = flight.waits.length - MOST_WAITS;
+  for (const wait of flight.waits.slice(0, MOST_WAITS)) lines.push(line(`${t("at {distance}", { distance: lengthText(wait.at_m) })}: ${stayText(wait)}`));
+  if (rest > 0) lines.push(line(tn(rest, "and {count} more", "and {count} more")));
   if (fault) return [...lines, line(fault)];
   if (flight.isFlat) return [...lines, line(t("flat ground assumed"))];
   const above = route.waypoints.map(({ altitude_agl_m }) => altitude_agl_m).filter((metres) => metres > 0);

@@ -5,14 +5,19 @@ import { routeNumber } from "../../map/palette.js";
 import { t, tn } from "../../text.js";
 import { durationText, lengthText } from "../../units.js";
 import { counterpart, profileOfSummary } from "../compare.js";
+import { timeAt } from "../flight_options.js";
 import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
 import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
 import { GROUNDING } from "../plan_words.js";
+import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
 import { createPillDrag } from "../strip_drag.js";
 import { uavsByName } from "../selection.js";
 import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 
-const BESIDE_PX = 184 + 84 + 72 + 48 + 4 * 12 + 32; // name, figures, Why, gaps and edges, as in planning.css
+const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
+const BATTERY_PX = 76 + 12; // where one has a battery
+const LENGTH_PX = 84 + 12;
+const LEAST_STRIP_PX = 200; // else length and battery give way
 const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
 /** One that cannot take off; the notice and the row of the UAV say which. */
@@ -24,10 +29,15 @@ export function moreOrLess(difference, least, textOf) {
   return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
 }
 
-/** Room for a strip: what the grid leaves beside name and figures. On a phone all of it. */
+/** What the grid leaves beside name and all figures. */
+const roomBesideAll = (dock) => dock.querySelector(".dock-main").clientWidth - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0);
+
+/** Room for a strip: on a phone all there is, where the dock is narrow without length and battery. */
 export function stripRoom(dock) {
-  const room = dock.querySelector(".dock-main").clientWidth;
-  return Math.max(160, matchMedia("(max-width: 720px)").matches ? room - 32 : room - BESIDE_PX);
+  const width = dock.querySelector(".dock-main").clientWidth;
+  if (matchMedia("(max-width: 720px)").matches) return Math.max(160, width - 32);
+  const room = roomBesideAll(dock);
+  return Math.max(160, room < LEAST_STRIP_PX ? width - BESIDE_PX + LENGTH_PX : room);
 }
 
 export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
@@ -50,8 +60,10 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const look = () => store.update({ lookedAt: route.sequence });
     const leave = () => store.update({ lookedAt: null });
     const old = before && counterpart(route, before);
-    const second = isUsed ? `${tn(route.targets.length, "{count} target", "{count} targets")} · ${endingOf(route)}` : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
+    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), staysText(route), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
     const delta = (words) => old && h("small", {}, words);
+    const landing = isUsed && state.plan.result.departs_at && !old ? landing_s(route) : null;
+    const battery = isUsed ? batteryOf(route) : null;
     return h(
       "li",
       { class: `route route-${routeNumber(route.sequence)}`, dataset: { sequence: route.sequence }, onpointerenter: look, onpointerleave: leave, onfocusin: look, onfocusout: leave },
@@ -62,10 +74,12 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
         h("span", {}, h("strong", {}, route.name), h("small", {}, second)),
       ),
       h("div", { class: "strip-place" }, (isUsed || wishes[route.sequence].length > 0) && strip(route, state, longest(state, before)), old?.length_m > 0 && oldStrip(old, longest(state, before))),
-      h("span", { class: "figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
-      h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText))),
-      isUsed &&
-        h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?")),
+      h("span", { class: "figure length-figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
+      h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText)), landing !== null && h("small", {}, t("until {time}", { time: timeAt(state.plan.result.departs_at, landing) }))),
+      dock.classList.contains("with-battery") && h("span", { class: "figure battery-figure", title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null }, battery?.left ?? "—", battery && h("small", {}, t("at landing"))),
+      isUsed && h("span", { class: "route-acts" },
+        canPlan && h("button", { type: "button", class: "icon-button tight", "aria-label": t("Change the route of {name} by hand", { name: route.name }), title: t("Change by hand"), onclick: () => void actions.beginByHand(route.sequence) }, icon("hand", "small")),
+        h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?"))),
     );
   }
 
@@ -96,6 +110,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       label: stripLabel(route, wishes[route.sequence].map((key) => ({ ...targetOf(state, key), isLocked: lockOf(state.selection, key) !== null }))),
       stopsOf: (planned) => stopsOf(route, state, planned),
       zones: zonesOf.get(waypoints) ?? [],
+      waits: staysOf(route).map((stay) => ({ ...stay, words: stayText(stay) })),
       onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
       onTarget: (key) => store.update({ litTarget: key }),
       grab: canPlan && uavsByName(state.selection).some(({ name }) => name === route.name) ? grab : undefined,
@@ -115,7 +130,9 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const { sentence, facts } = sentenceOf(state.plan);
     byId("plan-sentence").textContent = `${sentence}.`;
     byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${isPlanInSight(state) ? t("before your last change") : t("for the selection before")}`;
+    dock.classList.toggle("with-battery", state.plan.result.routes.some((route) => batteryOf(route)));
     width_px = stripRoom(dock);
+    dock.classList.toggle("tight", roomBesideAll(dock) < LEAST_STRIP_PX);
     const last = lastPlanOf(state);
     const before = state.why?.compare ? last : null;
     dock.classList.toggle("comparing", Boolean(before));
@@ -140,7 +157,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     return plan.result.routes.map((_, sequence) => wished[sequence].targets.filter((key) => known.has(key) || plan.targets.some((target) => target.key === key)));
   }
 
-  /** How good the plan is, what locking costs, and the way back. */
+  /** How good the plan is, how its UAVs are kept apart, what locking costs, and the way back. */
   function drawQuality(state) {
     const isCurrent = isPlanCurrent(state);
     const quality = isCurrent ? qualityOf(state.plan.result) : null;
@@ -151,10 +168,12 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
     ];
     const place = byId("plan-quality");
-    place.hidden = !quality && !locked;
+    const separation = isCurrent ? separationOf(state.plan.result) : null;
+    place.hidden = !quality && !locked && !separation;
     place.replaceChildren(
       ...[
         quality && h("span", { class: "plan-bound" }, icon(quality.isProven ? "circle-check" : "info", "small"), h("span", {}, h("strong", {}, quality.words), " ", quality.detail)),
+        separation && h("span", { class: `plan-bound${separation.isFault ? " fault" : ""}` }, icon(separation.isFault ? "triangle-alert" : "replace", "small"), h("span", {}, separation.words)),
         locked > 0 && h("span", { class: "plan-wish" }, icon("lock", "small"), h("span", {}, wish), acts),
       ].filter(Boolean),
     );
@@ -191,9 +210,15 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     }
   }
 
+  byId("compare-ways").addEventListener("click", () => {
+    const isOpen = Boolean(store.state.why?.alternatives);
+    store.update({ why: isOpen ? null : { alternatives: true } });
+    if (!isOpen && canPlan) actions.planAlternatives();
+  });
   byId("compare-plans").addEventListener("click", () => store.update({ why: store.state.why?.compare ? null : { compare: true } }));
   store.listen(["plan", "selection", "lastPlan", "mission"], draw);
   store.listen(["why"], (state) => {
+    byId("compare-ways").setAttribute("aria-pressed", String(Boolean(state.why?.alternatives)));
     if (Boolean(state.why?.compare) !== dock.classList.contains("comparing")) draw(state);
   });
   store.listen(["plan"], (state) => {

@@ -5,7 +5,8 @@ import { routeNumber } from "../../map/palette.js";
 import { toggleMenu } from "../../page/chrome.js";
 import { t, tn } from "../../text.js";
 import { lockOf, ordersOf } from "../locks.js";
-import { inPlanOrder, shownPlaces } from "../plan_view.js";
+import { inPlanOrder, isPlanCurrent, shownPlaces } from "../plan_view.js";
+import { arrivalsOf } from "../route_times.js";
 import { isUsualTask, isWhole, nameOf, taskOf } from "../selection.js";
 import { priorityOf, targetMenu, taskIcon, taskText, whoMayFly } from "../target_menu.js";
 import { mountChosenBar } from "./chosen_bar.js";
@@ -17,7 +18,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
   let showAll = false;
   let isChoosing = false;
   let anchor = null; // where a range with Shift begins
-  let shown = { places: new Map(), missed: new Set(), order: [] };
+  let shown = { places: new Map(), missed: new Set(), order: [], arrivals: new Map() };
   const list = byId("target-list");
   const isChosen = (target) => store.state.chosenTargets.includes(target.key);
 
@@ -81,6 +82,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       icon(ICONS[target.kind] ?? "map-pin"),
       h("button", { type: "button", class: "what", onclick: (event) => press(event, target) }, h("span", {}, target.label), h("small", {})),
       h("span", { class: "target-marks" }),
+      h("span", { class: "target-when" }),
       canPlan && h("button", { type: "button", class: "icon-button tight task", "aria-haspopup": "true", "aria-expanded": "false", onclick: (event) => openTask(event.currentTarget, target.key) }),
       canPlan &&
         h(
@@ -139,6 +141,9 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     row.querySelector("small").textContent = second;
     row.querySelector(".what").title = nameOf({ ...target, detail: second });
     refreshMarks(row.querySelector(".target-marks"), target);
+    const when = row.querySelector(".target-when");
+    when.textContent = shown.arrivals.get(target.key) ?? "";
+    when.title = when.textContent && t("Reached at {time}", { time: when.textContent });
     row.classList.toggle("chosen", isChosen(target));
     if (!canPlan) return;
     row.querySelector(".check").checked = isChosen(target);
@@ -172,7 +177,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     const { targets } = state.selection;
     const { places, missed } = shownPlaces(state);
     const all = inPlanOrder(targets, places);
-    shown = { places, missed, order: all.map((target) => target.key) };
+    shown = { places, missed, order: all.map((target) => target.key), arrivals: isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map() };
     isChoosing &&= targets.length > 1;
     list.classList.toggle("choosing", isChoosing);
     const visible = showAll ? all : all.slice(0, SHOWN_FIRST);

@@ -36,7 +36,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
           h("span", { class: "name" }, h("span", { class: "called" }), h("small", {}), h("span", { class: "facts" })),
         ),
         h("span", { class: "battery" }),
-        canPlan && h("button", { type: "button", class: "icon-button tight", title: t("Start, range, speed, end, targets"), onclick: () => changeUav(sequenceOf(uav)) }, icon("pencil", "small")),
+        canPlan && h("button", { type: "button", class: "icon-button tight", title: t("Start, range, speed, battery, end, targets"), onclick: () => changeUav(sequenceOf(uav)) }, icon("pencil", "small")),
       );
     },
     (row, uav) => {
@@ -81,8 +81,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       note: t("In this mission only; the fleet stays as it is. Its start can be dragged on the map as well."),
       uav,
       act: t("Change"),
-      submit: ({ position, max_range_m, cruise_speed_mps, end_action, most_targets }) =>
-        actions.changeUav(sequence, { position, max_range_m, end_action, most_targets, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }),
+      submit: ({ name, base_name, cruise_speed_mps, ...values }) => actions.changeUav(sequence, { ...values, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }),
     });
   }
 

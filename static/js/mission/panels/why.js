@@ -1,4 +1,5 @@
-/** Beside the strips: why a UAV flies its route, why a target is not reached, or what differs from the last plan. */
+/** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, the ways to plan it, or a
+ * route that is changed by hand. */
 
 import { post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
@@ -6,14 +7,17 @@ import { routeLetter, routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
 import { requestOf } from "../selection.js";
+import { alternatives } from "./alternatives.js";
+import { createByHand } from "./by_hand.js";
 import { comparison } from "./why_compared.js";
 import { routeExplanation } from "./why_route.js";
 import { targetExplanation } from "./why_target.js";
 
 /** What the server is asked: the plan as it was made, whatever has been picked since. */
-function questionOf({ result, targets, uavs }) {
+function questionOf({ result, targets, uavs, charging_w }) {
+  const { objective, return_to_start, departs_at, conditions } = result;
   return {
-    ...requestOf({ targets, uavs, objective: result.objective, return_to_start: result.return_to_start }),
+    ...requestOf({ targets, uavs, objective, return_to_start, departs_at, conditions, charging_w }),
     routes: result.routes.map((route) => route.targets),
   };
 }
@@ -21,6 +25,7 @@ function questionOf({ result, targets, uavs }) {
 export function mountWhy(store, actions, { canPlan }) {
   const panel = byId("why");
   const answers = new WeakMap(); // result of a plan → Map of question → promise
+  const byHand = createByHand(store, actions);
   let opener = null;
   let openedFrom = ""; // the row of it: rows are drawn anew
   let shown = null; // the question that was drawn last
@@ -47,7 +52,9 @@ export function mountWhy(store, actions, { canPlan }) {
     const { why } = store.state;
     try {
       const said = await asked;
-      if (store.state.why === why) put(title, ...show(said));
+      if (store.state.why !== why) return;
+      put(title, ...show(said));
+      store.update({ litZones: (said.zones ?? []).map(({ id }) => id) });
     } catch (error) {
       if (store.state.why === why) put(title, h("p", { role: "alert" }, error.message), h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")));
     }
@@ -56,6 +63,7 @@ export function mountWhy(store, actions, { canPlan }) {
   function draw(state) {
     const { why, plan } = state;
     const wasHidden = panel.hidden;
+    if (store.state.litZones.length) store.update({ litZones: [] });
     panel.hidden = !why || !plan;
     byId("dock").classList.toggle("with-why", !panel.hidden);
     if (panel.hidden) {
@@ -67,7 +75,14 @@ export function mountWhy(store, actions, { canPlan }) {
       opener = document.activeElement;
       openedFrom = opener?.closest(".route")?.dataset.sequence ?? "";
     }
-    if (why.compare) {
+    byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
+    if (why.byHand !== undefined) {
+      if (why !== shown) put(t("Change the route of {name} by hand", { name: plan.result.routes[why.byHand].uav }), byHand.element);
+    } else if (why.alternatives) {
+      const focused = panel.contains(document.activeElement) && document.activeElement !== byId("why-title") ? document.activeElement.textContent : null;
+      put(t("Ways to plan it"), ...alternatives(state, actions, canPlan && isPlanCurrent(state)));
+      if (focused) ([...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")).focus();
+    } else if (why.compare) {
       const last = lastPlanOf(state);
       if (last) put(t("Against the last plan"), ...comparison(plan, last));
       else store.update({ why: null });
@@ -81,9 +96,10 @@ export function mountWhy(store, actions, { canPlan }) {
       if (!route?.geometry) store.update({ why: null });
       else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
     }
-    panel.className = why.route === undefined ? "why" : `why route-${routeNumber(why.route)}`;
-    byId("why-letter").hidden = why.route === undefined;
-    byId("why-letter").textContent = why.route === undefined ? "" : routeLetter(why.route);
+    const sequence = why.route ?? why.byHand;
+    panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
+    byId("why-letter").hidden = sequence === undefined;
+    byId("why-letter").textContent = sequence === undefined ? "" : routeLetter(sequence);
     if (why !== shown || document.activeElement === document.body) byId("why-title").focus(); // on a phone it comes into sight so
     shown = why;
   }
@@ -105,4 +121,5 @@ export function mountWhy(store, actions, { canPlan }) {
     store.update({ why: null });
   });
   store.listen(["why", "plan", "lastPlan"], draw);
+  store.listen(["figures", "planningBeside", "refusedBeside", "selection"], (state) => state.why?.alternatives && draw(state));
 }

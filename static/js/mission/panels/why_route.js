@@ -1,9 +1,11 @@
 /** Where a route's kilometres come from, what another UAV would fly, what limits the plan, and what is worth trying. */
 
 import { h } from "../../dom.js";
+import { zoneDetails } from "../../map/zone_details.js";
 import { t } from "../../text.js";
-import { durationText, lengthText } from "../../units.js";
+import { durationText, energyText, lengthText } from "../../units.js";
 import { longestDuration_s, otherObjective, OBJECTIVES, routesOf } from "../plan_view.js";
+import { heightsText } from "../../zones/heights.js";
 import { basisOf } from "../selection.js";
 
 const LEAST_M = 20; // less is the rounding of positions
@@ -11,7 +13,7 @@ const LEAST_M = 20; // less is the rounding of positions
 /** said: see RouteExplanationSerializer. */
 export function routeExplanation(said, { plan, store, actions, canPlan }) {
   const route = routesOf(plan)[said.uav];
-  return [bar(said), parts(said), instead(said, plan), limit(plan, route), heaviest(said, { plan, route, actions, canPlan }), otherWay({ plan, store, actions, canPlan })].filter(Boolean);
+  return [bar(said), parts(said), zonesInTheWay(said), instead(said, plan), limit(plan, route), bound(said), heaviest(said, { plan, route, actions, canPlan }), otherWay({ plan, store, actions, canPlan })].filter(Boolean);
 }
 
 /** [{ name, words, length_m }]: straight, kept to the lines, round zones. */
@@ -37,6 +39,24 @@ function bar(said) {
 function parts(said) {
   const rows = partsOf(said).map(({ name, words, length_m }) => h("div", {}, h("dt", {}, h("i", { class: name, "aria-hidden": "true" }), words), h("dd", {}, `${name === "straight" ? "" : "+"}${lengthText(length_m)}`)));
   return h("dl", { class: "why-parts" }, rows);
+}
+
+/** Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read. */
+function zonesInTheWay({ zones }) {
+  const found = zones.filter(({ extra_m }) => extra_m >= LEAST_M);
+  if (!found.length) return null;
+  return h(
+    "ul",
+    { class: "why-zones", "aria-label": t("Zones that force a detour") },
+    found.map(({ id, name, extra_m }) => {
+      const reason = h("small", {}, t("Reading times and source…"));
+      zoneDetails(id).then(
+        (details) => (reason.textContent = [heightsText(details), details.schedule_words].filter(Boolean).join(" · ")),
+        () => (reason.textContent = t("Times and source cannot be read now.")),
+      );
+      return h("li", {}, h("span", { class: "zone-name" }, name, reason), h("span", {}, `+${lengthText(extra_m)}`));
+    }),
+  );
 }
 
 function instead(said, plan) {
@@ -67,6 +87,22 @@ function limit(plan, route) {
   const words = last.uav === route.uav ? t("{name} is the last to be done, after {time}.", { name: last.uav, time }) : t("Not this route: {name} is the last to be done, after {time}.", { name: last.uav, time });
   return h("p", {}, h("strong", {}, t("What limits the plan.")), " ", words);
 }
+
+/** What keeps the route from more targets, or from being quicker. */
+function bound({ binds, used_wh, usable_wh, wind_s }) {
+  const words = {
+    battery: () => t("the battery, {used} of {usable} are used", { used: energyText(used_wh), usable: energyText(usable_wh) }),
+    range: () => t("its range"),
+    most_targets: () => t("as many targets as it may have"),
+    zone: () => t("a zone"),
+    wind: () => (wind_s > 0 ? t("the wind, {time} more than in calm air", { time: durationText(wind_s) }) : t("the wind")),
+    balance: () => t("another UAV’s route is the longest"),
+  };
+  const said = (binds ?? []).filter((what) => words[what]).map((what) => words[what]());
+  return said.length ? h("p", {}, h("strong", {}, t("What binds it.")), " ", `${sentence(said.join("; "))}.`) : null;
+}
+
+const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 
 function heaviest({ heaviest: found }, { plan, route, actions, canPlan }) {
   const target = found && plan.targets[found.target];

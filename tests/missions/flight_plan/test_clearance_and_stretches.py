@@ -1,4 +1,4 @@
-"""The last look at the zones, how long a route takes, and places on lines."""
+"""The last look at the zones, and places on lines."""
 
 import itertools
 
@@ -10,11 +10,7 @@ from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
 from missions.flight_plan.clearance import RouteMeetsZone, legs_that_meet, refuse_legs_in_zones
-from missions.flight_plan.duration import duration_s
-from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.stretches import nearest_on_line, stretch_between
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.routing.problem import Task, TaskKind
 from tests.exact_geometry import segment_meets_polygon
 
 SQUARE = shapely.box(1.0, 1.0, 2.0, 2.0)
@@ -46,25 +42,6 @@ def test_it_agrees_with_exact_arithmetic(line: list[tuple[float, float]], corner
         return
     exact = [(leg, 0) for leg in range(len(line) - 1) if segment_meets_polygon(line[leg], line[leg + 1], [corners])]
     assert legs_that_meet(np.array(line), [zone]) == exact
-
-
-def waypoints(*heights: tuple[float, float, float | None]) -> Waypoints:
-    """Heights above ground and above take-off, and the seconds held there."""
-    tasks = [None if hold_s is None else Task(TaskKind.HOLD, hold_s) for _, _, hold_s in heights]
-    points = [RoutePoint(LonLat(0, 0), WaypointKind.PASS, agl_m, task=task) for (agl_m, _, _), task in zip(heights, tasks, strict=True)]
-    return Waypoints(RoutePoints.of(points), None, np.array([relative_m for _, relative_m, _ in heights]))
-
-
-def test_a_route_takes_its_level_flight_its_climbs_and_its_holds() -> None:
-    """1,200 m at 12 m/s, 60 m up, 30 m down and 30 m up again at 2.5 m/s, 20 s of holding."""
-    flown = waypoints((60, 60, None), (30, 30, 20.0), (60, 60, None))
-    rules = FlightRules(climb_speed_mps=2.5)
-    assert duration_s(flown, length_m=1_200, cruise_speed_mps=12, lands=False, rules=rules) == pytest.approx(100 + 120 / 2.5 + 20)
-    assert duration_s(flown, length_m=1_200, cruise_speed_mps=12, lands=True, rules=rules) == pytest.approx(100 + 180 / 2.5 + 20)
-
-
-def test_an_unused_uav_takes_no_time() -> None:
-    assert duration_s(waypoints(), length_m=0, cruise_speed_mps=12, lands=True, rules=FlightRules()) == 0.0
 
 
 LINE = np.array([[10.0, 56.0], [10.01, 56.0], [10.01, 56.01], [10.03, 56.01]])

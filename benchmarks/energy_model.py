@@ -1,0 +1,109 @@
+"""The energy model beside flights of the simulated Iris: seconds and watt-hours of a square of 2 km.
+
+    python -m benchmarks.energy_model [--write]
+
+The flights were simulated with JSBSim at 250 Hz: four legs of 500 m, 30 m above ground, with take-off and landing at 2 m/s, the wind
+along two of the legs. The model takes the steady wind alone; where gusts hold the flight up (10 m/s and gusts) its seconds say little.
+With --write the table goes to docs/performance.md. Exits with 1 where a row misses its bar.
+"""
+
+import argparse
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.report import machine, table, write_section
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.power import power_w
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.timing import Timing, timing
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+
+MOST_CALM, MOST_WINDY = 0.10, 0.15
+FASTEST_MPS = 12.9  # through the air, with the tilt limit of the simulated flights
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A measured flight; `is_steady` where a steady wind stands for the wind that it was flown in."""
+
+    name: str
+    cruise_mps: float
+    wind_mps: float
+    took_s: float
+    used_wh: float
+    is_steady: bool = True
+
+    @property
+    def most(self) -> float:
+        return MOST_CALM if self.wind_mps == 0.0 else MOST_WINDY
+
+
+FLIGHTS = (
+    Flight("calm, 5 m/s", 5, 0, 441, 20.2),
+    Flight("calm, 8 m/s", 8, 0, 295, 13.3),
+    Flight("wind 8 m/s, 5 m/s", 5, 8, 463, 20.0),
+    Flight("wind 8 m/s with Dryden turbulence, 5 m/s", 5, 8, 445, 19.5),
+    Flight("wind 8 m/s with gusts of 2 m/s, 5 m/s", 5, 8, 461, 20.3),
+    Flight("wind 8 m/s with gusts of 2 m/s, 4 m/s", 4, 8, 556, 24.5),
+    Flight("wind 8 m/s with gusts of 2 m/s, 3 m/s", 3, 8, 718, 31.7),
+    Flight("wind 10 m/s with gusts of 3 m/s, 5 m/s", 5, 10, 604, 26.2, is_steady=False),
+    Flight("wind 8 m/s, 8 m/s: slowed by its limit", 8, 8, 362, 15.4),
+)
+POWERS_W = ((0.0, 165.0), (10.0, 157.0))  # airspeed, and watts that the simulated flights drew
+
+
+def square() -> Waypoints:
+    frame = LocalFrame.around(9.0, 47.0)
+    corners = frame.to_degrees(np.array([[0, 0], [500, 0], [500, 500], [0, 500], [0, 0]], dtype=np.float64))
+    points = [RoutePoint(LonLat(*corner), WaypointKind.PASS, 30.0) for corner in corners.tolist()]
+    return Waypoints(RoutePoints.of(points), np.full(5, 30.0), np.full(5, 30.0))
+
+
+def modelled(flight: Flight) -> Timing:
+    return timing(
+        square(),
+        cruise_speed_mps=flight.cruise_mps,
+        performance=Performance(battery_wh=56.6, max_airspeed_mps=FASTEST_MPS, climb_speed_mps=2.0, descent_speed_mps=2.0),
+        conditions=Conditions((WindLayer(10.0, flight.wind_mps, 0.0),)),
+        lands=True,
+        rules=FlightRules(),
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--write", action="store_true", help="into docs/performance.md")
+    options = parser.parse_args()
+    rows, missed = [], []
+    for flight in FLIGHTS:
+        found = modelled(flight)
+        wh = found.total_wh or 0.0
+        ratio, ratio_s = wh / flight.used_wh, found.total_s / flight.took_s
+        if abs(ratio - 1.0) > flight.most:
+            missed.append(flight.name)
+        measured = [f"{flight.took_s:.0f} s", f"{flight.used_wh:.1f} Wh"]
+        rows.append([flight.name, *measured, f"{found.total_s:.0f} s", f"{wh:.1f} Wh", f"{ratio_s:.3f}", f"{ratio:.3f}"])
+    for airspeed_mps, measured_w in POWERS_W:
+        watts = power_w(Performance(), airspeed_mps=airspeed_mps)
+        name = f"power at {airspeed_mps:.0f} m/s through the air"
+        rows.append([name, "", f"{measured_w:.0f} W", "", f"{watts:.0f} W", "", f"{watts / measured_w:.3f}"])
+        if abs(watts / measured_w - 1.0) > MOST_CALM:
+            missed.append(name)
+    head = ["simulated Iris, square of 2 km", "measured", "", "model", "", "ratio of time", "ratio of energy"]
+    text = (
+        "`python -m benchmarks.energy_model`: no figure of the model was fitted to these flights. The model counts no turns and no changes "
+        f"of speed, and of gusts the mean wind alone. {machine('numba', 'numpy')}\n\n{table(head, rows)}"
+    )
+    print(text)
+    if options.write:
+        write_section("Energy model", text)
+    if missed:
+        raise SystemExit("missed: " + "; ".join(missed))
+
+
+if __name__ == "__main__":
+    main()

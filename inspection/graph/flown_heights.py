@@ -1,0 +1,68 @@
+"""How high a UAV flies over what is on the ground, as a band that it never leaves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.graph.inspection_graph import NodeKind
+from inspection.graph.zone_index import ZoneIndex
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Where no tag states a height, towards the upper end of what is common, so that the error is on the safe side.
+UNTAGGED_HEIGHT_M = {NodeKind.SUPPORT: 45.0, NodeKind.LINE_VERTEX: 45.0, NodeKind.RAILWAY: 8.0, NodeKind.BRIDGE: 30.0, NodeKind.BEND: 0.0}
+_UNTAGGED_M = np.array([UNTAGGED_HEIGHT_M[kind] for kind in NodeKind])
+
+
+@dataclass(frozen=True)
+class FlownHeights:
+    """Metres above the ground under the UAV. What is no taller than transit_agl_m - clearance_m is passed at transit_agl_m."""
+
+    transit_agl_m: float = 60.0
+    clearance_m: float = 15.0  # above what is passed
+    tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints
+    margin_m: float = 10.0  # to the limits of zones, for the UAV's own error in height
+
+    def band_m(self, heights_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest place, above ground, of a UAV that passes assets of these heights, margin included."""
+        passed_m = np.maximum(self.transit_agl_m, heights_m + self.clearance_m)
+        give_m = self.tolerance_m + self.margin_m
+        return passed_m - give_m, passed_m + give_m
+
+    def place_band_m(self, height_m: float | None) -> tuple[float, float]:
+        """The same at one place; where the height of what stands there is not known, up to any."""
+        low_m, high_m = self.band_m(np.array([0.0 if height_m is None else height_m]))
+        return float(low_m[0]), np.inf if height_m is None else float(high_m[0])
+
+
+def asset_heights_m(kind: NDArray[np.uint8], tagged_m: FloatArray) -> FloatArray:
+    """The height that the asset at each node is taken to have: as tagged, where NaN by the node's kind."""
+    heights_m: FloatArray = np.where(np.isnan(tagged_m), _UNTAGGED_M[kind], tagged_m)
+    return heights_m
+
+
+@dataclass(frozen=True, eq=False)
+class FlownNodes:
+    """Nodes where a UAV passes them: position (n, 2) lon, lat [deg]; low_m and high_m (n,) above ground."""
+
+    position: FloatArray
+    low_m: FloatArray
+    high_m: FloatArray
+
+    @classmethod
+    def of(cls, position: FloatArray, kind: NDArray[np.uint8], tagged_m: FloatArray, heights: FlownHeights) -> "FlownNodes":
+        return cls(position, *heights.band_m(asset_heights_m(kind, tagged_m)))
+
+    def where(self, chosen: BoolArray) -> "FlownNodes":
+        return FlownNodes(self.position[chosen], self.low_m[chosen], self.high_m[chosen])
+
+    def in_zones(self, zones: ZoneIndex, clearance_m: float) -> BoolArray:
+        return zones.contains(self.position, clearance_m, self.low_m, self.high_m)
+
+    def legs_in_zones(self, zones: ZoneIndex, start: IntArray, end: IntArray, clearance_m: float) -> BoolArray:
+        """Whether the legs between these nodes meet a zone, each flown between the heights of its ends."""
+        low_m, high_m = np.minimum(self.low_m[start], self.low_m[end]), np.maximum(self.high_m[start], self.high_m[end])
+        return zones.meets(self.position[start], self.position[end], clearance_m, low_m, high_m)

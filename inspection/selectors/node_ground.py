@@ -1,0 +1,24 @@
+"""The ground under the nodes of a graph, looked up once for each terrain."""
+
+from threading import Lock
+from weakref import WeakKeyDictionary
+
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.selectors.terrain import ground_heights_m
+
+Terrain = tuple[int | None, int]
+
+_one_thread = Lock()
+_kept: WeakKeyDictionary[InspectionGraph, tuple[Terrain, FloatArray]] = WeakKeyDictionary()
+
+
+def node_ground_m(graph: InspectionGraph, terrain: Terrain) -> FloatArray:
+    """Heights above sea level (n,), NaN where the terrain models say nothing; the same array as long as the terrain is the same."""
+    with _one_thread:
+        kept = _kept.get(graph)
+        if kept is None or kept[0] != terrain:
+            heights_m = ground_heights_m(graph.position)
+            heights_m.setflags(write=False)
+            kept = _kept[graph] = terrain, heights_m
+        return kept[1]

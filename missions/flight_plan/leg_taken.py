@@ -1,0 +1,135 @@
+"""What one leg takes of time and battery: the arithmetic that routes drawn and routes not drawn share."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from missions.flight_plan.conditions import wind_in_table
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.power import CLIMBING, LEVEL, TOO_STRONG, ground_and_air_speed, power_table, watts
+from missions.flight_plan.rules import FlightRules
+
+FloatArray = NDArray[np.float64]
+
+J_PER_WH = 3_600.0
+NO_TABLE = np.zeros((0, 0, 0))  # in place of a table of power: without a battery joules are not counted
+
+
+class Speeds(NamedTuple):
+    """Of a UAV on a plan, m/s: wanted over ground, most through the air (inf: not limited), straight up, straight down."""
+
+    cruise_mps: float
+    limit_mps: float
+    climb_mps: float
+    descent_mps: float
+
+
+def speeds(performance: Performance, cruise_speed_mps: float, rules: FlightRules) -> Speeds:
+    """Up and down as the UAV has it, else as the plan's rules do."""
+    limit, up, down = performance.max_airspeed_mps, performance.climb_speed_mps, performance.descent_speed_mps
+    return Speeds(
+        float(cruise_speed_mps),
+        math.inf if limit is None else float(limit),
+        float(rules.climb_speed_mps if up is None else up),
+        float(rules.climb_speed_mps if down is None else down),
+    )
+
+
+def table_of(performance: Performance, climb_mps: float) -> FloatArray:
+    return NO_TABLE if performance.battery_wh is None else power_table(performance, climb_mps)
+
+
+@njit(cache=True, nogil=True)
+def leg_taken(
+    length_m: float,
+    east: float,
+    north: float,
+    start_agl_m: float,
+    end_agl_m: float,
+    rise_m: float,
+    wind: FloatArray,
+    density: float,
+    own: Speeds,
+    table: FloatArray,
+) -> tuple[float, float]:
+    """Seconds and joules of a leg between two heights above ground: flown level, and then straight up or down to its end.
+
+    Both in the wind of its middle height. Endless where the wind leaves no headway at any height that the leg comes through, so that a
+    part of an open leg is open. (east, north) is the leg's direction, of length 1; rise_m counts the ground's rise, too. A UAV that flies
+    and climbs at once is sooner there: this errs on the long side.
+    """
+    if start_agl_m != end_agl_m and is_closed(length_m > 0.0, east, north, start_agl_m, end_agl_m, wind, own):
+        return np.inf, np.inf
+    east_mps, north_mps = wind_in_table(wind, 0.5 * (start_agl_m + end_agl_m))
+    return taken_in_wind(length_m, east, north, rise_m, east_mps, north_mps, density, own, table)
+
+
+@njit(cache=True, nogil=True)
+def taken_in_wind(
+    length_m: float,
+    east: float,
+    north: float,
+    rise_m: float,
+    east_mps: float,
+    north_mps: float,
+    density: float,
+    own: Speeds,
+    table: FloatArray,
+) -> tuple[float, float]:
+    """As leg_taken, all of it in one wind: the air's velocity to east and north."""
+    air_2 = east_mps * east_mps + north_mps * north_mps
+    if air_2 > own.limit_mps * own.limit_mps:
+        return np.inf, np.inf
+    seconds = joules = 0.0
+    has_battery = len(table) > 0
+    if length_m > 0.0:
+        along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
+        ground_mps, air_mps = ground_and_air_speed(own.cruise_mps, own.limit_mps, along_mps, across_mps)
+        if ground_mps == TOO_STRONG:
+            return np.inf, np.inf
+        seconds = length_m / ground_mps
+        if has_battery:
+            joules = seconds * watts(table, LEVEL, air_mps, density)
+    if rise_m != 0.0:
+        vertical_s = rise_m / own.climb_mps if rise_m > 0.0 else -rise_m / own.descent_mps
+        seconds += vertical_s
+        if has_battery:
+            joules += vertical_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, math.sqrt(air_2), density)
+    return seconds, joules
+
+
+@njit(cache=True, nogil=True)
+def is_closed(is_flown: bool, east: float, north: float, start_agl_m: float, end_agl_m: float, wind: FloatArray, own: Speeds) -> bool:
+    """Whether there is no headway at some height between the two, in wind that changes with height.
+
+    Then it is so at one of the two or at a layer in between: from layer to layer the wind changes evenly, and headway is a concave
+    function of the wind.
+    """
+    if len(wind) < 2 or math.isinf(own.limit_mps):
+        return False
+    low_m, high_m = min(start_agl_m, end_agl_m), max(start_agl_m, end_agl_m)
+    for number in range(-2, len(wind)):
+        agl_m = low_m if number == -2 else high_m if number == -1 else wind[number, 0]
+        if not low_m <= agl_m <= high_m:
+            continue
+        east_mps, north_mps = wind_in_table(wind, agl_m)
+        if east_mps * east_mps + north_mps * north_mps > own.limit_mps * own.limit_mps:
+            return True
+        if is_flown:
+            along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
+            if ground_and_air_speed(own.cruise_mps, own.limit_mps, along_mps, across_mps)[0] == TOO_STRONG:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True)
+def hold_taken(hold_s: float, agl_m: float, wind: FloatArray, density: float, own: Speeds, table: FloatArray) -> tuple[float, float]:
+    """Seconds and joules of staying in one place; endless where the wind is too strong for it."""
+    east_mps, north_mps = wind_in_table(wind, agl_m)
+    wind_mps = math.sqrt(east_mps * east_mps + north_mps * north_mps)
+    if wind_mps > own.limit_mps:
+        return np.inf, np.inf
+    return hold_s, hold_s * watts(table, LEVEL, wind_mps, density) if len(table) > 0 else 0.0

@@ -1,0 +1,240 @@
+"""What a UAV does when it hears nothing any more, and from where that would go wrong."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
+from missions.flight_plan.clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
+from missions.flight_plan.conditions import Conditions, air_density
+from missions.flight_plan.heights import SAMPLE_SPACING_M, GroundHeights
+from missions.flight_plan.leg_taken import J_PER_WH, hold_taken, leg_taken, speeds, table_of
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.timing import Timing
+from missions.flight_plan.waypoints import Waypoints
+
+FloatArray = NDArray[np.float64]
+
+BESIDE_M = 30.0  # an obstacle this near to the way counts as on it
+HEIGHT_ROUNDING_M = 1e-6
+
+
+class LostLink(StrEnum):
+    GO_ON = "go_on"  # the route is flown to its end, as it was checked
+    HOLD = "hold"  # it stays for a while where it is, and then returns
+    RETURN = "return"
+
+
+class Trouble(StrEnum):
+    BATTERY = "battery"
+    WIND = "wind"
+    ZONE = "zone"
+    TOO_HIGH = "too_high"  # what clears ground and obstacles is above the greatest height somewhere on the way
+    UNKNOWN_GROUND = "unknown_ground"
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """position (k, 2), columns lon, lat [deg]; height_m (k,) above the ground."""
+
+    position: FloatArray
+    height_m: FloatArray
+
+
+NO_OBSTACLES = Obstacles(np.empty((0, 2)), np.empty(0))
+
+
+@dataclass(frozen=True)
+class LostLinkPlan:
+    """What is done, and where a UAV may return to beside its start: it takes what is nearest."""
+
+    behaviour: LostLink
+    rally_points: tuple[LonLat, ...] = ()
+    hold_s: float = 0.0  # before it returns; only with HOLD
+
+
+@dataclass(frozen=True)
+class FailedReturn:
+    """A waypoint from which the return is no way home.
+
+    haven: 0 for the start, n for the n-th rally point; missing_wh with BATTERY, zone (a row of the zones) with ZONE, over_m, by how much it
+    is too high, with TOO_HIGH.
+    """
+
+    waypoint: int
+    haven: int
+    trouble: Trouble
+    missing_wh: float | None = None
+    zone: int | None = None
+    over_m: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Return:
+    """One straight way: samples of the ground under it (m,), from the waypoint to the haven, 0 where flat ground is assumed.
+
+    is_known: whether these count from the sea.
+    """
+
+    waypoint: int
+    haven: int
+    length_m: float
+    east: float
+    north: float
+    line: FloatArray  # (m, 2)
+    ground_m: FloatArray
+    is_known: bool
+
+
+def failed_returns(
+    waypoints: Waypoints,
+    clock: Timing,
+    plan: LostLinkPlan,
+    *,
+    cruise_speed_mps: float,
+    performance: Performance,
+    conditions: Conditions,
+    rules: FlightRules,
+    zones: ZoneFacts,
+    margins: Margins,
+    departs_s: float | None = None,
+    ground_heights_m: GroundHeights | None = None,
+    obstacles: Obstacles = NO_OBSTACLES,
+) -> list[FailedReturn]:
+    """Every waypoint from which holding and returning would not go well, and each reason for it, in the order of the route.
+
+    The UAV climbs where it is, flies straight to the nearest of its start and the rally points at one height above the sea, and lands
+    there. That height clears the ground by transit_agl_m and obstacles by clearance_m, and is not lower than where it is; it must not be
+    above max_agl_m anywhere. The battery has to do with its reserve left, after what is done at the waypoint. Without ground_heights_m
+    flat ground is assumed, as the route then does. departs_s: when the route begins, in seconds since the epoch; without it zones count
+    at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than longest_leg_m.
+    """
+    if plan.behaviour is LostLink.GO_ON or not len(waypoints):
+        return []
+    hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
+    air = _Air(performance, cruise_speed_mps, conditions, rules)
+    tree = shapely.STRtree(np.asarray(shapely.points(obstacles.position), dtype=object).reshape(-1))
+    failed = []
+    for one in _returns(waypoints, plan.rally_points, ground_heights_m):
+        if np.isnan(one.ground_m).any():
+            failed.append(FailedReturn(one.waypoint, one.haven, Trouble.UNKNOWN_GROUND))
+            continue
+        level_m = _level_m(one, waypoints, obstacles, tree, rules)
+        over_m = level_m - float(one.ground_m.min()) - rules.max_agl_m
+        if over_m > HEIGHT_ROUNDING_M:
+            failed.append(FailedReturn(one.waypoint, one.haven, Trouble.TOO_HIGH, over_m=over_m))
+        taken = air.taken(one, waypoints, level_m, hold_s)
+        if math.isinf(taken[-1][0]):
+            failed.append(FailedReturn(one.waypoint, one.haven, Trouble.WIND))
+        elif performance.usable_wh is not None and clock.used_wh is not None:
+            missing_wh = float(clock.used_wh[one.waypoint]) + taken[-1][1] / J_PER_WH - performance.usable_wh
+            if missing_wh > 0.0:
+                failed.append(FailedReturn(one.waypoint, one.haven, Trouble.BATTERY, missing_wh=missing_wh))
+        start_s = None if departs_s is None else departs_s + float(clock.arrival_s[one.waypoint])
+        flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
+        met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
+        failed += [FailedReturn(one.waypoint, one.haven, Trouble.ZONE, zone=zone) for zone in met]
+    return failed
+
+
+def _returns(waypoints: Waypoints, rally_points: Sequence[LonLat], ground_heights_m: GroundHeights | None) -> list[_Return]:
+    """From each waypoint the way to the nearest haven; of two that are as near, to the first."""
+    position = waypoints.points.position
+    havens = np.concatenate([position[:1], np.array(rally_points, dtype=np.float64).reshape(-1, 2)])
+    metres = np.stack([distance_m(position, np.broadcast_to(haven, position.shape)) for haven in havens])
+    nearest = metres.argmin(axis=0)
+    lines = []
+    for place, haven in zip(position, havens[nearest], strict=True):
+        count = max(1, math.ceil(float(distance_m(place, haven)[0]) / SAMPLE_SPACING_M))
+        lines.append(place + np.linspace(0.0, 1.0, count + 1)[:, None] * (haven - place))
+    # Where the route knows no height above the sea, its heights above ground are all there is.
+    known = None if waypoints.amsl_m is None else ground_heights_m
+    samples = np.concatenate(lines)
+    ground_m = np.zeros(len(samples)) if known is None else known(samples)
+    ends = np.cumsum([len(line) for line in lines])
+    found = []
+    for waypoint, (line, under_m) in enumerate(zip(lines, np.split(ground_m, ends[:-1]), strict=True)):
+        haven = int(nearest[waypoint])
+        frame = LocalFrame.around(*line[0].tolist())
+        east, north = frame.to_metres(line[-1:])[0].tolist()
+        straight_m = math.hypot(east, north) or 1.0
+        length_m = float(metres[haven, waypoint])
+        found.append(_Return(waypoint, haven, length_m, east / straight_m, north / straight_m, line, under_m, known is not None))
+    return found
+
+
+def _amsl_m(one: _Return, waypoints: Waypoints) -> float:
+    """Of the waypoint, over the ground that the return knows."""
+    return float(one.ground_m[0] + waypoints.points.agl_m[one.waypoint])
+
+
+def _level_m(one: _Return, waypoints: Waypoints, obstacles: Obstacles, tree: shapely.STRtree, rules: FlightRules) -> float:
+    """The height above the sea at which it is flown."""
+    level_m = max(_amsl_m(one, waypoints), float(one.ground_m.max()) + rules.transit_agl_m)
+    if not len(obstacles.height_m):
+        return level_m
+    frame = LocalFrame.around(*one.line[0].tolist())
+    beside_deg = BESIDE_M / min(frame.metres_per_degree_east, frame.metres_per_degree_north)
+    way = shapely.linestrings(one.line) if one.length_m > 0.0 else shapely.points(one.line[0])
+    near = np.sort(tree.query(way, predicate="dwithin", distance=2.0 * beside_deg))
+    for place, height_m in zip(obstacles.position[near], obstacles.height_m[near].tolist(), strict=True):
+        metres = distance_m(one.line, np.broadcast_to(place, one.line.shape))
+        under = int(metres.argmin())
+        around = one.ground_m[max(0, under - 1) : under + 2].max()  # the higher of the samples beside it
+        level_m = max(level_m, float(around) + height_m + rules.clearance_m)
+    return level_m
+
+
+class _Air:
+    """What climbing, flying and staying take in the wind."""
+
+    def __init__(self, performance: Performance, cruise_speed_mps: float, conditions: Conditions, rules: FlightRules) -> None:
+        self.wind, self.temperature_c = conditions.wind_table, float(conditions.temperature_c)
+        self.own = speeds(performance, cruise_speed_mps, rules)
+        self.table = table_of(performance, self.own.climb_mps)
+
+    def taken(self, one: _Return, waypoints: Waypoints, level_m: float, hold_s: float) -> list[tuple[float, float]]:
+        """Seconds and joules until it has stayed and climbed, until it is over the haven, and until it has landed."""
+        task = waypoints.points.task.get(one.waypoint)
+        stays_s = hold_s + (0.0 if task is None else task.hold_s)
+        here_m, agl_m = _amsl_m(one, waypoints), float(waypoints.points.agl_m[one.waypoint])
+        level_agl_m, down_m = level_m - float(one.ground_m[0]), level_m - float(one.ground_m[-1])
+        is_known = waypoints.amsl_m is not None
+        density = air_density(here_m if is_known else 0.0, self.temperature_c)
+        up = leg_taken(0.0, 0.0, 0.0, agl_m, level_agl_m, level_m - here_m, self.wind, density, self.own, self.table)
+        stay = hold_taken(stays_s, agl_m, self.wind, density, self.own, self.table)
+        density = air_density(level_m if one.is_known else 0.0, self.temperature_c)
+        # The ground under it rises and falls, so that one of the winds between its least and its greatest height may be met.
+        across = max(
+            (
+                leg_taken(one.length_m, one.east, one.north, height_m, height_m, 0.0, self.wind, density, self.own, self.table)
+                for height_m in (level_m - float(one.ground_m.min()), level_m - float(one.ground_m.max()))
+            ),
+            key=lambda found: found[1] if len(self.table) else found[0],
+        )
+        down = leg_taken(0.0, 0.0, 0.0, down_m, 0.0, -down_m, self.wind, density, self.own, self.table)
+        sums = np.cumsum([np.add(stay, up), across, down], axis=0)
+        return [(float(seconds), float(joules)) for seconds, joules in sums]
+
+
+def _flown(one: _Return, waypoints: Waypoints, level_m: float, start_s: float | None, seconds: Sequence[float]) -> FlownRoute:
+    """The waypoint, the place above it, and the haven; it is at the waypoint from start_s on.
+
+    On the way it is between its least and its greatest height above ground, wherever that is.
+    """
+    lowest_m, highest_m = level_m - one.ground_m.max(), level_m - one.ground_m.min()
+    start_agl_m = float(waypoints.points.agl_m[one.waypoint])
+    agl_m = np.array([start_agl_m, level_m - one.ground_m[0], lowest_m, highest_m, level_m - one.ground_m[-1]])
+    amsl_m = np.array([_amsl_m(one, waypoints), level_m, level_m, level_m, level_m]) if one.is_known else None
+    position = one.line[[0, 0, 0, -1, -1]]
+    if start_s is None:
+        return FlownRoute(position, agl_m, amsl_m, lands=True)
+    arrival_s = start_s + np.array([0.0, seconds[0], seconds[0], seconds[1], seconds[1]])
+    return FlownRoute(position, agl_m, amsl_m, arrival_s=arrival_s, departs_s=start_s, ends_s=start_s + seconds[2], lands=True)

@@ -1,0 +1,47 @@
+"""A single leg against zones and heights, while it is being dragged."""
+
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
+from inspection.selectors import ground_heights_m, has_terrain
+from missions.flight_plan.clearance import FlownRoute
+from missions.flight_plan.heights import with_heights
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
+from missions.zone_selectors import zones_met
+
+
+class LegEnd(NamedTuple):
+    """arrival_s counts from the departure; None: at any time of the flight."""
+
+    position: LonLat
+    agl_m: float
+    arrival_s: float | None
+
+
+def leg_faults(start: LegEnd, end: LegEnd, departs_at: datetime | None) -> dict[str, Any]:
+    """The first thing that is wrong with a leg; the columns down to the ground at its ends are not looked at."""
+    flight = settings.FLIGHT_RULES
+    if max(start.agl_m, end.agl_m) > flight.max_agl_m:
+        return _fault(None, _("It is above the limit of %(limit)s m.") % {"limit": f"{flight.max_agl_m:.0f}"})
+    points = RoutePoints.of([RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (start, end)])
+    flown, _is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)  # over a hill it is several legs
+    position = flown.points.position
+    arrival_s = departs_s = ends_s = None
+    if departs_at is not None and start.arrival_s is not None and end.arrival_s is not None:
+        departs_s, ends_s = (departs_at.timestamp() + moment_s for moment_s in sorted((start.arrival_s, end.arrival_s)))
+        way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(position, axis=0).T))])
+        arrival_s = departs_s + (ends_s - departs_s) * (way / way[-1] if way[-1] > 0 else np.linspace(0.0, 1.0, len(way)))
+    leg = FlownRoute(position, flown.points.agl_m, flown.amsl_m, arrival_s, departs_s, ends_s)
+    for meeting in zones_met([leg])[0]:
+        if 0 <= meeting.breach.leg < len(position) - 1:
+            return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
+    return {"is_clear": True, "zone": None, "message": ""}
+
+
+def _fault(zone: int | None, message: str) -> dict[str, Any]:
+    return {"is_clear": False, "zone": zone, "message": message}

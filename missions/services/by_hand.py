@@ -1,0 +1,245 @@
+"""A route changed by hand: waypoints moved, put in, taken out or flown higher; checked like any other before it is kept."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+from django.contrib.gis.geos import LineString, Point
+from django.db import transaction
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.selectors import current_graph, ground_heights_m, has_terrain
+from missions.flight_plan.clearance import TAKE_OFF
+from missions.flight_plan.heights import asset_height_m, with_heights
+from missions.flight_plan.obstacles import legs_too_low, tall_things
+from missions.flight_plan.power import NoHeadway
+from missions.flight_plan.route_points import line_of, with_short_legs
+from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
+from missions.flight_plan.timing import Timing
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from missions.models import EndAction, Mission, Route, Waypoint
+from missions.services.last_look import flown_route
+from missions.services.missions import lock_mission, note, request_of_mission
+from missions.services.plan_json import PlannedRoute
+from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
+from missions.services.still_apart import separation_of_stored
+from missions.zone_selectors import MetZone, zones_met
+from workspace.models import User
+
+MOVED_M = 0.1  # less is rounding
+HIGHER_M = 0.05
+MOST_WAYPOINTS = 5_000
+LONGEST_M = 1_000_000.0
+
+
+@dataclass(frozen=True)
+class HandPoint:
+    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in."""
+
+    position: LonLat
+    agl_m: float
+    was: int | None = None
+
+
+def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[HandPoint], expected_revision: int | None = None) -> Mission:
+    """Fly the route of one UAV, by its place in the mission, over these points. Its targets stay, and their order.
+
+    Raises InvalidRequest with what is wrong by its place (a point too low or too high, a leg that meets a zone, a battery that does not
+    do), MissionChanged or MissionFrozen. Nothing is kept then.
+    """
+    with transaction.atomic():
+        locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
+        route = locked.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
+        if route is None:
+            raise InvalidRequest({"uav": _("This UAV flies no route.")})
+        if route.charging:
+            raise InvalidRequest({"uav": _("A route with stops to charge cannot be changed by hand.")})
+        until_now = list(route.waypoints.select_related("asset", "target"))
+        _refuse(_shape_faults(points, until_now))
+        wished = _route_points(points, until_now)
+        _refuse(_obstacle_faults(wished))
+        request = request_of_mission(mission=locked)
+        flown = _flown(request, uav, wished, route.departs_s)
+        _refuse(_zone_faults(flown, locked))
+        _refuse(_reach_faults(flown, request, uav))
+        _store(locked, route, flown, until_now, points)
+        locked.total_length_m = sum(own.length_m for own in locked.routes.all())
+        locked.longest_route_m = max(own.length_m for own in locked.routes.all())
+        counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
+        locked.total_energy_wh = sum(counted) if counted else None
+        locked.separation = separation_of_stored(locked)
+        locked.plan_quality = (locked.plan_quality or {}) | {"is_proven": False, "gap": None, "method": "by hand"}
+        locked.revision += 1
+        locked.save()
+        note(locked, actor, "by-hand", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
+    return locked
+
+
+def _refuse(faults: dict[str, str]) -> None:
+    if faults:
+        raise InvalidRequest(faults)
+
+
+def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> dict[str, str]:
+    """What is wrong with the list itself, and with the heights in it."""
+    if len(points) > MOST_WAYPOINTS:
+        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MOST_WAYPOINTS}}
+    kept = [point.was for point in points if point.was is not None]
+    if any(not 0 <= was < len(until_now) for was in kept) or any(right <= left for left, right in pairwise(kept)):
+        return {"waypoints": _("The waypoints are not in the order of the route.")}
+    fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
+    if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
+        return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
+    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": f"{LONGEST_M / 1_000:.0f}"}}
+    faults: dict[str, str] = {}
+    flight = settings.FLIGHT_RULES
+    for number, point in enumerate(points):
+        waypoint = None if point.was is None else until_now[point.was]
+        if waypoint is not None and waypoint.kind != WaypointKind.PASS and _apart_m(point, waypoint) > MOVED_M:
+            faults[f"waypoints.{number}.position"] = _("Start, end and targets stay where they are.")
+        low_m = _least_agl_m(waypoint, is_moved=waypoint is None or _apart_m(point, waypoint) > MOVED_M)
+        if not low_m - HIGHER_M <= point.agl_m <= flight.max_agl_m + HIGHER_M:
+            limits = {"low": f"{low_m:.0f}", "high": f"{flight.max_agl_m:.0f}"}
+            faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
+    return faults
+
+
+def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
+    low = legs_too_low(points, tall_things(current_graph(), settings.FLIGHT_RULES))
+    words = _("Something tall stands here: fly at %(height)s m above ground over it.")
+    return {f"legs.{leg}": words % {"height": f"{least_m:.0f}"} for leg, _share, least_m in reversed(low)}
+
+
+def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:
+    """How low a point may be: with clearance above what is there, and where that is not known as high as between targets."""
+    flight = settings.FLIGHT_RULES
+    if waypoint is None or is_moved:
+        return flight.transit_agl_m
+    if waypoint.asset is not None:
+        asset = waypoint.asset
+        height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
+        least_m = height_m + flight.clearance_m
+        return least_m if waypoint.target_id is not None else max(least_m, flight.transit_agl_m)
+    return min(waypoint.altitude_agl_m, flight.transit_agl_m)
+
+
+def _apart_m(point: HandPoint, waypoint: Waypoint) -> float:
+    return float(distance_m(np.array([point.position]), np.array([waypoint.position.coords]))[0])
+
+
+def _route_points(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> RoutePoints:
+    """A point that was moved passes nothing."""
+    drawn = []
+    for point in points:
+        waypoint = None if point.was is None else until_now[point.was]
+        if waypoint is None or (waypoint.kind == WaypointKind.PASS and _apart_m(point, waypoint) > MOVED_M):
+            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m))
+            continue
+        target = None if waypoint.target is None else waypoint.target.sequence
+        at = LonLat(*waypoint.position.coords)
+        drawn.append(RoutePoint(at, WaypointKind(waypoint.kind), point.agl_m, waypoint.asset_id, target, task_from_json(waypoint.task)))
+    return RoutePoints.of(drawn)
+
+
+def _flown(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float) -> PlannedRoute:
+    flight, action = settings.FLIGHT_RULES, request.end_action(uav)
+    points, length_m = with_short_legs(points, flight.longest_leg_m)
+    waypoints, is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)
+    clock = _clock(waypoints, request, uav)
+    return PlannedRoute(
+        waypoints=waypoints, line=line_of(waypoints.points), length_m=length_m, duration_s=clock.total_s, end_action=action,
+        is_flat=is_flat, departs_s=departs_s,
+        timing=clock,
+    )  # fmt: skip
+
+
+def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
+    asked = request.uavs[uav]
+    try:
+        return timing_of_route(
+            waypoints,
+            cruise_speed_mps=asked.cruise_speed_mps,
+            performance=asked.performance,
+            conditions=request.conditions,
+            lands=request.end_action(uav) is not EndAction.HOVER,
+            rules=settings.FLIGHT_RULES,
+        )
+    except NoHeadway as error:
+        raise InvalidRequest({"waypoints": _("The wind is too strong for %(uav)s on a leg.") % {"uav": asked.name}}) from error
+
+
+def _zone_faults(flown: PlannedRoute, mission: Mission) -> dict[str, str]:
+    (met,) = zones_met([flown_route(flown, mission.departs_at)])
+    return {f"legs.{leg_of(meeting)}": _("This leg meets %(zone)s.") % {"zone": meeting.name} for meeting in reversed(met)}
+
+
+def leg_of(meeting: MetZone) -> int:
+    """The leg's number, the column up to the first waypoint counting as part of the first."""
+    return max(meeting.breach.leg, TAKE_OFF + 1)
+
+
+def _reach_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[str, str]:
+    asked = request.uavs[uav]
+    if asked.max_range_m is not None and flown.length_m > asked.max_range_m:
+        values = {"length": f"{flown.length_m / 1_000:.1f}", "range": f"{asked.max_range_m / 1_000:.1f}", "uav": asked.name}
+        return {"waypoints": _("This is %(length)s km; the range of %(uav)s is %(range)s km.") % values}
+    usable_wh = asked.performance.usable_wh
+    most_wh = max(wh_of_sorties(flown.timing), default=0.0) if flown.timing else 0.0
+    if usable_wh is None or most_wh <= usable_wh:
+        return {}
+    missing = {"missing": f"{most_wh - usable_wh:.1f}", "uav": asked.name}
+    return {"waypoints": _("The battery of %(uav)s lacks %(missing)s Wh for this.") % missing}
+
+
+def _store(mission: Mission, route: Route, flown: PlannedRoute, until_now: Sequence[Waypoint], points: Sequence[HandPoint]) -> None:
+    assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - just drawn
+    by_hand = {_place(point.position, point.agl_m) for point in points if _is_by_hand(point, until_now)}
+    targets: dict[int, int] = dict(mission.targets.values_list("sequence", "pk"))
+    clock = flown.timing
+    route.geometry = LineString(flown.line.tolist(), srid=4326)
+    route.length_m, route.duration_s = round(flown.length_m, 3), round(flown.duration_s, 1)
+    route.energy_wh, route.battery_percent = clock.total_wh, clock.end_percent
+    route.save()
+    route.waypoints.all().delete()
+    Waypoint.objects.bulk_create(
+        (
+            Waypoint(
+                route=route,
+                sequence=number,
+                kind=waypoint.point.kind,
+                position=Point(*waypoint.point.position, srid=4326),
+                asset_id=waypoint.point.asset,
+                target_id=None if waypoint.point.target is None else targets[waypoint.point.target],
+                task=_task(waypoint.point),
+                altitude_agl_m=round(waypoint.point.agl_m, 2),
+                altitude_amsl_m=None if waypoint.amsl_m is None else round(waypoint.amsl_m, 2),
+                altitude_relative_m=round(waypoint.relative_m, 2),
+                arrival_s=round(float(clock.arrival_s[number]) + route.departs_s, 1),
+                used_wh=None if clock.used_wh is None else round(float(clock.used_wh[number]), 2),
+                battery_left_percent=None if clock.battery_left_percent is None else round(float(clock.battery_left_percent[number]), 1),
+                is_by_hand=_place(waypoint.point.position, waypoint.point.agl_m) in by_hand,
+            )
+            for number, waypoint in enumerate(flown.waypoints)
+        ),
+        batch_size=1_000,
+    )
+
+
+def _task(point: RoutePoint) -> dict[str, Any] | None:
+    return None if point.task is None else {"kind": point.task.kind.value, "hold_s": point.task.hold_s}
+
+
+def _is_by_hand(point: HandPoint, until_now: Sequence[Waypoint]) -> bool:
+    if point.was is None:
+        return True
+    waypoint = until_now[point.was]
+    return waypoint.is_by_hand or _apart_m(point, waypoint) > MOVED_M or abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
+
+
+def _place(position: LonLat, agl_m: float) -> tuple[float, float, float]:
+    return round(position.lon, 9), round(position.lat, 9), round(agl_m, 2)

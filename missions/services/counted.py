@@ -1,0 +1,68 @@
+"""What flying takes in seconds and watt-hours, where that does not follow from the metres alone."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.selectors import ground_heights_m
+from inspection.selectors.node_ground import node_ground_m
+from inspection.selectors.planning import has_terrain_at, terrain_at
+from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
+from missions.flight_plan.ways_taken import FlightClass, NodeGround
+from missions.models import EndAction
+from missions.routing.problem import Objective, Visit
+from missions.routing.terminals import Ways
+from missions.services.assignment import route_end
+from missions.services.places import Place
+from missions.services.refusals import Scene
+from missions.services.requests import BaseRequest, PlanRequest
+
+_NEED_THEM = {Objective.TIME, Objective.ENERGY}
+
+
+def needs_counting(request: PlanRequest) -> bool:
+    """Whether wind, a battery, a limit of airspeed or the objective make metres not enough to plan by."""
+    return (
+        not request.conditions.is_calm
+        or request.objective in _NEED_THEM
+        or any(uav.performance.battery_wh is not None or uav.performance.max_airspeed_mps is not None for uav in request.uavs)
+    )
+
+
+def counted(
+    request: PlanRequest,
+    scene: Scene,
+    uavs: Sequence[int],
+    places: Sequence[Place],
+    agl_m: Sequence[float],
+    visits: Sequence[Visit],
+    courses: Sequence[tuple[LonLat, ...]],
+    ways: Ways,
+    bases: Sequence[BaseRequest],
+) -> FlightCosts:
+    """For the UAVs that fly, by their numbers in the request, and the visits of the places; agl_m of each place."""
+    asked = [request.uavs[uav] for uav in uavs]
+    return flight_costs(
+        scene.graph,
+        ways,
+        classes=[FlightClass(uav.performance, uav.cruise_speed_mps) for uav in asked],
+        finishes=[Finish(route_end(request, uav), request.end_action(uav) is not EndAction.HOVER) for uav in uavs],
+        starts=[uav.position for uav in asked],
+        bases=[base.position for base in bases],
+        courses=courses,
+        agl_m=[agl_m[visit.target] for visit in visits],
+        hold_s=[places[visit.target].task.hold_s for visit in visits],
+        conditions=request.conditions,
+        rules=scene.flight,
+        ground=_ground(scene, [uav.position for uav in asked], courses, bases) if has_terrain_at(scene.edition) else None,
+    )
+
+
+def _ground(scene: Scene, starts: Sequence[LonLat], courses: Sequence[tuple[LonLat, ...]], bases: Sequence[BaseRequest]) -> NodeGround:
+    """Under the network, and under the sources and sinks of the ways in their order."""
+    entries, exits = [course[0] for course in courses], [course[-1] for course in courses]
+    sources = [*starts, *exits]
+    sinks = [*entries, *starts, *(base.position for base in bases)]
+    heights_m = ground_heights_m(np.array([*sources, *sinks], dtype=np.float64).reshape(-1, 2))
+    return NodeGround(node_ground_m(scene.graph, terrain_at(scene.edition)), heights_m[: len(sources)], heights_m[len(sources) :])

@@ -1,0 +1,80 @@
+"""From where on their routes UAVs that lose their link could not do what is wished."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+
+from inspection.graph.flyable import node_heights_m
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.selectors import ground_heights_m
+from inspection.zones.reach import ZoneTable
+from missions.flight_plan.heights import FloatArray
+from missions.flight_plan.lost_link import LostLink, LostLinkPlan, Obstacles, failed_returns
+from missions.flight_plan.zone_facts import zones_near
+from missions.services.plan_json import PlannedRoute
+from missions.services.requests import PlanRequest, lost_link_to_json
+from missions.zone_selectors import zone_margins
+
+BESIDE_DEG = 0.01
+
+
+def lost_link_check(
+    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, graph: InspectionGraph, *, has_terrain: bool
+) -> dict[str, Any]:
+    """The wish, and every waypoint from which it fails, in the shape of the API; who goes on flies what was checked already.
+
+    The nodes of the graph are what stands in the way.
+    """
+    wished = request.lost_link
+    failed: list[dict[str, Any]] = []
+    if wished.behaviour is not LostLink.GO_ON:
+        for number, route in enumerate(routes):
+            failed += _failed(request, number, route, table, graph, has_terrain=has_terrain)
+    return {**lost_link_to_json(wished), "failed": failed}
+
+
+def _failed(
+    request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, graph: InspectionGraph, *, has_terrain: bool
+) -> list[dict[str, Any]]:
+    if route.waypoints is None or route.timing is None:
+        return []
+    asked, margins = request.uavs[number], zone_margins()
+    departs_s = None if request.departs_at is None else request.departs_at.timestamp() + route.departs_s
+    window = None if departs_s is None else (departs_s, departs_s + route.duration_s + settings.FLIGHT_RULES.longest_flight_s)
+    positions = np.concatenate([route.waypoints.points.position, np.array(request.lost_link.rally_points, dtype=np.float64).reshape(-1, 2)])
+    near, facts = zones_near(table, positions, margins, window)
+    found = failed_returns(
+        route.waypoints,
+        route.timing,
+        LostLinkPlan(request.lost_link.behaviour, request.lost_link.rally_points, request.lost_link.hold_s),
+        cruise_speed_mps=asked.cruise_speed_mps,
+        performance=asked.performance,
+        conditions=request.conditions,
+        rules=settings.FLIGHT_RULES,
+        zones=facts,
+        margins=margins,
+        departs_s=departs_s,
+        ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
+        obstacles=_obstacles(graph, positions),
+    )
+    return [
+        {
+            "route": number,
+            "waypoint": one.waypoint,
+            "haven": one.haven,
+            "trouble": one.trouble.value,
+            "missing_wh": None if one.missing_wh is None else round(one.missing_wh, 2),
+            "zone": None if one.zone is None else near.names[one.zone],
+            "over_m": None if one.over_m is None else round(one.over_m, 1),
+        }
+        for one in found
+    ]
+
+
+def _obstacles(graph: InspectionGraph, positions: FloatArray) -> Obstacles:
+    """What stands in the box of the positions."""
+    low, high = positions.min(axis=0) - BESIDE_DEG, positions.max(axis=0) + BESIDE_DEG
+    near = np.flatnonzero(((graph.position >= low) & (graph.position <= high)).all(axis=1))
+    return Obstacles(graph.position[near], node_heights_m(graph, near))

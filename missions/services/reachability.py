@@ -1,0 +1,158 @@
+"""Which assets the chosen UAVs can inspect from where they stand, or from chosen bases, and why the others they cannot."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.graph.inspection_graph import InspectionGraph
+from inspection.selectors.planning import planning_read
+from missions.flight_plan.ways_taken import FlightClass
+from missions.models import EndAction
+from missions.routing.problem import End, UavStart
+from missions.routing.reachability import Flight, Reach, Verdict, reach
+from missions.services.refusals import Scene, groundings, zone_at
+from missions.services.requests import BaseRequest, PlanRequest, UavRequest
+from missions.services.scenes import scene_on
+from missions.services.zone_choice import zone_choice
+
+Box = tuple[float, float, float, float]
+ENDS = {EndAction.HOVER: End.OPEN, EndAction.LAND: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
+CODES = {
+    Verdict.PARTLY: "partly_reachable",
+    Verdict.BEYOND_RANGE: "beyond_range",
+    Verdict.BEYOND_ENERGY: "beyond_energy",
+    Verdict.WIND: "wind",
+    Verdict.CUT_OFF: "no_path",
+    Verdict.ABOVE_HEIGHT_LIMIT: "above_height_limit",
+    Verdict.INSIDE_ZONE: "inside_zone",
+}
+NO_UAV = "no_uav"
+
+
+@dataclass(frozen=True)
+class _Start:
+    """A UAV of the request, and the base that it is to start from; None for where it stands."""
+
+    uav: int
+    base: str | None
+
+
+def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), box: Box | None = None) -> dict[str, Any]:
+    """In the shape of the API; the request's targets do not matter. Raises NoGraph.
+
+    starts: bases from each of which each UAV might fly, instead of from where it stands; box: west, south, east, north of what is wanted.
+    Zones that can be in force at any time of the flight are kept clear of, as a plan first does.
+    """
+    ground = planning_read().ground()
+    scene = scene_on(ground, zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest)
+    starting, flights, grounded = _flights(request, starts, scene)
+    bases = [base.position for base in request.bases if zone_at(base.position, scene) is None]
+    found = reach(
+        ground.network(), scene.whole_graph, scene.graph, scene.zones, scene.leg_zones, flights, bases, scene.access,
+        conditions=request.conditions, flight_rules=scene.flight,
+    )  # fmt: skip
+    chosen = np.ones(len(found.asset), dtype=bool) if box is None else _in_box(found, box)
+    code, reasons = _reasons(found, chosen, scene.graph, has_flights=bool(flights))
+    return {
+        "reachable": int((code == 0).sum()),
+        "of": len(code),
+        "flights": [{"uav": start.uav, "base": start.base} for start in starting],
+        "grounded": grounded,
+        "reasons": reasons,
+        "assets": {
+            "ids": found.asset[chosen].tolist(),
+            "code": code.tolist(),
+            "flight": found.flight[chosen].tolist(),
+            "missing_m": np.ceil(found.missing_m[chosen]).astype(np.int64).tolist(),
+            "missing_wh": np.ceil(found.missing_wh[chosen]).astype(np.int64).tolist(),
+        },
+        "graph_version": scene.graph.version,
+        "ground_revision": ground.edition[0],
+    }
+
+
+def _flights(request: PlanRequest, starts: Sequence[BaseRequest], scene: Scene) -> tuple[list[_Start], list[Flight], list[dict[str, Any]]]:
+    """The flights that can take off, and why the others cannot."""
+    starting, flights, grounded = [], [], []
+    for base in starts or (None,):
+        uavs = request.uavs if base is None else [replace(uav, position=base.position) for uav in request.uavs]
+        kept_down = groundings(uavs, scene)
+        for number, uav in enumerate(uavs):
+            name = None if base is None else base.name
+            if number in kept_down:
+                why = kept_down[number]
+                grounded.append({"uav": number, "base": name, "code": why.code, "message": why.message})
+                continue
+            action = request.end_action(number)
+            limit_m = UavStart(uav.max_range_m, ENDS[action]).limit_m
+            starting.append(_Start(number, name))
+            flights.append(Flight(uav.position, ENDS[action], limit_m, action is not EndAction.HOVER, _class_of(uav, request)))
+    return starting, flights, grounded
+
+
+def _class_of(uav: UavRequest, request: PlanRequest) -> FlightClass | None:
+    """None for a UAV whose battery is not known and which no wind can stop."""
+    is_stopped = uav.performance.max_airspeed_mps is not None and not request.conditions.is_calm
+    if uav.performance.battery_wh is None and not is_stopped:
+        return None
+    return FlightClass(uav.performance, uav.cruise_speed_mps)
+
+
+def _in_box(found: Reach, box: Box) -> np.ndarray:
+    west, south, east, north = box
+    in_lat = (found.box[:, 1] <= north) & (found.box[:, 3] >= south)
+    if west > east:  # over the 180th meridian
+        return in_lat & ((found.box[:, 2] >= west) | (found.box[:, 0] <= east))
+    return in_lat & (found.box[:, 0] <= east) & (found.box[:, 2] >= west)
+
+
+def _reasons(found: Reach, chosen: np.ndarray, graph: InspectionGraph, *, has_flights: bool) -> tuple[np.ndarray, list[dict[str, Any]]]:
+    """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
+    verdict, zone = found.verdict[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
+    missing = found.missing_m[chosen] + found.missing_wh[chosen]  # of the one or the other
+    kinds = len(Verdict)
+    key = verdict + np.where(verdict == Verdict.INSIDE_ZONE, (zone + 1) * kinds, 0)
+    keys, number, count = np.unique(key, return_inverse=True, return_counts=True)
+    code_of, reasons = np.zeros(len(keys), dtype=np.int64), []
+    for place, (one, assets) in enumerate(zip(keys.tolist(), count.tolist(), strict=True)):
+        why = Verdict(one % kinds)
+        if why is Verdict.REACHABLE:
+            continue
+        if why is Verdict.CUT_OFF and not has_flights:
+            reasons.append({"code": NO_UAV, "message": _("No UAV can take off."), "count": assets})
+        else:
+            message = _message(why, one // kinds - 1, missing[number == place], graph)
+            reasons.append({"code": CODES[why], "message": message, "count": assets})
+        code_of[place] = len(reasons)
+    return code_of[number], reasons
+
+
+def _message(why: Verdict, zone: int, missing: np.ndarray, graph: InspectionGraph) -> str:
+    flight, access = settings.FLIGHT_RULES, settings.ROUTING_RULES
+    if why is Verdict.PARTLY:
+        return _("Some spans of the line or railway can be inspected, others cannot.")
+    if why is Verdict.BEYOND_RANGE:
+        words = _("The range of every UAV is too short: by %(least)s at the nearest, by %(most)s at the farthest.")
+        return words % {"least": _km(float(missing.min())), "most": _km(float(missing.max()))}
+    if why is Verdict.BEYOND_ENERGY:
+        words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
+        return words % {"least": f"{np.ceil(missing.min()):,.0f}", "most": f"{np.ceil(missing.max()):,.0f}"}
+    if why is Verdict.WIND:
+        return _("The wind is too strong on every way to it, or back.")
+    if why is Verdict.CUT_OFF:
+        words = _("No way that keeps clear of every zone was found: along the network, or up to %(km)s beside it.")
+        return words % {"km": _km(access.access_leg_m)}
+    if why is Verdict.ABOVE_HEIGHT_LIMIT:
+        words = _("Too tall: it cannot be flown over with a clearance of %(clearance)s m below %(limit)s m.")
+        return words % {"clearance": f"{flight.clearance_m:.0f}", "limit": f"{flight.max_agl_m:.0f}"}
+    if zone >= 0:
+        return _("Inside %(zone)s.") % {"zone": graph.zone_name[zone]}
+    return _("A no-fly zone lies on it.")
+
+
+def _km(length_m: float) -> str:
+    return f"{length_m:,.0f} m" if length_m < 1_000 else f"{length_m / 1_000:,.1f} km"

@@ -1,0 +1,146 @@
+"""Routes against the zones in force: where, when and how high they meet one, and when they may depart."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from django.conf import settings
+
+from inspection.selectors.zone_table import zone_table
+from inspection.zones.activity import Span, active_spans
+from inspection.zones.reach import ZoneTable
+from inspection.zones.schedule import Schedule
+from missions.flight_plan.clearance import TAKE_OFF, Breach, FlownRoute, Margins, breaches
+from missions.flight_plan.legal_windows import blocked_departures, free_between
+from missions.flight_plan.zone_facts import zones_near
+from missions.models import EndAction, Mission, Route
+
+CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
+
+
+@dataclass(frozen=True)
+class MetZone:
+    """A breach, and the zone's key and name."""
+
+    breach: Breach
+    zone: int
+    name: str
+
+
+def zone_margins() -> Margins:
+    """What the settings want to be kept from zones."""
+    return Margins(
+        lateral_m=CLEARANCE_KEPT * settings.GRAPH_RULES.zone_clearance_m,
+        height_m=settings.ZONE_RULES.height_margin_m,
+        time_s=settings.ZONE_RULES.time_margin_s,
+        terrain_tolerance_m=settings.FLIGHT_RULES.terrain_tolerance_m,
+    )
+
+
+def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
+    """A stored route; departs_s: when its mission begins, in seconds since the epoch, None for at any time."""
+    waypoints = list(route.waypoints.all())
+    arrival_s = np.array([np.nan if waypoint.arrival_s is None else waypoint.arrival_s for waypoint in waypoints], dtype=np.float64)
+    is_timed = departs_s is not None and not np.isnan(arrival_s).all()
+    began_s = 0.0 if departs_s is None else departs_s
+    lands = route.mission.return_to_start or route.mission_uav.end_action != EndAction.HOVER
+    lasts_s = route.duration_s if lands else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)  # who hovers stays
+    return FlownRoute(
+        position=np.array([waypoint.position.coords[:2] for waypoint in waypoints], dtype=np.float64).reshape(-1, 2),
+        agl_m=np.array([waypoint.altitude_agl_m for waypoint in waypoints], dtype=np.float64),
+        amsl_m=np.array(
+            [np.nan if waypoint.altitude_amsl_m is None else waypoint.altitude_amsl_m for waypoint in waypoints], dtype=np.float64
+        ),
+        arrival_s=began_s + arrival_s if is_timed else None,
+        departs_s=None if departs_s is None else began_s + route.departs_s,
+        ends_s=None if departs_s is None else began_s + route.departs_s + lasts_s,
+        lands=lands,
+    )
+
+
+def zones_met(routes: Sequence[FlownRoute], table: ZoneTable | None = None) -> list[list[MetZone]]:
+    """For each route the zones that it meets, those of now or of the table; a route without times at any time."""
+    margins = zone_margins()
+    table = zone_table() if table is None else table
+    found = []
+    for route in routes:
+        near, facts = zones_near(table, route.position, margins, _window(route))
+        met = breaches(route, facts, margins)
+        found.append([MetZone(breach, int(near.ids[breach.zone]), near.names[breach.zone]) for breach in met])
+    return found
+
+
+def departure_s(mission: Mission) -> float | None:
+    return None if mission.departs_at is None else float(mission.departs_at.timestamp())
+
+
+def _window(route: FlownRoute) -> tuple[float, float] | None:
+    """From take-off to the end; None where any of it is not known."""
+    if route.arrival_s is None or route.departs_s is None or route.ends_s is None or np.isnan(route.arrival_s).any():
+        return None
+    moments = [route.departs_s, route.ends_s, float(route.arrival_s.min()), float(route.arrival_s.max())]
+    return min(moments), max(moments)
+
+
+@dataclass(frozen=True)
+class BlockingZone:
+    """A zone that routes meet in space and height. blocked: departures that would meet it in time, too; legs: (route, leg) of them."""
+
+    zone: int
+    name: str
+    schedule: Schedule | None
+    blocked: tuple[Span, ...]
+    legs: tuple[tuple[int, int], ...]
+
+
+@dataclass(frozen=True)
+class LegalWindows:
+    """When routes may depart between two moments, and which zones bar the rest."""
+
+    windows: tuple[Span, ...]
+    zones: tuple[BlockingZone, ...]
+
+
+def legal_windows(routes: Sequence[FlownRoute], *, from_s: float, to_s: float) -> LegalWindows:
+    """The routes' times are seconds after departure; a leg without a time may be flown at any time from the route's take-off to its end.
+
+    Between two moments in seconds since the epoch; routes keep the margins of the settings in space, height and time.
+    """
+    margins, table = zone_margins(), zone_table()
+    met: dict[int, list[tuple[int, int]]] = {}
+    rows: dict[int, tuple[ZoneTable, int]] = {}
+    for number, route in enumerate(routes):
+        near, facts = zones_near(table, route.position, margins)
+        for breach in breaches(replace(route, arrival_s=None), facts, margins):
+            key = int(near.ids[breach.zone])
+            met.setdefault(key, []).append((number, breach.leg))
+            rows.setdefault(key, (near, breach.zone))
+    times = [_leg_times(route) for route in routes]
+    found = []
+    for key, legs in met.items():
+        near, row = rows[key]
+        flown = [times[number][leg - TAKE_OFF] for number, leg in legs]
+        earliest, latest = from_s + min(first for first, _ in flown), to_s + max(last for _, last in flown)
+        spans = active_spans(near.schedules[row], _box_of(near, row), earliest - margins.time_s - 1.0, latest + margins.time_s + 1.0)
+        blocked = blocked_departures(flown, spans, margins.time_s, from_s, to_s)
+        found.append(BlockingZone(key, near.names[row], near.schedules[row], blocked, tuple(legs)))
+    free = free_between((span for zone in found for span in zone.blocked), from_s, to_s)
+    return LegalWindows(free, tuple(found))
+
+
+def _leg_times(route: FlownRoute) -> list[tuple[float, float]]:
+    """From when to when each leg is flown, the column up to the first waypoint first; what is not known is all of the flight."""
+    departs_s = route.departs_s or 0.0
+    known = [] if route.arrival_s is None else route.arrival_s[~np.isnan(route.arrival_s)].tolist()
+    ends_s = max([departs_s, *known] if route.ends_s is None else [departs_s, route.ends_s, *known])
+    arrival_s = [np.nan] * len(route.position) if route.arrival_s is None else route.arrival_s.tolist()
+    moments = [departs_s, *arrival_s, ends_s]
+    return [
+        (departs_s, ends_s) if np.isnan(start) or np.isnan(end) else (min(start, end), max(start, end)) for start, end in pairwise(moments)
+    ]
+
+
+def _box_of(table: ZoneTable, row: int) -> tuple[float, float, float, float]:
+    west, south, east, north = table.box[row].tolist()
+    return west, south, east, north

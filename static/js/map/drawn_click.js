@@ -1,0 +1,15 @@
+/** The click that ends a drawing on the map, or drops it, picks nothing. */
+
+/** Returns { begins(), ends() }: a press that may become a drawing, and a drawing that has come to its end. */
+export function swallowDrawnClick(canvas) {
+  let isDrawn = false;
+  canvas.addEventListener(
+    "click",
+    (event) => {
+      if (isDrawn) event.stopImmediatePropagation();
+      isDrawn = false;
+    },
+    true,
+  );
+  return { begins: () => (isDrawn = false), ends: () => (isDrawn = true) };
+}

@@ -1,0 +1,66 @@
+/** Which assets can be inspected, over their own drawing: filled where they can, hollow where not. Only what is loaded gets a state. */
+
+import { TILES } from "../style.js";
+
+const SOURCE_LAYERS = ["lines", "railways", "bridges", "bridge_points", "towers"];
+const CODE = { yes: 1, partly: 2, no: 3 };
+const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+const reach = ["coalesce", ["feature-state", "reach"], 0];
+const byReach = (yes, partly, no) => ["match", reach, 1, yes, 2, partly, 3, no, 0];
+
+function layers() {
+  const [yes, partly, no, casing, raised] = ["--accent", "--ink-2", "--warning-mark", "--map-casing", "--raised"].map(read);
+  const colour = ["match", reach, 1, yes, 2, partly, 3, no, "rgba(0,0,0,0)"];
+  const dots = (id, sourceLayer, minzoom, radius) => ({
+    id, type: "circle", source: TILES, "source-layer": sourceLayer, minzoom,
+    paint: {
+      "circle-radius": ["interpolate", ["linear"], ["zoom"], 10, radius * 0.6, 14, radius * 1.3],
+      "circle-color": ["match", reach, 1, yes, 2, partly, raised],
+      "circle-opacity": byReach(1, 1, 0.9),
+      "circle-stroke-color": ["match", reach, 3, no, casing],
+      "circle-stroke-width": byReach(1, 1, 2),
+      "circle-stroke-opacity": byReach(1, 1, 1),
+    },
+  });
+  const lines = (id, sourceLayer, minzoom) => ({
+    id, type: "line", source: TILES, "source-layer": sourceLayer, minzoom, layout: { "line-join": "round" },
+    paint: { "line-color": colour, "line-width": byReach(4, 2.5, 1.5), "line-gap-width": byReach(0, 0, 4), "line-opacity": byReach(0.85, 0.85, 1) },
+  });
+  return [lines("reach-lines", "lines", 0), lines("reach-railways", "railways", 8), lines("reach-bridges", "bridges", 10), dots("reach-bridge-points", "bridge_points", 10, 3), dots("reach-towers", "towers", 10, 4)];
+}
+
+const stated = new WeakMap(); // map → Set of "layer id" that have a state
+
+/** verdictOf(id): "yes", "partly", "no" or "". Called again for what is loaded later. */
+export function update(map, verdictOf) {
+  if (!map.getLayer("reach-lines")) {
+    const before = map.getLayer("routes-casing") ? "routes-casing" : undefined;
+    for (const layer of layers()) map.addLayer(layer, before);
+  }
+  const known = stated.get(map) ?? new Set();
+  stated.set(map, known);
+  for (const sourceLayer of SOURCE_LAYERS) {
+    for (const { id } of map.querySourceFeatures(TILES, { sourceLayer })) {
+      const key = `${sourceLayer} ${id}`;
+      if (known.has(key)) continue;
+      known.add(key);
+      map.setFeatureState({ source: TILES, sourceLayer, id }, { reach: CODE[verdictOf(id)] ?? 0 });
+    }
+  }
+}
+
+/** Before another answer is shown. */
+export const forget = (map) => stated.delete(map);
+
+export function remove(map) {
+  forget(map);
+  for (const { id } of layers()) if (map.getLayer(id)) map.removeLayer(id);
+  for (const sourceLayer of SOURCE_LAYERS) map.removeFeatureState({ source: TILES, sourceLayer });
+}
+
+export function recolour(map) {
+  for (const { id, paint } of layers()) {
+    if (!map.getLayer(id)) continue;
+    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  }
+}

@@ -1,0 +1,56 @@
+/** When and in what air a mission is flown, and what its UAVs may charge with. Values in, values out. */
+
+import { t } from "../text.js";
+import { clockText, dayText, heightText, sinceText, speedText, temperatureText } from "../units.js";
+
+/** Any time, calm, no charging. */
+export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null });
+export const MILD_C = 15; // ISA at sea level, where nobody says otherwise
+export const MOST_LAYERS = 10; // missions/serializers/limits.py
+const COMPASS = [t("north"), t("north-east"), t("east"), t("south-east"), t("south"), t("south-west"), t("west"), t("north-west")];
+
+const layerOf = ({ altitude_agl_m, speed_mps, from_deg }) => ({ altitude_agl_m, speed_mps, from_deg });
+
+/** One form for equal conditions: lowest layer first, and null for calm and mild. */
+export function conditionsOf(conditions) {
+  if (!conditions) return null;
+  const temperature_c = conditions.temperature_c ?? MILD_C;
+  const wind = (conditions.wind ?? []).map(layerOf).sort((a, b) => a.altitude_agl_m - b.altitude_agl_m);
+  const blows = wind.some(({ speed_mps }) => speed_mps > 0);
+  return blows || temperature_c !== MILD_C ? { wind: blows ? wind : [], temperature_c } : null;
+}
+
+/** The same moment written in one way. */
+export const momentOf = (departs_at) => (departs_at ? new Date(departs_at).toISOString() : null);
+
+/** The three of a stored mission or a draft. */
+export const flightOptionsOf = ({ departs_at, conditions, charging_w }) => ({ departs_at: momentOf(departs_at), conditions: conditionsOf(conditions), charging_w: charging_w ?? null });
+
+/** What of them is said, as the API takes it. */
+export function flightOptionsAsked(selection) {
+  return Object.fromEntries(Object.entries(flightOptionsOf(selection)).filter(([, value]) => value !== null));
+}
+
+/** "west" for 270. */
+export const compassText = (from_deg) => COMPASS[Math.round((((from_deg % 360) + 360) % 360) / 45) % 8];
+
+/** "Calm, 15 °C", "8 m/s from the west at 100 m above ground, 5 °C". */
+export function conditionsText(conditions) {
+  const { wind, temperature_c } = conditionsOf(conditions) ?? { wind: [], temperature_c: MILD_C };
+  const layers = wind.map(({ altitude_agl_m, speed_mps, from_deg }) => t("{speed} from the {side} at {height}", { speed: speedText(speed_mps), side: compassText(from_deg), height: heightText(altitude_agl_m) }));
+  return [layers.length ? layers.join("; ") : t("Calm"), temperatureText(temperature_c)].join(", ");
+}
+
+/** "21 Nov, 19:30" by the reader's clock. */
+export const departureText = (departs_at) => `${dayText(departs_at)}, ${clockText(departs_at)}`;
+
+/** When something happens that many seconds after the departure: by the clock where there is one, else "+12:05". */
+export function timeAt(departs_at, after_s) {
+  if (after_s === null || after_s === undefined) return "—";
+  if (!departs_at) return sinceText(after_s);
+  const moment = new Date(Date.parse(departs_at) + after_s * 1000).toISOString();
+  return dayText(moment) === dayText(departs_at) ? clockText(moment) : departureText(moment);
+}
+
+/** The next full minute: what "now" means for a departure. */
+export const nextMinute = (now_ms) => new Date(Math.ceil(now_ms / 60_000) * 60_000).toISOString();

@@ -1,0 +1,131 @@
+/** Changing one route by hand: its points with undo and redo, each changed leg asked about at once, and keeping them. */
+
+import { post, request } from "../api.js";
+import { say, toast } from "../page/toast.js";
+import { t } from "../text.js";
+import { isPlanCurrent } from "./plan_view.js";
+import * as hand from "./hand_route.js";
+
+const MOST_ASKED = 200; // legs at once: missions/serializers/by_hand.py
+
+/** saving: { save(), keepOpen(mission, asked) }. While somebody changes a route, store.state.hand says all of it; else it is null. */
+export function createHandEditing({ store, selection, problem, wordsOf }, { save, keepOpen }) {
+  const verdicts = new Map(); // leg → { is_clear, zone, message }
+  let [past, future] = [[], []];
+  let isAsking = false;
+
+  const state = () => store.state.hand;
+  const put = (change) => store.update({ hand: { ...state(), ...change } });
+
+  /** Opens a route; the plan has to be the stored one, and is stored first where it is not. */
+  async function begin(sequence) {
+    if (!store.state.planIsStored || !isPlanCurrent(store.state)) await save({ byItself: true });
+    const { plan, planIsStored, mission } = store.state;
+    const route = plan?.result.routes[sequence];
+    if (!mission || !planIsStored || !isPlanCurrent(store.state) || !route?.geometry) {
+      toast(t("A route is changed by hand once its plan is saved."));
+      return;
+    }
+    [past, future] = [[], []];
+    const original = hand.pointsOf(route);
+    store.update({ hand: { sequence, original, points: original, chosen: null, faults: hand.faultsOf(null), legs: new Map(), canUndo: false, canRedo: false, isSaving: false }, why: { byHand: sequence }, tool: "point" });
+  }
+
+  function end() {
+    if (state()) store.update({ hand: null, why: store.state.why?.byHand === undefined ? store.state.why : null });
+  }
+
+  const show = (points, chosen) => {
+    put({ points, chosen: chosen !== null && points[chosen] ? chosen : null, faults: hand.faultsOf(null), canUndo: past.length > 0, canRedo: future.length > 0, legs: legsNow(points) });
+    void ask();
+  };
+
+  /** One step of the history. */
+  function take(points, chosen = state().chosen) {
+    if (points === state().points) return false;
+    past.push(state().points);
+    future = [];
+    show(points, chosen);
+    return true;
+  }
+
+  /** index of each changed leg → what is known of it; null while that is asked. */
+  function legsNow(points) {
+    return new Map(hand.changedLegs(points, state().original).map((index) => [index, verdicts.get(hand.keyOfLeg(hand.legOf(points, index))) ?? null]));
+  }
+
+  /** What is shown on the map at this moment, dragged or not: its legs are asked about one request after the other. */
+  async function ask() {
+    if (isAsking || !state()) return;
+    const points = state().dragged ?? state().points;
+    const legs = [...legsNow(points)].filter(([, verdict]) => verdict === null).slice(0, MOST_ASKED).map(([index]) => hand.legOf(points, index));
+    if (!legs.length) return;
+    isAsking = true;
+    try {
+      const { data } = await post("/leg-checks", { legs, departs_at: store.state.plan?.result.departs_at ?? null });
+      legs.forEach((leg, index) => verdicts.set(hand.keyOfLeg(leg), data.legs[index]));
+    } catch (error) {
+      legs.forEach((leg) => verdicts.set(hand.keyOfLeg(leg), { is_clear: false, zone: null, message: t("Not checked: {reason}", { reason: wordsOf(error) }), isUnknown: true }));
+    } finally {
+      isAsking = false;
+    }
+    if (!state()) return;
+    put({ legs: legsNow(state().dragged ?? state().points) });
+    void ask();
+  }
+
+  function step(from, to) {
+    if (!state() || !from.length) return false;
+    to.push(state().points);
+    show(from.pop(), state().chosen);
+    return true;
+  }
+
+  async function keep() {
+    const { sequence, points, original } = state();
+    if (!hand.changesOf(points, original)) return end();
+    const { mission, name } = store.state;
+    put({ isSaving: true });
+    try {
+      const { data } = await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, { body: hand.bodyOf(points), headers: { "If-Match": `"${mission.revision}"` } });
+      end();
+      keepOpen(data, { selection: selection(), name });
+      say(t("The route is kept as changed by hand."));
+    } catch (error) {
+      if (!state()) return undefined;
+      const faults = hand.faultsOf(error.details);
+      const places = faults.points.size + faults.legs.size;
+      put({ isSaving: false, faults: places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] }, chosen: [...faults.points.keys(), ...faults.legs.keys()][0] ?? state().chosen });
+      if (error.isSignedOut) problem(t("You are signed out."), wordsOf(error));
+    }
+    return undefined;
+  }
+
+  // Who plans anew, picks something else or closes the panel is not changing this route any more.
+  store.listen(["plan", "why"], ({ hand: now, why, plan }) => {
+    if (now && (why?.byHand !== now.sequence || !plan?.result.routes[now.sequence]?.geometry || hand.pointsOf(plan.result.routes[now.sequence]).length !== now.original.length)) end();
+  });
+
+  return {
+    beginByHand: begin,
+    endByHand: end,
+    keepByHand: keep,
+    chooseByHand: (chosen) => state() && put({ chosen }),
+    /** While it is dragged: shown and asked about, no step of the history. */
+    dragByHand(points, chosen) {
+      put({ dragged: points, chosen, legs: new Map() });
+      put({ legs: legsNow(points) });
+      void ask();
+    },
+    dropByHand(points, chosen) {
+      put({ dragged: null });
+      if (!points || !take(points, chosen)) put({ legs: legsNow(state().points) });
+    },
+    moveByHand: (index, position) => take(hand.moved(state().points, index, position), index),
+    raiseByHand: (index, height_m) => take(hand.raised(state().points, index, height_m), index),
+    insertByHand: (index) => take(hand.inserted(state().points, index), index + 1),
+    removeByHand: (index) => take(hand.dropped(state().points, index), null),
+    undoByHand: () => step(past, future),
+    redoByHand: () => step(future, past),
+  };
+}

@@ -1,0 +1,82 @@
+/** A route that is changed by hand: waypoints moved, put in, taken out, flown higher. Values in, values out.
+ *
+ * A point is { position, altitude_agl_m, was, kind, target, arrival_s, isByHand }; `was` is its place in the route as stored, null where
+ * it is put in. Start, end and targets stay where they are.
+ */
+
+const DIGITS = 7; // some 0.01 m
+
+/** Only a waypoint between targets may go. */
+export const isFree = ({ kind }) => kind === "pass";
+
+const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(DIGITS)));
+
+export function pointsOf({ waypoints, arrival_s, by_hand }) {
+  const byHand = new Set(by_hand ?? []);
+  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({ position, altitude_agl_m, was, kind, target, arrival_s: arrival_s?.[was] ?? null, isByHand: byHand.has(was) }));
+}
+
+const replaced = (points, index, values) => points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
+
+/** The same points where one that has to stay would be moved. */
+export function moved(points, index, position) {
+  return points[index] && isFree(points[index]) ? replaced(points, index, { position: rounded(position) }) : points;
+}
+
+export const raised = (points, index, altitude_agl_m) => (points[index] && points[index].altitude_agl_m !== altitude_agl_m ? replaced(points, index, { altitude_agl_m }) : points);
+
+/** A new one after `index`, as high as the higher of its neighbours; in the middle of the leg where no place is said. */
+export function inserted(points, index, position = null) {
+  const [before, after] = [points[index], points[index + 1]];
+  if (!before || !after) return points;
+  const middle = before.position.map((degrees, axis) => (degrees + after.position[axis]) / 2);
+  const point = { position: rounded(position ?? middle), altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m), was: null, kind: "pass", target: null, arrival_s: null, isByHand: true };
+  return [...points.slice(0, index + 1), point, ...points.slice(index + 1)];
+}
+
+export const dropped = (points, index) => (points[index] && isFree(points[index]) ? points.filter((_, at) => at !== index) : points);
+
+const isAtPlace = (point, original) => point.was !== null && point.altitude_agl_m === original[point.was].altitude_agl_m && point.position.every((degrees, axis) => degrees === original[point.was].position[axis]);
+
+/** Indices of the legs that are not flown so in the route as stored: leg i goes from point i to the next. */
+export function changedLegs(points, original) {
+  return points.slice(1).flatMap((end, index) => {
+    const start = points[index];
+    const isAsStored = isAtPlace(start, original) && isAtPlace(end, original) && end.was === start.was + 1;
+    return isAsStored ? [] : [index];
+  });
+}
+
+/** How many waypoints are another than stored: moved, higher, put in, taken out. */
+export function changesOf(points, original) {
+  const kept = points.filter(({ was }) => was !== null);
+  return original.length - kept.length + points.filter((point) => !isAtPlace(point, original)).length;
+}
+
+/** A leg as it is asked about; times are those of the stored waypoints around it. */
+export function legOf(points, index) {
+  const end = ({ position, altitude_agl_m }, arrival_s) => ({ position, altitude_agl_m, arrival_s });
+  const before = points.slice(0, index + 1).findLast(({ arrival_s }) => arrival_s !== null)?.arrival_s ?? null;
+  const after = points.slice(index + 1).find(({ arrival_s }) => arrival_s !== null)?.arrival_s ?? null;
+  return { start: end(points[index], before), end: end(points[index + 1], after) };
+}
+
+/** Legs that are alike are asked about once. */
+export const keyOfLeg = (leg) => JSON.stringify(leg);
+
+/** What the server takes for the whole route. */
+export const bodyOf = (points) => ({ waypoints: points.map(({ position, altitude_agl_m, was }) => ({ position, altitude_agl_m, was })) });
+
+/** What the server says of single places: { points: Map index → words, legs: Map index → words, other: [words] }. */
+export function faultsOf(details) {
+  const faults = { points: new Map(), legs: new Map(), other: [] };
+  for (const [place, words] of Object.entries(details ?? {})) {
+    const text = [words].flat(2).join(" ");
+    const [, list, index] = /^(waypoints|legs)\.(\d+)/.exec(place) ?? [];
+    if (list === "waypoints") faults.points.set(Number(index), text);
+    else if (list === "legs") faults.legs.set(Number(index), text);
+    else faults.other.push(text);
+  }
+  return faults;
+}
+

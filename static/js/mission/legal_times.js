@@ -1,0 +1,92 @@
+/** At which departures a mission would meet no zone: places on a bar of time, and the sentence over it. Values in, values out. */
+
+import { language, localeOf, t, tn } from "../text.js";
+import { clockText, durationText, typedMoment } from "../units.js";
+import { departureText } from "./flight_options.js";
+
+export const STEP_MS = 5 * 60_000;
+const HOUR_MS = 3_600_000;
+const TICK_HOURS = 6;
+
+const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
+
+/** The server's answer with moments as ms; nameOf(index) names the UAV of a leg. */
+export function legalTimesOf({ from, to, windows, zones }, nameOf = String) {
+  const named = (legs) => legs.map(({ uav, leg }) => ({ uav: nameOf(uav), leg }));
+  return { ...span({ from, to }), windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
+}
+
+/** How far along the bar, 0 to 1. */
+export const shareOf = ({ from_ms, to_ms }, moment) => Math.min(1, Math.max(0, (moment - from_ms) / (to_ms - from_ms)));
+
+/** The moment at a share of the bar, on a full step by the clock. */
+export function momentAt({ from_ms, to_ms }, share) {
+  const moment = Math.round((from_ms + share * (to_ms - from_ms)) / STEP_MS) * STEP_MS;
+  return Math.min(Math.floor(to_ms / STEP_MS) * STEP_MS, Math.max(Math.ceil(from_ms / STEP_MS) * STEP_MS, moment));
+}
+
+/** The span that holds a moment; spans are open at their end. */
+export const spanAt = (spans, moment) => spans.find(({ from_ms, to_ms }) => from_ms <= moment && moment < to_ms) ?? null;
+
+/** A step within a span, as near to the moment as there is one; the span's own begin where it is shorter than a step. */
+export function stepWithin({ from_ms, to_ms }, moment) {
+  const [first, last] = [Math.ceil(from_ms / STEP_MS) * STEP_MS, (Math.ceil(to_ms / STEP_MS) - 1) * STEP_MS];
+  return first > last ? from_ms : Math.min(last, Math.max(first, moment));
+}
+
+/** Every sixth hour by the reader's clock: [{ at_ms, words, isDay }]; midnight has the name of the day. */
+export function ticksOf({ from_ms, to_ms }) {
+  const ticks = [];
+  for (let at_ms = Math.ceil(from_ms / HOUR_MS) * HOUR_MS; at_ms <= to_ms; at_ms += HOUR_MS) {
+    const iso = new Date(at_ms).toISOString();
+    const typed = typedMoment(iso);
+    const hour = Number(typed.slice(11, 13));
+    if (hour % TICK_HOURS) continue;
+    ticks.push({ at_ms, isDay: hour === 0, words: hour === 0 ? dayName(typed) : clockText(iso) });
+  }
+  return ticks;
+}
+
+/** "Sun 22 Nov" of a moment as it is typed by the reader's clock. */
+const dayName = (typed) => new Date(`${typed}Z`).toLocaleDateString(localeOf(language), { timeZone: "UTC", weekday: "short", day: "numeric", month: "short" });
+
+/** "Sat 21 Nov, 19:30 to 22:00". */
+export function spanText({ from_ms, to_ms }) {
+  const [from, to] = [from_ms, to_ms].map((at) => new Date(at).toISOString());
+  const isOneDay = typedMoment(from).slice(0, 10) === typedMoment(to).slice(0, 10);
+  return t("{from} to {to}", { from: departureText(from), to: isOneDay ? clockText(to) : departureText(to) });
+}
+
+/** What the bar says, and whether the chosen departure is one of the legal ones: { sentence, departure }. */
+export function wordsOf(times, departs_at) {
+  const free_ms = times.windows.reduce((sum, { from_ms, to_ms }) => sum + to_ms - from_ms, 0);
+  const hours = Math.round((times.to_ms - times.from_ms) / HOUR_MS);
+  const isWhole = free_ms >= times.to_ms - times.from_ms;
+  const sentence = isWhole
+    ? tn(hours, "Legal at any time of the next hour.", "Legal at any time of the next {count} hours.")
+    : free_ms === 0
+      ? tn(hours, "Legal at no time of the next hour.", "Legal at no time of the next {count} hours.")
+      : t("Legal for {free} of the next {hours} hours.", { free: durationText(free_ms / 1000), hours });
+  return { sentence, departure: departs_at ? departureWords(times, Date.parse(departs_at)) : t("No departure is chosen: the plan keeps clear of all zones at all times.") };
+}
+
+function departureWords(times, moment) {
+  const when = departureText(new Date(moment).toISOString());
+  if (moment < times.from_ms || moment >= times.to_ms) return t("The departure {when} is outside these hours.", { when });
+  if (spanAt(times.windows, moment)) return t("The departure {when} is legal.", { when });
+  const names = times.zones.filter(({ blocked }) => spanAt(blocked, moment)).map(({ name }) => name).join(", ");
+  const next = times.windows.find(({ from_ms }) => from_ms > moment);
+  const words = names ? t("The departure {when} is not legal: {zones}.", { when, zones: names }) : t("The departure {when} is not legal.", { when });
+  return next ? `${words} ${t("The next legal one is {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}` : words;
+}
+
+/** "Heron, legs 3 to 5; Kite, leg 2": which legs of the routes meet a zone, counted from 1; the climb before them is the take-off. */
+export function legsText(legs) {
+  const byUav = new Map();
+  for (const { uav, leg } of legs) byUav.set(uav, [...(byUav.get(uav) ?? []), leg]);
+  return [...byUav].map(([uav, numbers]) => {
+    const [first, last] = [Math.max(1, Math.min(...numbers) + 1), Math.max(...numbers) + 1];
+    if (last === 0) return t("{uav}, at take-off", { uav });
+    return first === last ? t("{uav}, leg {number}", { uav, number: first }) : t("{uav}, legs {first} to {last}", { uav, first, last });
+  }).join("; ");
+}

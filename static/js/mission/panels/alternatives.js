@@ -1,0 +1,75 @@
+/** The four ways of planning side by side: what each gives, the present one marked, one click takes one. */
+
+import { h, icon } from "../../dom.js";
+import { t } from "../../text.js";
+import { durationText, energyText, lengthText, numberText } from "../../units.js";
+import { isWithoutBattery, longestDuration_s, OBJECTIVES } from "../plan_view.js";
+import { basisOf } from "../selection.js";
+
+const COLUMNS = [
+  { words: t("Distance"), valueOf: ({ total_length_m }) => total_length_m, textOf: lengthText, least: 50 },
+  { words: t("Done in"), valueOf: longestDuration_s, textOf: durationText, least: 30 },
+  { words: t("In the air"), valueOf: flying_s, textOf: durationText, least: 30 },
+  { words: t("Energy"), valueOf: ({ total_energy_wh }) => total_energy_wh ?? null, textOf: energyText, least: 1 },
+  { words: t("Not reached"), valueOf: ({ unassigned }) => unassigned.length, textOf: (count) => numberText(count), least: 0.5 },
+];
+
+/** Of all UAVs together. */
+export function flying_s({ total_duration_s, routes }) {
+  return total_duration_s ?? routes.reduce((sum, { duration_s }) => sum + duration_s, 0);
+}
+
+/** [{ objective, words, meaning, result or null, fault, isPresent, isBeingMade }] in the order in which they are offered. */
+export function waysOf({ selection, figures, planningBeside, refusedBeside, plan }) {
+  return OBJECTIVES.map(({ value, words, meaning }) => {
+    const basis = basisOf({ ...selection, objective: value });
+    const result = figures[basis] ?? null;
+    const fault = refusedBeside[basis] ?? (value === "energy" && isWithoutBattery(plan) ? t("No UAV has a battery.") : "");
+    return { objective: value, words, meaning, result, fault, isPresent: plan?.basis === basis, isBeingMade: planningBeside === basis };
+  });
+}
+
+/** For each column whether a way is as good as the best there, and not all are. */
+export function isBestIn(ways) {
+  const made = ways.map(({ result }) => result);
+  return COLUMNS.map(({ valueOf, least }) => {
+    const values = made.map((result) => (result ? valueOf(result) : null));
+    const known = values.filter((value) => value !== null);
+    const best = Math.min(...known);
+    const areAlike = known.every((value) => value - best < least);
+    return values.map((value) => value !== null && !areAlike && value - best < least);
+  });
+}
+
+export function alternatives(state, actions, canPlan) {
+  const ways = waysOf(state);
+  const best = isBestIn(ways);
+  const row = (way, index) =>
+    h(
+      "tr",
+      { class: way.isPresent ? "present" : null, "aria-current": way.isPresent ? "true" : null },
+      h("th", { scope: "row" }, nameOf(way, actions, canPlan)),
+      way.result
+        ? COLUMNS.map(({ valueOf, textOf }, column) => h("td", { class: best[column][index] ? "best" : null }, said(valueOf(way.result), textOf), best[column][index] && h("span", { class: "unseen" }, ` ${t("(best)")}`)))
+        : h("td", { colspan: COLUMNS.length }, way.fault || (way.isBeingMade ? t("being planned") : t("not planned"))),
+    );
+  const isBusy = ways.some(({ isBeingMade }) => isBeingMade);
+  const canAsk = canPlan && !isBusy && ways.some(({ result, fault }) => !result && !fault);
+  return [
+    h("p", { class: "quiet-text" }, t("One plan of the same targets for each. The best figure of a column is bold.")),
+    h(
+      "div",
+      { class: "ways-place" },
+      h("table", { class: "why-table ways", "aria-busy": String(isBusy) }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("Plan")), COLUMNS.map(({ words }) => h("th", { scope: "col" }, words)))), h("tbody", {}, ways.map(row))),
+    ),
+    isBusy && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.stopAlternatives }, t("Stop"))),
+    canAsk && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.planAlternatives }, t("Plan the others"))),
+  ].filter(Boolean);
+}
+
+const said = (value, textOf) => (value === null ? "—" : textOf(value));
+
+function nameOf({ objective, words, meaning, result, isPresent }, actions, canPlan) {
+  if (isPresent || !result || !canPlan) return h("span", { class: "way", title: meaning }, isPresent && icon("check", "small"), words, isPresent && h("span", { class: "unseen" }, ` ${t("(shown)")}`));
+  return h("button", { type: "button", class: "text-button", title: meaning, onclick: () => actions.setOption("objective", objective) }, words);
+}

@@ -1,0 +1,84 @@
+/** The small panel beside the strips while a route is changed by hand: the chosen waypoint, what is wrong, undo, keep. */
+
+import { h, icon } from "../../dom.js";
+import { t, tn } from "../../text.js";
+import { SHORT_UNIT } from "../../units.js";
+import { changesOf, isFree } from "../hand_route.js";
+
+const MOST_SAID = 4;
+const typed = (metres) => Number((metres / SHORT_UNIT.metres).toFixed(1));
+
+/** Returns { element, focus() }; it follows store.state.hand. */
+export function createByHand(store, actions) {
+  const hand = () => store.state.hand;
+  const said = h("p", { class: "why-sentence", role: "status" });
+  const faults = h("ul", { class: "hand-faults", "aria-label": t("What is wrong") });
+  const which = h("span", { class: "hand-which" });
+  const go = (step) => () => actions.chooseByHand(Math.min(hand().points.length - 1, Math.max(0, (hand().chosen ?? (step > 0 ? -1 : hand().points.length)) + step)));
+  const before = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Waypoint before"), onclick: go(-1) }, icon("arrow-left", "small"));
+  const after = h("button", { type: "button", class: "icon-button tight turned", "aria-label": t("Next waypoint"), onclick: go(1) }, icon("arrow-left", "small"));
+  const number = (id, how, onchange) => h("input", { class: "input", type: "number", step: "any", id, ...how, onchange });
+  const height = number("hand-height", { min: 0 }, () => height.value && height.validity.valid && actions.raiseByHand(hand().chosen, height.valueAsNumber * SHORT_UNIT.metres));
+  const toPlace = () => latitude.value && longitude.value && latitude.validity.valid && longitude.validity.valid && actions.moveByHand(hand().chosen, [longitude.valueAsNumber, latitude.valueAsNumber]);
+  const latitude = number("hand-latitude", { min: -90, max: 90 }, toPlace);
+  const longitude = number("hand-longitude", { min: -180, max: 180 }, toPlace);
+  const field = (label, input, unit) => h("div", { class: "field" }, h("label", { for: input.id }, label), h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)));
+  const put = h("button", { type: "button", class: "button", onclick: () => actions.insertByHand(hand().chosen) }, icon("plus", "small"), t("Put one in after it"));
+  const drop = h("button", { type: "button", class: "button", onclick: () => actions.removeByHand(hand().chosen) }, icon("trash-2", "small"), t("Remove"));
+  const one = h("div", { class: "stack hand-one" }, h("div", { class: "hand-fields" }, field(t("Height above ground"), height, SHORT_UNIT.unit), field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")), h("div", { class: "hand-acts" }, put, drop));
+  const hint = h("p", { class: "quiet-text" }, t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."));
+  const undo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Undo"), title: t("Undo (Ctrl+Z)"), onclick: actions.undoByHand }, icon("undo-2", "small"));
+  const redo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Redo"), title: t("Redo (Ctrl+Shift+Z)"), onclick: actions.redoByHand }, icon("redo-2", "small"));
+  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Keep"));
+  const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Drop the changes"));
+  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, h("div", { class: "hand-acts" }, keep, leave));
+
+  function kindWords(point, plan) {
+    if (point.kind === "start") return t("start");
+    if (point.kind === "end") return t("end");
+    if (point.kind === "target") return plan.targets[point.target]?.label ?? t("Target");
+    return point.isByHand ? t("by hand") : t("as planned");
+  }
+
+  function faultsNow({ legs, faults: told, points }) {
+    const leg = (index) => t("Leg {from} to {to}", { from: index + 1, to: index + 2 });
+    const fromLegs = [...legs].filter(([index, verdict]) => verdict && !verdict.is_clear && !told.legs.has(index)).map(([index, { message }]) => `${leg(index)}: ${message}`);
+    const fromServer = [...[...told.legs].map(([index, words]) => `${leg(Math.min(index, points.length - 2))}: ${words}`), ...[...told.points].map(([index, words]) => `${t("Waypoint {number}", { number: index + 1 })}: ${words}`), ...told.other];
+    return [...fromServer, ...fromLegs];
+  }
+
+  function refresh({ hand: now, plan }) {
+    if (!now) return;
+    const { points, original, chosen, legs } = now;
+    const list = faultsNow(now);
+    const isAsking = [...legs.values()].some((verdict) => verdict === null);
+    const changes = changesOf(points, original);
+    const parts = [changes ? tn(changes, "{count} waypoint is changed.", "{count} waypoints are changed.") : t("Nothing is changed yet.")];
+    if (isAsking) parts.push(t("The changed legs are being checked."));
+    else if (changes && !list.length) parts.push(t("Every changed leg is clear."));
+    said.textContent = parts.join(" ");
+    const rest = list.length - MOST_SAID;
+    faults.hidden = list.length === 0;
+    faults.replaceChildren(...[...list.slice(0, MOST_SAID), ...(rest > 0 ? [tn(rest, "and {count} more", "and {count} more")] : [])].map((words) => h("li", {}, icon("circle-x", "small"), h("span", {}, words))));
+    const point = points[chosen] ?? null;
+    which.textContent = point ? t("{number} of {total}: {kind}", { number: chosen + 1, total: points.length, kind: kindWords(point, plan) }) : tn(points.length, "{count} waypoint", "{count} waypoints");
+    before.disabled = chosen === 0;
+    after.disabled = chosen === points.length - 1;
+    one.hidden = !point;
+    hint.hidden = Boolean(point);
+    undo.disabled = !now.canUndo;
+    redo.disabled = !now.canRedo;
+    keep.setAttribute("aria-busy", String(now.isSaving));
+    keep.disabled = changes === 0;
+    if (!point) return;
+    const free = isFree(point);
+    height.value = typed(point.altitude_agl_m);
+    [longitude.value, latitude.value] = point.position.map((degrees) => Number(degrees.toFixed(6)));
+    latitude.disabled = longitude.disabled = !free;
+    drop.disabled = !free;
+    put.disabled = chosen === points.length - 1;
+  }
+
+  store.listen(["hand"], refresh);
+  return { element };
+}

@@ -1,0 +1,54 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+globalThis.document = { documentElement: { lang: "en", dataset: { timeZone: "Europe/Berlin" } } };
+const { legalTimesOf, legsText, momentAt, shareOf, spanText, stepWithin, ticksOf, wordsOf } = await import("../../static/js/mission/legal_times.js");
+
+const plain = (text) => text.replaceAll("\u00a0", " ");
+const at = (text) => Date.parse(`2026-11-${text}Z`);
+const times = legalTimesOf({
+  from: "2026-11-21T18:02:00Z",
+  to: "2026-11-23T18:02:00Z",
+  windows: [{ from: "2026-11-21T18:02:00Z", to: "2026-11-22T06:00:00Z" }, { from: "2026-11-22T18:00:00Z", to: "2026-11-23T06:00:00Z" }],
+  zones: [{ id: 1, name: "School", blocked: [{ from: "2026-11-22T06:00:00Z", to: "2026-11-22T18:00:00Z" }, { from: "2026-11-23T06:00:00Z", to: "2026-11-23T18:02:00Z" }], legs: [], schedule_in_words: "daily" }],
+});
+
+test("a place on the bar is a moment and back, on full five minutes within it", () => {
+  assert.equal(shareOf(times, at("22T18:02:00")), 0.5);
+  assert.equal(momentAt(times, 0.5), at("22T18:00:00"));
+  assert.equal(momentAt(times, -1), at("21T18:05:00"));
+  assert.equal(momentAt(times, 2), at("23T18:00:00"));
+});
+
+test("a departure taken from a free span stays inside it", () => {
+  assert.equal(stepWithin(times.windows[0], at("22T06:00:00")), at("22T05:55:00"));
+  assert.equal(stepWithin(times.windows[0], at("21T18:00:00")), at("21T18:05:00"));
+  const short = { from_ms: at("22T06:01:00"), to_ms: at("22T06:03:00") };
+  assert.equal(stepWithin(short, at("22T06:00:00")), short.from_ms);
+});
+
+test("ticks stand at every sixth hour of the reader's clock, and midnight names the day", () => {
+  assert.deepEqual(ticksOf(times).slice(0, 3).map(({ at_ms, isDay }) => [new Date(at_ms).toISOString().slice(0, 16), isDay]), [["2026-11-21T23:00", true], ["2026-11-22T05:00", false], ["2026-11-22T11:00", false]]);
+  assert.match(ticksOf(times)[0].words, /Sun/);
+});
+
+test("the sentence says how much is free, and why a departure is not legal and when the next one is", () => {
+  assert.equal(plain(wordsOf(times, null).sentence), "Legal for 23 h 58 min of the next 48 hours.");
+  assert.match(wordsOf(times, null).departure, /^No departure is chosen/);
+  assert.match(wordsOf(times, "2026-11-21T20:00:00Z").departure, /is legal\.$/);
+  const closed = wordsOf(times, "2026-11-22T12:00:00Z").departure;
+  assert.match(closed, /not legal: School\. The next legal one is 22 Nov, 19:00\.$/);
+  assert.match(wordsOf(times, "2026-11-22T06:00:00Z").departure, /not legal/); // a span is open at its end
+});
+
+test("always and never are said as such", () => {
+  const span = { from: "2026-11-21T18:00:00Z", to: "2026-11-23T18:00:00Z" };
+  assert.equal(wordsOf(legalTimesOf({ ...span, windows: [span], zones: [] }), null).sentence, "Legal at any time of the next 48 hours.");
+  assert.equal(wordsOf(legalTimesOf({ ...span, windows: [], zones: [] }), null).sentence, "Legal at no time of the next 48 hours.");
+});
+
+test("spans and legs in words", () => {
+  assert.equal(spanText({ from_ms: at("21T18:30:00"), to_ms: at("21T20:00:00") }), "21 Nov, 19:30 to 21:00");
+  assert.equal(legsText([{ uav: "Heron", leg: 2 }, { uav: "Heron", leg: 4 }, { uav: "Kite", leg: 0 }]), "Heron, legs 3 to 5; Kite, leg 1");
+  assert.equal(legsText([{ uav: "Heron", leg: -1 }]), "Heron, at take-off");
+});

@@ -1,0 +1,152 @@
+"""Plans that heed batteries, wind and airspeed."""
+
+from typing import Any
+
+import pytest
+
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.flight_plan.performance import Performance
+from missions.models import EndAction
+from missions.routing.problem import Objective
+from missions.services import make_plan
+from missions.services.requests import UavRequest
+from tests.missions.worlds import request, uav, world
+
+pytestmark = pytest.mark.django_db
+
+AT_THE_FIRST = (10.0, 55.9999)
+AT_THE_LAST = (10.020, 55.9999)
+
+
+def iris(position: tuple[float, float] = AT_THE_FIRST, *, battery_wh: float = 56.6, speed_mps: float = 8.0, **facts: Any) -> UavRequest:
+    asked = uav(position, performance=Performance(battery_wh=battery_wh, max_airspeed_mps=11.0), **facts)
+    return UavRequest(**(vars(asked) | {"cruise_speed_mps": speed_mps}))
+
+
+def reasons(plan: dict[str, Any]) -> dict[int, str]:
+    return {item["target"]: item["reason"] for item in plan["unassigned"]}
+
+
+def test_the_battery_is_told_at_each_waypoint_and_in_total() -> None:
+    here = world()
+    plan = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))
+    (route,) = plan["routes"]
+    assert len(route["used_wh"]) == len(route["battery_left_percent"]) == len(route["waypoints"])
+    assert route["used_wh"] == sorted(route["used_wh"])
+    assert route["battery_left_percent"][-1] > route["battery_percent"] > 20.0
+    assert plan["total_energy_wh"] == route["energy_wh"] == pytest.approx(56.6 * (1 - route["battery_percent"] / 100), abs=0.05)
+
+
+def test_a_target_that_no_battery_reaches_is_refused_with_the_watt_hours_that_lack() -> None:
+    here = world()
+    enough = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
+    small = iris(battery_wh=enough / 0.8 - 1.0, end_action=EndAction.RETURN)
+    plan = make_plan(request=request(here.towers[5], uavs=(small,)))
+    assert reasons(plan) == {0: "beyond_energy"}
+    assert "Wh" in plan["unassigned"][0]["message"]
+    just = iris(battery_wh=enough / 0.8 + 0.05, end_action=EndAction.RETURN)
+    assert reasons(make_plan(request=request(here.towers[5], uavs=(just,)))) == {}
+
+
+def test_no_route_takes_more_than_the_usable_battery() -> None:
+    here = world()
+    for battery_wh in (4.0, 6.0, 8.0, 12.0):
+        plan = make_plan(
+            request=request(
+                *here.towers, here.line, uavs=(iris(battery_wh=battery_wh), iris(AT_THE_LAST, name="Gull", battery_wh=battery_wh))
+            )
+        )
+        assert all(route["energy_wh"] is None or route["energy_wh"] <= 0.8 * battery_wh for route in plan["routes"])
+        assert all(route["battery_percent"] is None or route["battery_percent"] >= 20.0 for route in plan["routes"])
+
+
+def test_head_wind_makes_the_way_there_longer_than_the_way_back() -> None:
+    here = world()
+    west = Conditions((WindLayer(60.0, 8.0, 90.0),))  # from the east: the way to the last tower is against it
+    plan = make_plan(request=request(here.towers[5], uavs=(iris(speed_mps=8.0, end_action=EndAction.RETURN),), conditions=west))
+    (route,) = plan["routes"]
+    target = next(place for place, waypoint in enumerate(route["waypoints"]) if waypoint["kind"] == "target")
+    out_s = route["arrival_s"][target] - route["arrival_s"][0]
+    back_s = route["arrival_s"][-1] - route["arrival_s"][target] - 10.0
+    assert out_s > 2.0 * back_s
+    assert plan["conditions"]["wind"] == [{"altitude_agl_m": 60.0, "speed_mps": 8.0, "from_deg": 90.0}]
+
+
+def test_a_wind_stronger_than_the_uav_can_fly_against_bars_the_way() -> None:
+    here = world()
+    storm = Conditions((WindLayer(60.0, 15.0, 90.0),))
+    plan = make_plan(request=request(here.towers[5], uavs=(iris(),), conditions=storm))
+    assert set(reasons(plan)) == {0}
+
+
+def test_the_objectives_each_find_no_worse_a_plan_in_what_they_count() -> None:
+    here = world()
+    uavs = (iris(end_action=EndAction.RETURN), iris(AT_THE_LAST, name="Gull", speed_mps=5.0, end_action=EndAction.RETURN))
+    wind = Conditions((WindLayer(60.0, 4.0, 200.0),))
+    plans = {
+        objective: make_plan(request=request(*here.towers, here.bridge, uavs=uavs, objective=objective, conditions=wind))
+        for objective in Objective
+    }
+    counted = {
+        Objective.TOTAL: lambda plan: plan["total_length_m"],
+        Objective.MAKESPAN: lambda plan: max(route["duration_s"] for route in plan["routes"]),
+        Objective.TIME: lambda plan: plan["total_duration_s"],
+        Objective.ENERGY: lambda plan: plan["total_energy_wh"],
+    }
+    for objective, value in counted.items():
+        assert plans[objective]["unassigned"] == []
+        assert value(plans[objective]) <= min(value(plan) for plan in plans.values()) * 1.001 + 0.5
+    assert plans[Objective.ENERGY]["lower_bound_wh"] <= plans[Objective.ENERGY]["total_energy_wh"]
+
+
+def test_calm_air_and_no_battery_plan_as_ever() -> None:
+    here = world()
+    plan = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN))
+    told = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN, conditions=Conditions((WindLayer(60.0, 0.0, 0.0),))))
+    assert plan["routes"][0]["targets"] == told["routes"][0]["targets"]
+
+
+def test_what_does_not_fit_in_one_flight_is_flown_in_several() -> None:
+    here = world()
+    home = {"end_action": EndAction.RETURN, "speed_mps": 8.0}
+    one = make_plan(request=request(here.towers[5], uavs=(iris(**home),)))["total_energy_wh"]
+    battery_wh = 1.15 * one / 0.8
+    both = (here.towers[5], here.bridge, here.towers[0])
+    once = make_plan(request=request(*both, uavs=(iris(battery_wh=battery_wh, **home),)))
+    assert "beyond_energy" in reasons(once).values()
+    plan = make_plan(request=request(*both, uavs=(iris(battery_wh=battery_wh, sorties=3, **home),)))
+    assert plan["unassigned"] == []
+    (route,) = plan["routes"]
+    kinds = [waypoint["kind"] for waypoint in route["waypoints"]]
+    stop = kinds.index("base")
+    assert kinds[stop - 1 : stop + 2] == ["end", "base", "start"]
+    assert route["waypoints"][stop]["altitude_agl_m"] == 0.0
+    assert route["arrival_s"] == sorted(route["arrival_s"])
+    assert route["arrival_s"][stop + 1] - route["arrival_s"][stop] > 600.0
+    assert max(route["used_wh"]) <= 0.8 * battery_wh
+    assert route["used_wh"][stop + 1] < route["used_wh"][stop]
+    assert route["energy_wh"] > 0.8 * battery_wh
+    assert min(route["battery_left_percent"]) >= 20.0
+    assert sorted(route["targets"]) == [0, 1, 2]
+
+
+def test_a_uav_that_charges_at_towers_flies_farther_than_its_battery() -> None:
+    here = world()
+    home = {"end_action": EndAction.RETURN}
+    whole = make_plan(request=request(here.towers[5], uavs=(iris(**home),)))
+    small = iris(battery_wh=0.6 * whole["total_energy_wh"] / 0.8, **home)
+    assert reasons(make_plan(request=request(here.towers[5], uavs=(small,)))) == {0: "beyond_energy"}
+    plan = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=100.0))
+    (route,) = plan["routes"]
+    assert plan["unassigned"] == []
+    (stop,) = route["charging"]
+    assert route["waypoints"][stop["waypoint"]]["asset"] in {tower.pk for tower in here.towers}
+    assert route["duration_s"] > whole["routes"][0]["duration_s"] + stop["charging_s"]
+    assert min(route["battery_left_percent"]) >= 19.9
+
+
+def test_without_towers_on_the_way_charging_helps_nobody() -> None:
+    here = world()
+    small = iris((10.001, 55.95), battery_wh=4.0, end_action=EndAction.RETURN)
+    plan = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=100.0))
+    assert reasons(plan) == {0: "beyond_energy"}
