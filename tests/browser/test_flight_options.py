@@ -38,7 +38,7 @@ def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_wha
     page = visitor.signs_in("opal")
     opens_mission(page, "In the wind", targets=4)
     expect(page.get_by_text("Any time: the plan keeps clear of all zones at all times.")).to_be_visible()
-    page.get_by_role("button", name="Now").click()
+    page.get_by_role("button", name="Now", exact=True).click()
     expect(departure(page)).not_to_have_value("")
     page.get_by_role("button", name="Undo").first.click()
     expect(departure(page)).to_have_value("")

@@ -23,6 +23,8 @@ test("a proof is said in one word, also with something locked", () => {
   assert.equal(qualityOf(result({ is_proven: true, gap: 0 })).words, "Proven shortest.");
   assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "makespan" })).words, "Proven soonest.");
   assert.equal(qualityOf(result({ is_proven: true, gap: 0, wish: {} })).words, "Proven shortest with what is locked.");
+  assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "time" })).words, "Proven least flying time.");
+  assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "energy", wish: {} })).words, "Proven least energy with what is locked.");
 });
 
 test("the gap is what the plan is above the bound, in the unit of the objective", () => {
@@ -30,6 +32,11 @@ test("the gap is what the plan is above the bound, in the unit of the objective"
   assert.equal(plain(quality.words), "At most 25.0 % above what is possible.");
   assert.equal(plain(quality.detail), "No plan can fly less than 50.0 km.");
   assert.equal(plain(qualityOf(result({ objective: "makespan", lower_bound_m: null, lower_bound_s: 3000 })).detail), "No plan can be done in less than 50 min.");
+});
+
+test("a bound has the unit of what the plan is best at", () => {
+  assert.equal(plain(qualityOf(result({ objective: "time", lower_bound_m: null, lower_bound_s: 3000 })).detail), "No plan can be in the air for less than 50 min.");
+  assert.equal(plain(qualityOf(result({ objective: "energy", lower_bound_m: null, lower_bound_wh: 812.4 })).detail), "No plan can use less than 812 Wh.");
 });
 
 test("nothing is said of a plan whose bound is not known, or that nobody flies", () => {

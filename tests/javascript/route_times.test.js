@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { arrivalsOf, batteryOf, delayText, landing_s, separationOf, visitsOf } from "../../static/js/mission/route_times.js";
+import { flightOf, readingAt } from "../../static/js/mission/profile.js";
+import { arrivalsOf, batteryOf, delayText, landing_s, separationOf, staysOf, staysText, visitsOf } from "../../static/js/mission/route_times.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const heron = {
@@ -46,4 +47,24 @@ test("a conflict that nothing solves is a fault", () => {
   const { isFault, words } = separationOf({ routes: [heron, kite], separation: { ...apart, unresolved } });
   assert.equal(isFault, true);
   assert.match(words, /Heron and Kite: one hovers in the way/);
+});
+
+const at = (lon, kind, more = {}) => ({ position: [lon, 40], kind, target: null, asset: 1, altitude_agl_m: 60, altitude_amsl_m: 260, altitude_relative_m: 60, ...more });
+const twice = {
+  uav: "Tern", geometry: {}, length_m: 4000, waypoints: [at(10, "start"), at(10.01, "pass"), at(10.02, "base", { task: { kind: "hold", hold_s: 600 } }), at(10.03, "pass"), at(10.04, "end")],
+  arrival_s: [0, 100, 500, 1200, 1300], battery_left_percent: [100, 50, 60, 70, 40], charging: [{ waypoint: 1, charging_s: 280, charged_wh: 20, stopped_s: 300 }],
+};
+
+test("stops at a base and on a tower are told in the order in which they come", () => {
+  assert.deepEqual(staysOf(twice).map(({ index, kind, stay_s }) => [index, kind, stay_s]), [[1, "charging", 300], [2, "base", 600]]);
+  assert.equal(staysText(twice), "in 2 flights, charges 1 time");
+  assert.equal(staysText(heron), "");
+});
+
+test("a battery is fuller after charging and full after a base, and time has gone by", () => {
+  const flight = flightOf(twice, null, 100);
+  const [charged, full] = [readingAt(flight, 1000.001), readingAt(flight, 2000.001)];
+  assert.deepEqual([Math.round(charged.battery_percent), Math.round(charged.arrival_s)], [70, 400]); // 50 % and 20 of 100 Wh
+  assert.deepEqual([Math.round(full.battery_percent), Math.round(full.arrival_s)], [100, 1100]);
+  assert.deepEqual(flight.waits.map(({ kind, at_m }) => [kind, Math.round(at_m)]), [["charging", 1000], ["base", 2000]]);
 });

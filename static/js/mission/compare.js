@@ -50,7 +50,8 @@ export function isWorse(plan, than) {
 function meritOf({ result, targets }) {
   const missed = PRIORITIES.map((priority) => result.unassigned.filter(({ target }) => wishesOf(targets[target] ?? {}).priority === priority).length);
   const [total, longest] = [result.total_length_m, Math.max(0, ...result.routes.map((route) => route.duration_s))];
-  return [...missed, ...(result.objective === "total" ? [total, longest] : [longest, total])];
+  const first = { total, time: result.total_duration_s ?? longest, energy: result.total_energy_wh ?? total }[result.objective] ?? longest;
+  return [...missed, first, ...(result.objective === "total" ? [longest] : [total])];
 }
 
 /** Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may have moved. */

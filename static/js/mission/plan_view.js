@@ -11,6 +11,7 @@ const REASONS = {
   no_path: t("No way along the network leads there."),
   inside_zone: t("It stands inside a no-fly zone."),
   beyond_range: t("It is out of range."),
+  beyond_energy: t("No battery lasts for the way there and back."),
   too_far_from_network: t("It is too far from the network."),
   above_height_limit: t("It is higher than may be flown."),
   asset_gone: t("It is no longer in the data."),
@@ -96,38 +97,52 @@ const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
 
-const LEFT_TO_THE_SEARCH = ["beyond_range", "most_targets"]; // others no plan reaches
+const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
 
 /** How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
  *
  * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
  * out, a figure would be taken for more than it is.
  */
-export function qualityOf({ objective, lower_bound_m, lower_bound_s, gap, is_proven, wish, routes, unassigned = [] }) {
-  const isTotal = objective === "total";
-  const bound = isTotal ? lower_bound_m : lower_bound_s;
+export function qualityOf({ objective, lower_bound_m, lower_bound_s, lower_bound_wh, gap, is_proven, wish, routes, unassigned = [] }) {
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
   const above = gap / (1 - gap); // `gap` is a share of this plan
-  if (is_proven) return { isProven: true, words: provenWords(isTotal, Boolean(wish), unassigned.length > 0), detail: "" };
+  if (is_proven) return { isProven: true, words: provenWords(objective, Boolean(wish), unassigned.length > 0), detail: "" };
   if (unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
-  const figure = bound === null || bound === undefined ? "" : isTotal ? t("No plan can fly less than {length}.", { length: lengthText(bound) }) : t("No plan can be done in less than {time}.", { time: durationText(bound) });
+  const bound = { total: lower_bound_m, energy: lower_bound_wh }[objective] ?? (["makespan", "time"].includes(objective) ? lower_bound_s : null);
   const share = shareText(above);
   const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
-  return { isProven: false, words, detail: figure };
+  return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
 }
 
-function provenWords(isTotal, isLocked, leavesOut) {
-  if (leavesOut && isLocked) return isTotal ? t("Proven shortest with what is locked, of plans that reach as many targets.") : t("Proven soonest with what is locked, of plans that reach as many targets.");
-  if (leavesOut) return isTotal ? t("Proven shortest of plans that reach as many targets.") : t("Proven soonest of plans that reach as many targets.");
-  if (isLocked) return isTotal ? t("Proven shortest with what is locked.") : t("Proven soonest with what is locked.");
-  return isTotal ? t("Proven shortest.") : t("Proven soonest.");
+function boundWords(objective, bound) {
+  if (objective === "total") return t("No plan can fly less than {length}.", { length: lengthText(bound) });
+  if (objective === "energy") return t("No plan can use less than {energy}.", { energy: energyText(bound) });
+  if (objective === "time") return t("No plan can be in the air for less than {time}.", { time: durationText(bound) });
+  return t("No plan can be done in less than {time}.", { time: durationText(bound) });
 }
+
+/** By objective: as it is, with locks, where targets are left out, with both. */
+const PROVEN = {
+  total: [t("Proven shortest."), t("Proven shortest with what is locked."), t("Proven shortest of plans that reach as many targets."), t("Proven shortest with what is locked, of plans that reach as many targets.")],
+  makespan: [t("Proven soonest."), t("Proven soonest with what is locked."), t("Proven soonest of plans that reach as many targets."), t("Proven soonest with what is locked, of plans that reach as many targets.")],
+  time: [
+    t("Proven least flying time."), t("Proven least flying time with what is locked."), t("Proven least flying time of plans that reach as many targets."),
+    t("Proven least flying time with what is locked, of plans that reach as many targets."),
+  ],
+  energy: [
+    t("Proven least energy."), t("Proven least energy with what is locked."), t("Proven least energy of plans that reach as many targets."),
+    t("Proven least energy with what is locked, of plans that reach as many targets."),
+  ],
+};
+
+const provenWords = (objective, isLocked, leavesOut) => PROVEN[objective][(isLocked ? 1 : 0) + (leavesOut ? 2 : 0)];
 
 /** What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked. */
 export function wishWordsOf({ objective, wish }) {
   if (!wish) return "";
-  const isTotal = objective === "total";
+  const isTotal = objective !== "makespan"; // what it costs in time in the air or in energy is not told: its metres are
   const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
   const leftOut = wish.left_out > 0 ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.") : "";
   if (cost === null || cost === undefined) return leftOut || t("What your wish costs is not known.");

@@ -13,6 +13,8 @@ const SENTENCES = [
   [/^(.+) has as many targets as it may have \((\d+)\)\.$/, (name, count) => t("{name} has as many targets as it may have ({count}).", { name, count })],
   [/^(.+) and (.+) have as many targets as they may have, and no other UAV has the range for it\.$/, (names, last) => t("{names} and {last} have as many targets as they may have, and no other UAV has the range for it.", { names, last })],
   [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
+  [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed, missing })],
+  [/^Over these hills the battery of (.+) does not last for it\.$/, (name) => t("Over these hills the battery of {name} does not last for it.", { name })],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 
