@@ -45,8 +45,8 @@ class CannotCharge(ValueError):
         self.missing_wh = missing_wh
 
 
-class ChargerTooWeak(ValueError):
-    """The charger gives no more than the UAV takes while it stands."""
+class ChargerTooWeak(CannotCharge):
+    """The charger gives no more than the UAV takes while it stands: what the route takes beyond the battery is missing."""
 
 
 def places_over(points: RoutePoints, assets: Collection[int]) -> list[int]:
@@ -67,14 +67,14 @@ def charging_stops(
     """As few stops as can be, and at each as little as is needed; none where the battery lasts.
 
     clock is the route's timing without stops; towers are the places of waypoints over towers, in order. A UAV without a battery of known
-    energy never has to stop. Raises CannotCharge, or ChargerTooWeak if it would have to charge.
+    energy never has to stop. Raises CannotCharge, as ChargerTooWeak where the charger itself is why.
     """
     battery_wh, usable_wh = performance.battery_wh, performance.usable_wh
     if battery_wh is None or usable_wh is None or clock.used_wh is None or clock.total_wh is None or clock.total_wh <= usable_wh:
         return ()
     charges_w = charging_w - performance.avionics_w
     if charges_w <= 0.0:
-        raise ChargerTooWeak
+        raise ChargerTooWeak(-1, len(waypoints), clock.total_wh - usable_wh)
     places = np.array(towers, dtype=np.int64)
     down, up = _way_to_towers(waypoints, places, performance, conditions, rules)
     chosen = _fewest(clock.used_wh[places], clock.total_wh, down[:, 1], up[:, 1], usable_wh, places, len(waypoints))

@@ -86,8 +86,9 @@ def test_without_a_tower_the_way_to_the_end_is_too_far() -> None:
 
 
 def test_a_charger_weaker_than_what_stands_by_it_is_refused() -> None:
-    with pytest.raises(ChargerTooWeak):
+    with pytest.raises(ChargerTooWeak) as raised:
         stops_of(line(15), list(range(15)), charging_w=8.0)
+    assert raised.value.missing_wh == pytest.approx((clock_of(line(15)).total_wh or 0) - 40)
 
 
 def test_a_uav_whose_battery_is_not_known_never_stops() -> None:
