@@ -29,10 +29,11 @@ OUTLINE_GAP_M = 0.05  # of an outline from the zone as ZoneIndex widens it
 CORNER_GAP_M = 0.25  # of a corner from its outline
 CORNER_EXCESS = 1.007  # of an outline's clearance over that of ZoneIndex, whose round corners excel by 1.005
 MITRE = 2.0  # how many clearances a corner may stand out; sharper ones are cut off there
-MOST_CORNERS = 32  # of one outline: rounder ones are drawn coarser, always on the outer side
-COARSER = (0.002, 0.005, 0.01, 0.02, 0.05)  # of the outline's breadth
-MOST_CORNERS_OF_ALL = 320  # of all outlines of one errand
+MOST_CORNERS = 64  # of one outline: rounder ones are drawn coarser, always on the outer side
+COARSER = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05)  # of the outline's breadth
+MOST_CORNERS_OF_ALL = 480  # of all outlines of one errand
 MOST_ROUNDS = 12
+REACH = 0.52  # of the longest way; more than half of it for what a plane does to metres
 OUTSIDE = -1  # in place of an outline's number
 
 _Leg = tuple[tuple[float, ...], tuple[float, ...]]  # positions of both ends, the lesser first
@@ -76,11 +77,17 @@ class _Outlines:
         self._drawn: dict[tuple[int, float], _Outline] = {}
         self._one_thread = Lock()
 
-    def of(self, part: int, clearance_m: float) -> _Outline:
+    def of(self, part: int, clearance_m: float, reach: Polygon) -> list[_Outline]:
+        """Of the whole part; of one with many corners, what lies in reach, so that it is drawn no coarser than it has to be."""
+        whole = self._parts[part]
+        scale = plane_scale(shapely.bounds(whole)[None])[0]  # in which ZoneIndex widens it
+        if shapely.get_num_coordinates(whole) > MOST_CORNERS and not reach.contains(shapely.box(*whole.bounds)):
+            pieces = shapely.get_parts(shapely.intersection(Polygon(whole.exterior), reach))
+            return [_outline(piece, clearance_m, scale) for piece in pieces if isinstance(piece, Polygon) and piece.area > 0]
         with self._one_thread:
             if (part, clearance_m) not in self._drawn:
-                self._drawn[part, clearance_m] = _outline(self._parts[part], clearance_m)
-            return self._drawn[part, clearance_m]
+                self._drawn[part, clearance_m] = _outline(whole, clearance_m, scale)
+            return [self._drawn[part, clearance_m]]
 
 
 _outlines_of: WeakKeyDictionary[ZoneIndex, _Outlines] = WeakKeyDictionary()
@@ -126,7 +133,7 @@ class _Task:
         self.high_m = np.inf if errand.high_m is None else errand.high_m
         middle = errand.place.mean(axis=0) if len(errand.place) else np.zeros(2)
         self._scale = np.array([METRES_PER_DEGREE_LON * np.cos(np.radians(middle[1])), METRES_PER_DEGREE_LAT])
-        self._parts: dict[int, _Outline] = {}
+        self._parts: dict[int, list[_Outline]] = {}
         self._barred: set[_Leg] = set()
         self._clear: set[_Leg] = set()
         self._point = np.asarray(errand.place, dtype=np.float64)
@@ -164,11 +171,17 @@ class _Task:
                 self._barred.add(self._tried[leg])
                 self._doubted.update(place for place in range(places) if tuple(self._point[place].tolist()) in self._tried[leg])
         for one in sorted(set(part.tolist()) - known):
-            self._parts[one] = outlines.of(one, clearance_m)
+            self._parts[one] = outlines.of(one, clearance_m, self._reach())
         self._search()
 
+    def _reach(self) -> Polygon:
+        """A box that no way leaves: whoever strays farther than half the longest way from both its ends cannot be back in time."""
+        low, high = self.errand.place.min(axis=0), self.errand.place.max(axis=0)
+        give = REACH * self.longest_m / self._scale
+        return Polygon(shapely.box(*(low - give), *(high + give)))
+
     def _search(self) -> None:
-        outlines = list(self._parts.values())
+        outlines = [outline for pieces in self._parts.values() for outline in pieces]
         places = len(self.errand.place)
         corner = np.concatenate([outline.corner for outline in outlines])
         owner = np.repeat(np.arange(len(outlines)), [len(outline.corner) for outline in outlines])
@@ -232,9 +245,8 @@ def _measured(found: list[list[WayRound | None]], errands: Sequence[Errand], lon
     ]  # fmt: skip
 
 
-def _outline(part: Polygon, clearance_m: float) -> _Outline:
-    """Without holes: what lies in one cannot get out."""
-    scale = plane_scale(shapely.bounds(part)[None])[0]
+def _outline(part: Polygon, clearance_m: float, scale: FloatArray) -> _Outline:
+    """In metres of the scale, (2,) in a degree of longitude and latitude. Without holes: what lies in one cannot get out."""
     in_metres = shapely.transform(Polygon(part.exterior), lambda points: points * scale)
     wide = _widened(in_metres, clearance_m * CORNER_EXCESS + OUTLINE_GAP_M)
     breadth_m = max(wide.bounds[2] - wide.bounds[0], wide.bounds[3] - wide.bounds[1])

@@ -132,6 +132,17 @@ def test_a_place_nearer_to_a_round_zone_than_its_coarse_outline():
     assert found.length_m == pytest.approx(np.pi / 2 * 2_006.0, rel=0.02)
 
 
+def test_a_small_bay_of_a_vast_zone_is_gone_round_as_closely_as_a_small_zone():
+    """A wavy coast of 400 km in 1,601 corners, waves of 1 km every kilometre: from bay to bay over the crest, 500 m north."""
+    coast = [(250.0 * number - 200_000.0, -500.0 * np.cos(np.pi * number / 2)) for number in range(1_601)]
+    vast = zone(*coast, (200_000.0, -90_000.0), (-200_000.0, -90_000.0))
+    zones, start, end = index(vast), (0.0, 0.0), (1_000.0, 0.0)
+    found = ways_round(zones, [errand(start, end)], CLEARANCE_M, LONGEST_M)[0][0]
+    line = np.array([lonlat(start), *found.bend.tolist(), lonlat(end)])
+    assert not zones.meets(line[:-1], line[1:], CLEARANCE_M).any()
+    assert found.length_m == pytest.approx(2 * np.hypot(500.0, 505.0), abs=60.0)
+
+
 def test_a_zone_across_the_seam_is_not_gone_round():
     zones = index(shapely.box(179.9, -0.1, 180.0, 0.1), shapely.box(-180.0, -0.1, -179.9, 0.1))
     task = Errand(np.array([(179.85, 0.0), (-179.85, 0.0)]), np.array([(0, 1)]))
