@@ -12,10 +12,10 @@ from django.conf import settings
 from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Q, Value
 
 from missions.flight_plan.separation import TimedRoute
-from missions.models import EndAction, Mission, MissionState, Route, Waypoint
+from missions.models import EndAction, Mission, MissionState, Route, Waypoint, WaypointKind
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
-COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task")
+COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task", "kind")
 _SECOND = Value(timedelta(seconds=1))
 _FLOWN = ExpressionWrapper((F("departs_s") + F("duration_s")) * _SECOND, output_field=DurationField())
 _ENDS_AT = ExpressionWrapper(F("mission__departs_at") + _FLOWN, output_field=DateTimeField())
@@ -111,10 +111,10 @@ def _timed_route(
     route: Route, points: Sequence[tuple[Any, ...]], departure_s: float, *, lands_s: float | None, mission: str | None = None
 ) -> TimedRoute | None:
     """departure_s is the mission's; lands_s when the route is over, None for never. None where the time of a waypoint is not known."""
-    if not points or any(arrival_s is None for _, _, _, arrival_s, _ in points):
+    if not points or any(point[3] is None for point in points):
         return None
     amsl_m, agl_m = (np.array([point[column] for point in points], dtype=np.float64) for column in (1, 2))
-    hold_s = np.array([(task or {}).get("hold_s", 0.0) for *_, task in points], dtype=np.float64)
+    hold_s = np.array([(point[4] or {}).get("hold_s", 0.0) for point in points], dtype=np.float64)
     for stop in route.charging:
         hold_s[stop["waypoint"]] += stop["stopped_s"]
     held_s = np.cumsum(hold_s) - hold_s
@@ -134,4 +134,5 @@ def _timed_route(
         lands_s=None if lands_s is None else max(lands_s, float(arrival_s[-1] + hold_s[-1])),
         landing_m=float(ground_m[-1] if _lands(route) else amsl_m[-1]),
         mission=mission,
+        on_ground=np.array([point[5] == WaypointKind.BASE for point in points], dtype=bool),
     )

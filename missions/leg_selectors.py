@@ -10,6 +10,8 @@ from django.utils.translation import gettext as _
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m, has_terrain
 from missions.flight_plan.clearance import FlownRoute
+from missions.flight_plan.heights import with_heights
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
 from missions.zone_selectors import zones_met
 
 
@@ -26,16 +28,17 @@ def leg_faults(start: LegEnd, end: LegEnd, departs_at: datetime | None) -> dict[
     flight = settings.FLIGHT_RULES
     if max(start.agl_m, end.agl_m) > flight.max_agl_m:
         return _fault(None, _("It is above the limit of %(limit)s m.") % {"limit": f"{flight.max_agl_m:.0f}"})
-    position = np.array([start.position, end.position])
-    agl_m = np.array([start.agl_m, end.agl_m])
+    points = RoutePoints.of([RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (start, end)])
+    flown, _is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)  # over a hill it is several legs
+    position = flown.points.position
     arrival_s = departs_s = ends_s = None
     if departs_at is not None and start.arrival_s is not None and end.arrival_s is not None:
         departs_s, ends_s = (departs_at.timestamp() + moment_s for moment_s in sorted((start.arrival_s, end.arrival_s)))
-        arrival_s = np.array([departs_s, ends_s])
-    amsl_m = ground_heights_m(position) + agl_m if has_terrain() else None
-    leg = FlownRoute(position, agl_m, amsl_m, arrival_s, departs_s, ends_s)
+        way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(position, axis=0).T))])
+        arrival_s = departs_s + (ends_s - departs_s) * (way / way[-1] if way[-1] > 0 else np.linspace(0.0, 1.0, len(way)))
+    leg = FlownRoute(position, flown.points.agl_m, flown.amsl_m, arrival_s, departs_s, ends_s)
     for meeting in zones_met([leg])[0]:
-        if meeting.breach.leg == 0:
+        if 0 <= meeting.breach.leg < len(position) - 1:
             return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
     return {"is_clear": True, "zone": None, "message": ""}
 

@@ -16,6 +16,7 @@ DAYS = ("MON", "TUE", "WED", "THU", "FRI", "SAT", "SUN")
 EVENTS = ("BMCT", "SR", "SS", "EECT")  # morning civil twilight, sunrise, sunset, end of evening civil twilight
 MAX_PERIODS = 200
 MAX_ENTRIES = 100
+MAX_ENTRIES_IN_ALL = 1_000
 _TIME = re.compile(r"(\d{2}):(\d{2})(?::(\d{2})(?:\.\d{1,9})?)?(Z|[+-]\d{2}:\d{2})?")
 _MINUTES_A_DAY = 24 * 60
 
@@ -31,6 +32,9 @@ def checked_schedule(value: Any, place: str) -> Schedule | None:
     if len(value) > MAX_PERIODS:
         raise GeometryFault(place, f"there are {len(value)} periods; at most {MAX_PERIODS} are taken")
     periods = [_period(period, f"{place}[{index}]") for index, period in enumerate(value)]
+    entries = sum(len(period["schedule"]) for period in periods)
+    if entries > MAX_ENTRIES_IN_ALL:
+        raise GeometryFault(place, f"there are {entries} entries in all periods; at most {MAX_ENTRIES_IN_ALL} are taken")
     always: dict[str, Any] = {"startDateTime": None, "endDateTime": None, "schedule": []}
     return None if always in periods else periods
 

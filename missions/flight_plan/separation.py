@@ -36,6 +36,7 @@ class TimedRoute:
     take_off_s   when it leaves the ground, take_off_m high, under its first waypoint; before that it is not in the air
     lands_s      when it is on the ground again, landing_m high, under its last waypoint; None where it hovers there for ever
     uav          its name, and `mission` whose it is, where that is another than the one in hand
+    on_ground    (n,) where it stands on the ground for its hold, between two flights; None for nowhere. There it is in nobody's way.
     """
 
     uav: str
@@ -48,6 +49,7 @@ class TimedRoute:
     lands_s: float | None = None
     landing_m: float = math.nan
     mission: str | None = None
+    on_ground: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         count = len(self.position)
@@ -98,6 +100,8 @@ class TimedRoute:
         order = np.concatenate([[-1.0], waypoint, waypoint[:-1] + 0.5, [count]])
         in_order = np.argsort(order, kind="stable")
         lasts = pieces[:, 7] > pieces[:, 3]
+        if self.on_ground is not None:
+            lasts[1 : 1 + count] &= ~self.on_ground
         in_order = in_order[lasts[in_order]]
         leg = np.clip(np.floor(order[in_order]), 0, max(count - 2, 0)).astype(np.int64)
         return np.ascontiguousarray(pieces[in_order]), leg
@@ -113,7 +117,8 @@ def timed_route(
     height_m = np.full(len(waypoints), np.nan) if waypoints.amsl_m is None else waypoints.amsl_m
     ground_m = height_m - waypoints.points.agl_m
     ends_m = (float(ground_m[0]), float(ground_m[-1])) if len(waypoints) else (math.nan, math.nan)
-    return TimedRoute(uav, waypoints.points.position, height_m, arrival_s, hold_s, take_off_s, ends_m[0], lands_s, ends_m[1], mission)
+    position, on_ground = waypoints.points.position, waypoints.points.kind == BASE
+    return TimedRoute(uav, position, height_m, arrival_s, hold_s, take_off_s, ends_m[0], lands_s, ends_m[1], mission, on_ground)
 
 
 def raised_agl_m(points: RoutePoints, layer_m: float, *, lands: bool, rules: FlightRules) -> FloatArray | None:

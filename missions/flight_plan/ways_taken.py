@@ -21,9 +21,9 @@ from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.route_index import route_index
 from inspection.graph.ways import DIRECT, Travel
-from missions.flight_plan.conditions import Conditions, air_density
+from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
 from missions.flight_plan.heights import pass_agl_m
-from missions.flight_plan.leg_taken import J_PER_WH, Speeds, leg_taken, speeds, table_of
+from missions.flight_plan.leg_taken import J_PER_WH, Speeds, is_closed, leg_taken, speeds, table_of, taken_in_wind
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
 
@@ -162,18 +162,25 @@ def _steps_taken(
     taken = np.zeros((len(place_node), 2, 2))
     is_known = len(ground_m) > 0
     density = air_density(0.0, temperature_c)
+    wind_agl_m = -1.0
+    east_mps = north_mps = 0.0
     for chain_number in range(len(chain_first) - 1):
         for place in range(chain_first[chain_number] + 1, chain_first[chain_number + 1]):
             before, node = place_node[place - 1], place_node[place]
             rise_m = passed_m[node] - passed_m[before]
             if is_known:
                 rise_m, density = _rise_and_density(passed_m[before], ground_m[before], passed_m[node], ground_m[node], temperature_c)
+            middle_m, is_level = 0.5 * (passed_m[before] + passed_m[node]), passed_m[before] == passed_m[node]
+            if middle_m != wind_agl_m:
+                wind_agl_m = middle_m
+                east_mps, north_mps = wind_in_table(wind, middle_m)
             for way in range(2):
                 sign = 1.0 - 2.0 * way
-                seconds, joules = leg_taken(
-                    length_m[place], sign * east[place], sign * north[place], passed_m[before], passed_m[node], sign * rise_m,
-                    wind, density, own, table,
-                )  # fmt: skip
+                to_east, to_north = sign * east[place], sign * north[place]
+                # As leg_taken: most steps are level, and in the wind of the step before.
+                seconds, joules = taken_in_wind(length_m[place], to_east, to_north, sign * rise_m, east_mps, north_mps, density, own, table)
+                if not is_level and is_closed(True, to_east, to_north, passed_m[before], passed_m[node], wind, own):
+                    seconds = joules = np.inf
                 taken[place, way, 0], taken[place, way, 1] = min(seconds, NO_HEADWAY), min(joules, NO_HEADWAY)
     return taken
 

@@ -16,6 +16,7 @@ from missions.models import EndAction
 from missions.zone_selectors import LegalWindows
 
 MOST_WAYPOINTS = 20_000
+MOST_ROUTES = 50
 
 
 class TimedWaypointSerializer(serializers.Serializer):
@@ -70,7 +71,9 @@ class TimedRouteField(serializers.Field):
 
 
 class LegalWindowsInputSerializer(serializers.Serializer):
-    routes = serializers.ListField(child=TimedRouteField(), allow_empty=False, help_text="of a plan, as it was answered")
+    routes = serializers.ListField(
+        child=TimedRouteField(), allow_empty=False, max_length=MOST_ROUTES, help_text="of a plan, as it was answered"
+    )
 
     def get_fields(self) -> dict[str, serializers.Field]:
         begin = serializers.DateTimeField(required=False, allow_null=True, help_text="the first departure that is asked about; else now")

@@ -15,7 +15,7 @@ from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task
 from missions.serializers.limits import FARTHEST_RANGE_M, FASTEST_MPS, LARGEST_KEY, LONGEST_UAV_NAME
 from missions.services import PlanRequest, TargetRequest, UavRequest
 
-_OBJECTIVES = {objective.value: objective for objective in Objective}
+_OBJECTIVES = {objective.value: objective for objective in Objective if objective is not Objective.ENERGY}  # which needs batteries
 _END_ACTIONS = {action.value: action for action in EndAction if action is not EndAction.BASE}  # which needs the organisation's bases
 _TASK_KINDS = {kind.value: kind for kind in TaskKind}
 _BODY = frozenset({"uavs", "targets", "objective", "return_to_start"})

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
 from missions.models import EndAction
-from missions.routing.problem import Solution
+from missions.routing.problem import Problem, Solution
 from missions.routing.progress import OnProgress, Progress
 from missions.routing.solver import Stop
 from missions.routing.terminals import Terminal, ways_between
@@ -33,6 +33,12 @@ class Attempt:
     solution: Solution
     lock_cost: LockCost | None
     drawing: Drawing
+    problem: Problem
+
+    def most_counted_wh(self, uav: int) -> float:
+        """What the search thought that the UAV, by its number in the request, takes for the flight that takes most."""
+        start = self.uavs.index(uav)
+        return max((self.problem.route_wh(start, order) or 0.0 for order in self.solution.sorties[start]), default=0.0)
 
     def routes(self, request: PlanRequest, ground: GroundHeights | None) -> list[PlannedRoute]:
         """Drawn over this ground, one for each UAV of the request."""
@@ -94,7 +100,7 @@ def attempt(
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
     left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing)
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
-    return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing)
+    return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
 
 
 def _no_landing(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], scene: Scene) -> dict[int, str]:

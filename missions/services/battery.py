@@ -9,23 +9,22 @@ from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 
-NO_CHARGING = 1e-3  # off what may be used: the search then does without charging
+WITHOUT_CHARGING = 0.999  # of what may be used: the search then does without charging
+JUST_BELOW = 1e-3
 
 
-def battery_overruns(request: PlanRequest, routes: Sequence[PlannedRoute]) -> dict[int, float]:
-    """Of routes with a flight that takes more than their UAV may use, by its number: the share of what it takes that is too much."""
-    found = {}
+def battery_overruns(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute]) -> dict[int, float]:
+    """Of routes with a flight that takes more than their UAV may use, by its number: the share of that with which it is not chosen."""
+    over = {}
     for number, route in enumerate(routes):
         usable_wh = request.uavs[number].performance.usable_wh
         if route.lacks_wh > 0.0:
-            found[number] = NO_CHARGING
+            over[number] = WITHOUT_CHARGING
             continue
-        if route.charging:
-            continue
-        most_wh = max(wh_of_sorties(route.timing), default=0.0) if route.timing is not None else 0.0
+        most_wh = max(wh_of_sorties(route.timing), default=0.0) if route.timing is not None and not route.charging else 0.0
         if usable_wh is not None and most_wh > usable_wh:
-            found[number] = 1.0 - usable_wh / most_wh
-    return found
+            over[number] = (1.0 - JUST_BELOW) * min(1.0, found.most_counted_wh(number) / usable_wh)
+    return over
 
 
 def without_overruns(

@@ -12,9 +12,10 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.selectors import ground_heights_m, has_terrain
+from inspection.selectors import current_graph, ground_heights_m, has_terrain
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
+from missions.flight_plan.obstacles import legs_too_low, tall_things
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
 from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
@@ -60,6 +61,7 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
         until_now = list(route.waypoints.select_related("asset", "target"))
         _refuse(_shape_faults(points, until_now))
         wished = _route_points(points, until_now)
+        _refuse(_obstacle_faults(wished))
         request = request_of_mission(mission=locked)
         flown = _flown(request, uav, wished, route.departs_s)
         _refuse(_zone_faults(flown, locked))
@@ -105,6 +107,12 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
             limits = {"low": f"{low_m:.0f}", "high": f"{flight.max_agl_m:.0f}"}
             faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
     return faults
+
+
+def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
+    low = legs_too_low(points, tall_things(current_graph(), settings.FLIGHT_RULES))
+    words = _("Something tall stands here: fly at %(height)s m above ground over it.")
+    return {f"legs.{leg}": words % {"height": f"{least_m:.0f}"} for leg, _share, least_m in reversed(low)}
 
 
 def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:

@@ -13,6 +13,7 @@ from inspection.graph.inspection_graph import NodeKind
 from inspection.graph.passed import BEND, passed_on
 from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
+from missions.flight_plan.obstacles import rising_over, tall_things
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.sorties import joined_sorties, timing_of_route
@@ -137,6 +138,7 @@ class Drawing:
             ways=passed,
             home=at if action is EndAction.RETURN else None if base is None else base.position,
         )
+        points = rising_over(points, tall_things(self.scene.whole_graph, flight))
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
         return waypoints, length_m, is_flat

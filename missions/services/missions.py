@@ -11,8 +11,9 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
+from missions.fleet_selectors import performance_of
 from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
-from missions.flight_plan.performance import performance_from_json, performance_to_json
+from missions.flight_plan.performance import Performance, performance_from_json, performance_to_json
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
@@ -224,7 +225,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 uav=row.uav_id,
                 most_targets=row.most_targets,
                 sensors=tuple(row.sensors),
-                performance=performance_from_json(row.performance),
+                performance=_performance(row),
                 sorties=row.sorties,
             )
             for row in mission.mission_uavs.all()
@@ -249,6 +250,13 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
         charging_w=mission.charging_w,
         lost_link=lost_link_from_json(mission.lost_link),
     )
+
+
+def _performance(row: MissionUav) -> Performance:
+    """As stored with the mission; a mission of before there were batteries has its UAV's of today."""
+    if row.performance or row.uav is None:
+        return performance_from_json(row.performance)
+    return performance_of(row.uav)
 
 
 def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:

@@ -92,7 +92,9 @@ class _Planner:
         return best, freest or best
 
     def _positions(self) -> list[LonLat]:
-        return [*(uav.position for uav in self.request.uavs), *(at for place in self.places for at in place.course)]
+        request = self.request
+        ends = [*(uav.position for uav in request.uavs), *(base.position for base in request.bases)]
+        return [*ends, *(at for place in self.places for at in place.course)]
 
     def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
         """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""
@@ -107,8 +109,8 @@ class _Planner:
         raise GraphOutdated
 
     def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        """An attempt, drawn. Where hills make a route take more of its battery than the search had counted, it counts on less and tries
-        again; in the end the UAV stays on the ground."""
+        """An attempt, drawn. Where a route takes more of its battery than the search had counted, it counts on so much less that this
+        route is out of the question, and tries again; in the end the UAV stays on the ground."""
         scene = scene_on(ground, chosen)
         has_terrain = has_terrain_at(ground.edition)
         usable_share: dict[int, float] = {}
@@ -119,13 +121,13 @@ class _Planner:
             )  # fmt: skip
             self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
             alone = found.routes(self.request, ground_heights_m if has_terrain else None)
-            over = battery_overruns(self.request, alone)
+            over = battery_overruns(self.request, found, alone)
             if not over:
                 break
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
-            for uav, too_much in over.items():
-                usable_share[uav] = usable_share.get(uav, 1.0) * (1.0 - too_much) if number < MOST_TRIES - 2 else 0.0
+            for uav, share_left in over.items():
+                usable_share[uav] = min(usable_share.get(uav, 1.0), share_left)
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), not usable_share)

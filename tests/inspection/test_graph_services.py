@@ -19,7 +19,7 @@ from django.utils import timezone
 from inspection import selectors, services, tasks
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import flyable_part
-from inspection.graph.inspection_graph import NodeKind
+from inspection.graph.inspection_graph import InspectionGraph, NodeKind
 from inspection.graph.legs import Attachment
 from inspection.graph.route_index import route_index
 from inspection.graph.rules import LinkingRules
@@ -27,6 +27,7 @@ from inspection.graph.snapshot_file import CLEARED, NETWORKS
 from inspection.graph.ways import travel_between
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
+from inspection.selectors import graph as graph_selectors
 from inspection.selectors.graph import KEPT, _Kept, graph_for
 from inspection.selectors.planning import planning_read
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
@@ -272,10 +273,33 @@ def test_an_old_snapshot_without_files_gets_them_when_it_is_loaded(line, setting
     assert travel_between(graph, [[Attachment(0, 0.0, 0.0)]], [[Attachment(1, 0.0, 0.0)]]).length_m[0, 0] > 0
 
 
+@pytest.mark.parametrize("spoiled", [CLEARED, NETWORKS])
+def test_broken_files_are_made_anew_from_what_is_not_broken(line, settings, monkeypatch, spoiled):
+    """A broken network from the database, a broken graph from the network."""
+    snapshot = services.build_graph()
+    whole = graph_of_plans()
+    for path in (settings.GRAPH_CACHE_DIR / spoiled).glob("*/position.npy"):
+        content = bytearray(path.read_bytes())
+        content[-1] ^= 1
+        path.unlink()  # what is mapped stays as it is
+        path.write_bytes(bytes(content))
+    monkeypatch.setattr(graph_selectors, "_graphs", _Kept())
+    add_zone(9.1, 47.1, 9.2, 47.2)  # beside everything: another set of zones, the same graph
+    for zones in (selectors.zones_in_force(), selectors.zones_in_force().where([])):
+        again = graph_for(snapshot.version, zones)
+        assert again.position.tobytes() == whole.position.tobytes()
+        assert isinstance(again.position.base, np.memmap)
+
+
+def graph_of_plans() -> InspectionGraph:
+    ground = planning_read().ground()
+    return ground.graph(ground.zones())
+
+
 def test_a_saved_zone_is_in_force_before_there_is_a_new_snapshot(line):
     snapshot = services.build_graph()
     zone = add_zone(9.0015, 46.999, 9.0025, 47.001)
-    graph = planning_read().ground().graph
+    graph = graph_of_plans()
     assert (graph.version, np.unique(graph.node_kind).tolist()) == (snapshot.version, [NodeKind.SUPPORT, NodeKind.BEND])
     assert graph.zone_id.tolist() == [zone.pk]
 
@@ -316,9 +340,9 @@ def test_a_snapshot_of_an_earlier_layout_is_no_graph_until_it_is_made_anew(line,
     with pytest.raises(selectors.NoGraph):
         selectors.graph_of_version(snapshot.version)
     with pytest.raises(selectors.NoGraph):
-        planning_read().ground()
+        graph_of_plans()
     tasks.refresh_graph()
-    assert selectors.current_graph().node_count == planning_read().ground().graph.node_count == 3
+    assert selectors.current_graph().node_count == graph_of_plans().node_count == 3
 
 
 def test_of_threads_that_want_the_same_graph_one_makes_it():

@@ -31,7 +31,7 @@ function details({ properties }) {
   const { source } = properties;
   return [
     h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || t("Restriction not stated")),
-    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, properties.schedule_words), properties.schedule && h("p", { class: "caption" }, t("Counts at all heights and times for now")))),
+    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, properties.schedule_words))),
     ...(properties.schedule ?? []).slice(0, 3).filter((period) => Array.isArray(period.schedule)).map(weekDrawing),
     properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(

@@ -13,7 +13,8 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.ways import BEND, DIRECT
+from inspection.graph.passed import BEND, passed_on
+from inspection.graph.ways import DIRECT
 from inspection.graph.zone_index import ZoneIndex
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
@@ -91,7 +92,7 @@ class World:
 
     def drawn(self, uav: int, order: list[int], flying: FlightClass, finish: Finish, conditions: Conditions) -> Timing:
         legs = np.array(self.ways.of_route(uav, order, finish.end), dtype=np.int64)
-        told = self.ways.travel.passed(legs, self.graph.position)
+        told = passed_on(self.ways.travel, legs, self.graph.position)
         agl_m = np.full(len(told.node), RULES.transit_agl_m)
         nodes = told.node[told.node != BEND]
         agl_m[told.node != BEND] = pass_agl_m(node_heights_m(self.graph, nodes), RULES)

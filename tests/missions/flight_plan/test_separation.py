@@ -116,6 +116,17 @@ def test_a_hold_keeps_the_place_as_long_as_it_lasts():
     assert separation.delays_s == (0.0, 315.0)
 
 
+def test_who_stands_on_the_ground_between_two_flights_is_in_nobodys_way():
+    """A lands at its base for 600 s and flies on; B passes low over the base meanwhile."""
+    places = np.array([[0.0, 0.0], [500.0, 0.0], [0.0, 0.0]]) / [DEGREE_M, NORTH_M]
+    there = TimedRoute(
+        "A", places, np.array([40.0, 0.0, 40.0]), np.array([0.0, 70.0, 740.0]), np.array([0.0, 600.0, 0.0]), 0.0, 40.0, 740.0, 40.0
+    )
+    over = route("B", (500, -500), (500, 500), start_s=300.0, height_m=10.0)
+    assert len(conflicts([there, over], rules=RULES)) == 1
+    assert conflicts([replace(there, on_ground=np.array([False, True, False])), over], rules=RULES) == ()
+
+
 def test_from_one_place_the_second_takes_off_later():
     first, second = route("A", (0, 0), (5_000, 0)), route("B", (0, 0), (0, 1_000))
     separation = keep_apart([first, second], rules=RULES)

@@ -16,7 +16,6 @@ export default {
   "at times": "zeitweise",
   "Begins": "Beginnt",
   "Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.": "Eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen oder eine abrufen lassen.",
-  "Counts at all heights and times for now": "Zählt vorerst in allen Höhen und zu allen Zeiten",
   "Days": "Tage",
   "Days and hours are UTC.": "Tage und Stunden sind UTC.",
   "Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.": "Eine zeichnen oder eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen.",
