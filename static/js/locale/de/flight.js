@@ -3,6 +3,7 @@
 export default {
   "A plan with a departure counts it at its times, any other plan at all times.": "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",
   "A route is changed by hand once its plan is saved.": "Eine Route lässt sich von Hand ändern, sobald ihr Plan gespeichert ist.",
+  "A route with stops to charge cannot be changed by hand.": "Eine Route mit Ladehalten lässt sich nicht von Hand ändern.",
   "a zone": "eine Zone",
   "Add a height": "Höhe hinzufügen",
   "Against the wind; empty: not limited.": "Gegen den Wind; leer: nicht begrenzt.",

@@ -78,7 +78,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText)), landing !== null && h("small", {}, t("until {time}", { time: timeAt(state.plan.result.departs_at, landing) }))),
       dock.classList.contains("with-battery") && h("span", { class: "figure battery-figure", title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null }, battery?.left ?? "—", battery && h("small", {}, t("at landing"))),
       isUsed && h("span", { class: "route-acts" },
-        canPlan && h("button", { type: "button", class: "icon-button tight", "aria-label": t("Change the route of {name} by hand", { name: route.name }), title: t("Change by hand"), onclick: () => void actions.beginByHand(route.sequence) }, icon("hand", "small")),
+        canPlan && h("button", { type: "button", class: "icon-button tight", "aria-label": t("Change the route of {name} by hand", { name: route.name }), title: route.charging?.length ? t("A route with stops to charge cannot be changed by hand.") : t("Change by hand"), disabled: Boolean(route.charging?.length), onclick: () => void actions.beginByHand(route.sequence) }, icon("hand", "small")),
         h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?"))),
     );
   }
