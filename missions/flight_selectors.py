@@ -9,7 +9,7 @@ from uuid import UUID
 
 import numpy as np
 from django.conf import settings
-from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Q, Value
+from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Value
 
 from missions.flight_plan.separation import TimedRoute
 from missions.models import EndAction, Mission, MissionState, Route, Waypoint, WaypointKind
@@ -42,7 +42,7 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
     routes = (
         Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), geometry__isnull=False)
         .alias(ends_at=_ENDS_AT)
-        .filter(Q(ends_at__gt=window_from) | Q(mission__departs_at__gt=window_from - longest))
+        .filter(ends_at__gt=window_from - longest)  # who hovers stays for so long
         .select_related("mission", "mission_uav")
         .order_by("mission__departs_at", "mission_id", "mission_uav__sequence")
     )

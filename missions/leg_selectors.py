@@ -1,5 +1,6 @@
 """A single leg against zones and heights, while it is being dragged."""
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -9,6 +10,8 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m, has_terrain
+from inspection.selectors.zone_table import zone_table
+from inspection.zones.reach import ZoneTable
 from missions.flight_plan.clearance import FlownRoute
 from missions.flight_plan.heights import with_heights
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
@@ -23,13 +26,18 @@ class LegEnd(NamedTuple):
     arrival_s: float | None
 
 
-def leg_faults(start: LegEnd, end: LegEnd, departs_at: datetime | None) -> dict[str, Any]:
+def faults_of_legs(legs: Sequence[tuple[LegEnd, LegEnd]], departs_at: datetime | None) -> list[dict[str, Any]]:
+    table, has_ground = zone_table(), has_terrain()
+    return [_faults(*leg, departs_at, table, has_ground=has_ground) for leg in legs]
+
+
+def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, *, has_ground: bool) -> dict[str, Any]:
     """The first thing that is wrong with a leg; the columns down to the ground at its ends are not looked at."""
     flight = settings.FLIGHT_RULES
     if max(start.agl_m, end.agl_m) > flight.max_agl_m:
         return _fault(None, _("It is above the limit of %(limit)s m.") % {"limit": f"{flight.max_agl_m:.0f}"})
     points = RoutePoints.of([RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (start, end)])
-    flown, _is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)  # over a hill it is several legs
+    flown, _is_flat = with_heights(points, ground_heights_m if has_ground else None, flight)  # over a hill it is several legs
     position = flown.points.position
     arrival_s = departs_s = ends_s = None
     if departs_at is not None and start.arrival_s is not None and end.arrival_s is not None:
@@ -37,7 +45,7 @@ def leg_faults(start: LegEnd, end: LegEnd, departs_at: datetime | None) -> dict[
         way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(position, axis=0).T))])
         arrival_s = departs_s + (ends_s - departs_s) * (way / way[-1] if way[-1] > 0 else np.linspace(0.0, 1.0, len(way)))
     leg = FlownRoute(position, flown.points.agl_m, flown.amsl_m, arrival_s, departs_s, ends_s)
-    for meeting in zones_met([leg])[0]:
+    for meeting in zones_met([leg], table)[0]:
         if 0 <= meeting.breach.leg < len(position) - 1:
             return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
     return {"is_clear": True, "zone": None, "message": ""}

@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from inspection.graph.flown_heights import asset_heights_m
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.network import Network
 
 FloatArray = NDArray[np.float64]
 
 _flyable_of_graph: WeakKeyDictionary[InspectionGraph, dict[float, InspectionGraph | None]] = WeakKeyDictionary()
 
 
-def node_heights_m(graph: InspectionGraph, nodes: NDArray[np.int64] | slice) -> FloatArray:
+def node_heights_m(graph: InspectionGraph | Network, nodes: NDArray[np.int64] | slice) -> FloatArray:
     """The height that the asset at each of the nodes is taken to have."""
     return asset_heights_m(graph.node_kind[nodes], graph.node_height_m[nodes])
 

@@ -87,6 +87,11 @@ class ZoneIndex:
             digest.update(wkb)
         return digest.hexdigest()
 
+    @cached_property
+    def identity(self) -> int:
+        """Of whose zones they are, and what they are called."""
+        return hash((self.ids.tobytes(), self.names))
+
     def where(self, chosen: ArrayLike) -> "ZoneIndex":
         """The index of some of the zones, chosen by a mask (z,) or by their places, in the order that they have here."""
         chosen = np.asarray(chosen)

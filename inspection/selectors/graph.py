@@ -132,7 +132,7 @@ def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> Inspectio
     row = _rows().filter(version=snapshot).first() if isinstance(snapshot, int) else snapshot
     if row is None:
         raise NoGraph
-    key = (*row, zones.digest, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
+    key = (*row, zones.digest, zones.identity, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
     return _graphs.get(key, lambda: _load(row, zones))
 
 

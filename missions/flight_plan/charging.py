@@ -59,6 +59,7 @@ def charging_stops(
     clock: Timing,
     *,
     towers: Sequence[int],
+    tops_m: Sequence[float],
     charging_w: float,
     performance: Performance,
     conditions: Conditions,
@@ -66,7 +67,8 @@ def charging_stops(
 ) -> tuple[ChargingStop, ...]:
     """As few stops as can be, and at each as little as is needed; none where the battery lasts.
 
-    clock is the route's timing without stops; towers are the places of waypoints over towers, in order. A UAV without a battery of known
+    clock is the route's timing without stops; towers are the places of waypoints over towers, in order, tops_m how high above
+    ground the UAV stands there. A UAV without a battery of known
     energy never has to stop. Raises CannotCharge, as ChargerTooWeak where the charger itself is why.
     """
     battery_wh, usable_wh = performance.battery_wh, performance.usable_wh
@@ -76,7 +78,7 @@ def charging_stops(
     if charges_w <= 0.0:
         raise ChargerTooWeak(-1, len(waypoints), clock.total_wh - usable_wh)
     places = np.array(towers, dtype=np.int64)
-    down, up = _way_to_towers(waypoints, places, performance, conditions, rules)
+    down, up = _way_to_towers(waypoints, places, tops_m, performance, conditions, rules)
     chosen = _fewest(clock.used_wh[places], clock.total_wh, down[:, 1], up[:, 1], usable_wh, places, len(waypoints))
 
     stops = []
@@ -123,7 +125,12 @@ def with_stops(clock: Timing, stops: Sequence[ChargingStop], battery_wh: float) 
 
 
 def _way_to_towers(
-    waypoints: Waypoints, places: NDArray[np.int64], performance: Performance, conditions: Conditions, rules: FlightRules
+    waypoints: Waypoints,
+    places: NDArray[np.int64],
+    tops_m: Sequence[float],
+    performance: Performance,
+    conditions: Conditions,
+    rules: FlightRules,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Seconds and Wh of the way down to each tower from above it, and of the way up again; (towers, 2) each."""
     own = speeds(performance, rules.cruise_speed_mps, rules)
@@ -132,7 +139,7 @@ def _way_to_towers(
     for number, place in enumerate(places.tolist()):
         agl_m = float(waypoints.points.agl_m[place])
         density = conditions.air_density(None if waypoints.amsl_m is None else float(waypoints.amsl_m[place]))
-        low_m = max(agl_m - rules.clearance_m, 0.0)
+        low_m = min(tops_m[number], agl_m)
         for way, start_m, end_m in ((down, agl_m, low_m), (up, low_m, agl_m)):
             seconds, joules = leg_taken(0.0, 0.0, 0.0, start_m, end_m, end_m - start_m, conditions.wind_table, density, own, table)
             way[number] = seconds, joules / J_PER_WH

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.flyable import node_heights_m
-from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.network import Network
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import FloatArray, RoutePoints
 
@@ -25,16 +25,16 @@ class TallThings:
     least_agl_m: FloatArray
 
 
-_made: WeakKeyDictionary[InspectionGraph, tuple[FlightRules, TallThings]] = WeakKeyDictionary()
+_made: WeakKeyDictionary[Network, tuple[FlightRules, TallThings]] = WeakKeyDictionary()
 
 
-def tall_things(graph: InspectionGraph, rules: FlightRules) -> TallThings:
-    """Nodes that stick out above what is cleared at transit height and can be flown over at all; made once per graph."""
-    made = _made.get(graph)
+def tall_things(network: Network, rules: FlightRules) -> TallThings:
+    """Nodes that stick out above what is cleared at transit height and can be flown over at all; made once per network."""
+    made = _made.get(network)
     if made is None or made[0] != rules:
-        least_m = node_heights_m(graph, slice(None)) + rules.clearance_m
+        least_m = node_heights_m(network, slice(None)) + rules.clearance_m
         tall = (least_m > rules.transit_agl_m) & (least_m <= rules.max_agl_m)
-        made = _made[graph] = rules, TallThings(graph.position[tall], least_m[tall])
+        made = _made[network] = rules, TallThings(network.position[tall], least_m[tall])
     return made[1]
 
 

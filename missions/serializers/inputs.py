@@ -26,6 +26,7 @@ from missions.serializers.limits import (
     LARGEST_DISK_M2,
     LARGEST_KEY,
     LARGEST_POWER_W,
+    LEAST_CHARGING_W,
     LONGEST_SENSOR,
     LONGEST_UAV_NAME,
     MOST_DAYS_AHEAD,
@@ -239,7 +240,11 @@ class OptionsSerializer(serializers.Serializer):
     )
     conditions = ConditionsSerializer(required=False, allow_null=True)
     charging_w = FiniteFloatField(
-        required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="power of charging at towers on the way; null: there is none"
+        required=False,
+        allow_null=True,
+        min_value=LEAST_CHARGING_W,
+        max_value=LARGEST_POWER_W,
+        help_text="power of charging at towers on the way; null: there is none",
     )
 
     lost_link = LostLinkSerializer(required=False, allow_null=True)

@@ -78,7 +78,7 @@ class UnassignedSerializer(serializers.Serializer):
 
 
 class WarningSerializer(serializers.Serializer):
-    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service"])
+    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated"])
     uav = serializers.IntegerField(help_text="index of the UAV")
     message = serializers.CharField()
 

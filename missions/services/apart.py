@@ -18,7 +18,7 @@ from missions.services.requests import PlanRequest
 
 
 def routes_apart(
-    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, fixed: Sequence[TimedRoute] = ()
+    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, fixed: Sequence[TimedRoute] = (), *, may_raise: bool = True
 ) -> tuple[list[PlannedRoute], Separation]:
     """The routes with the delays and heights that keep them apart from each other and from `fixed`, and how that came out.
 
@@ -36,7 +36,10 @@ def routes_apart(
         return _timed(request, number, route)
 
     separation = keep_apart(
-        [_timed(request, number, routes[number]) for number in flying], fixed, rules=settings.SEPARATION_RULES, raised=raised
+        [_timed(request, number, routes[number]) for number in flying],
+        fixed,
+        rules=settings.SEPARATION_RULES,
+        raised=raised if may_raise else None,
     )
     apart = list(routes)
     for number, delay_s, layer_m in zip(flying, separation.delays_s, separation.layers_m, strict=True):

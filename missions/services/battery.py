@@ -9,7 +9,6 @@ from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 
-WITHOUT_CHARGING = 0.999  # of what may be used: the search then does without charging
 JUST_BELOW = 1e-3
 
 
@@ -18,8 +17,8 @@ def battery_overruns(request: PlanRequest, found: Attempt, routes: Sequence[Plan
     over = {}
     for number, route in enumerate(routes):
         usable_wh = request.uavs[number].performance.usable_wh
-        if route.lacks_wh > 0.0:
-            over[number] = WITHOUT_CHARGING
+        if route.lacks_wh > 0.0 and usable_wh is not None:
+            over[number] = (1.0 - JUST_BELOW) * found.most_counted_wh(number) / usable_wh  # with charging this may be above 1
             continue
         most_wh = max(wh_of_sorties(route.timing), default=0.0) if route.timing is not None and not route.charging else 0.0
         if usable_wh is not None and most_wh > usable_wh:

@@ -12,7 +12,8 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.selectors import current_graph, ground_heights_m, has_terrain
+from inspection.selectors import ground_heights_m, has_terrain
+from inspection.selectors.planning import planning_read
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
 from missions.flight_plan.obstacles import legs_too_low, tall_things
@@ -110,7 +111,7 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
 
 
 def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
-    low = legs_too_low(points, tall_things(current_graph(), settings.FLIGHT_RULES))
+    low = legs_too_low(points, tall_things(planning_read().ground().network(), settings.FLIGHT_RULES))
     words = _("Something tall stands here: fly at %(height)s m above ground over it.")
     return {f"legs.{leg}": words % {"height": f"{least_m:.0f}"} for leg, _share, least_m in reversed(low)}
 

@@ -18,14 +18,14 @@ from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.sorties import joined_sorties, timing_of_route
 from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import NONE, Waypoints
+from missions.flight_plan.waypoints import NONE, RoutePoints, Waypoints
 from missions.models import EndAction
 from missions.routing.problem import Routes, Visit
 from missions.routing.terminals import Ways
 from missions.services.assignment import route_end
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
-from missions.services.refusals import Scene
+from missions.services.refusals import Scene, zone_at
 from missions.services.requests import BaseRequest, InvalidRequest, PlanRequest
 
 
@@ -113,18 +113,29 @@ class Drawing:
 
     def _charging(self, uav: int, waypoints: Waypoints, clock: Timing) -> tuple[ChargingStop, ...]:
         """Where the UAV charges at towers that it passes, if it has to. Raises CannotCharge or ChargerTooWeak."""
-        graph, points = self.scene.graph, waypoints.points
-        passed = np.unique(points.asset[points.asset != NONE])
-        towers = passed[np.isin(passed, graph.node_asset[graph.node_kind == NodeKind.SUPPORT])].tolist()
+        tops_m = self._tops_m(waypoints.points)
+        places = places_over(waypoints.points, tops_m)
         return charging_stops(
             waypoints,
             clock,
-            towers=places_over(points, towers),
+            towers=places,
+            tops_m=[tops_m[asset] for asset in waypoints.points.asset[places].tolist()],
             charging_w=self.request.charging_w or 0.0,
             performance=self.request.uavs[uav].performance,
             conditions=self.request.conditions,
             rules=self.scene.flight,
         )
+
+    def _tops_m(self, points: RoutePoints) -> dict[int, float]:
+        """Heights above ground of the towers that are passed and that no zone covers down to there, by their assets."""
+        network = self.scene.network
+        nodes = np.flatnonzero(np.isin(network.node_asset, points.asset[points.asset != NONE]) & (network.node_kind == NodeKind.SUPPORT))
+        tops_m = zip(nodes.tolist(), node_heights_m(network, nodes).tolist(), strict=True)
+        return {
+            int(network.node_asset[node]): top_m
+            for node, top_m in tops_m
+            if zone_at(LonLat(*network.position[node].tolist()), self.scene, top_m) is None
+        }
 
     def _flight(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> tuple[Waypoints, float, bool]:
         """Waypoints and metres of one flight, and whether flat ground had to be assumed."""
@@ -138,7 +149,7 @@ class Drawing:
             ways=passed,
             home=at if action is EndAction.RETURN else None if base is None else base.position,
         )
-        points = rising_over(points, tall_things(self.scene.whole_graph, flight))
+        points = rising_over(points, tall_things(self.scene.network, flight))
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
         return waypoints, length_m, is_flat

@@ -19,7 +19,7 @@ def keys_of_zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | Non
 
 
 def flown_route(route: PlannedRoute, departs_at: datetime | None) -> FlownRoute:
-    """As the last look takes it; the route is one that is flown. Who hovers at the end does so until the longest flight is over."""
+    """As the last look takes it; the route is one that is flown."""
     assert route.waypoints is not None and route.timing is not None  # noqa: S101 - only routes that are flown
     points, lands = route.waypoints.points, route.end_action is not EndAction.HOVER
     if departs_at is None:
@@ -31,6 +31,13 @@ def flown_route(route: PlannedRoute, departs_at: datetime | None) -> FlownRoute:
         route.waypoints.amsl_m,
         arrival_s=start_s + route.timing.arrival_s,
         departs_s=start_s,
-        ends_s=start_s + (route.duration_s if lands else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)),
+        ends_s=start_s + in_the_air_s(route),
         lands=lands,
     )
+
+
+def in_the_air_s(route: PlannedRoute) -> float:
+    """From take-off; who hovers at the end does so until the longest flight is over."""
+    if route.end_action is not EndAction.HOVER or route.waypoints is None:
+        return route.duration_s
+    return max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)

@@ -7,7 +7,7 @@ import numpy as np
 from django.conf import settings
 
 from inspection.graph.flyable import node_heights_m
-from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.network import Network
 from inspection.selectors import ground_heights_m
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.heights import FloatArray
@@ -21,22 +21,22 @@ BESIDE_DEG = 0.01
 
 
 def lost_link_check(
-    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, graph: InspectionGraph, *, has_terrain: bool
+    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, network: Network, *, has_terrain: bool
 ) -> dict[str, Any]:
     """The wish, and every waypoint from which it fails, in the shape of the API; who goes on flies what was checked already.
 
-    The nodes of the graph are what stands in the way.
+    The nodes of the network are what stands in the way.
     """
     wished = request.lost_link
     failed: list[dict[str, Any]] = []
     if wished.behaviour is not LostLink.GO_ON:
         for number, route in enumerate(routes):
-            failed += _failed(request, number, route, table, graph, has_terrain=has_terrain)
+            failed += _failed(request, number, route, table, network, has_terrain=has_terrain)
     return {**lost_link_to_json(wished), "failed": failed}
 
 
 def _failed(
-    request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, graph: InspectionGraph, *, has_terrain: bool
+    request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, network: Network, *, has_terrain: bool
 ) -> list[dict[str, Any]]:
     if route.waypoints is None or route.timing is None:
         return []
@@ -57,7 +57,7 @@ def _failed(
         margins=margins,
         departs_s=departs_s,
         ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
-        obstacles=_obstacles(graph, positions),
+        obstacles=_obstacles(network, positions),
     )
     return [
         {
@@ -73,8 +73,8 @@ def _failed(
     ]
 
 
-def _obstacles(graph: InspectionGraph, positions: FloatArray) -> Obstacles:
+def _obstacles(network: Network, positions: FloatArray) -> Obstacles:
     """What stands in the box of the positions."""
     low, high = positions.min(axis=0) - BESIDE_DEG, positions.max(axis=0) + BESIDE_DEG
-    near = np.flatnonzero(((graph.position >= low) & (graph.position <= high)).all(axis=1))
-    return Obstacles(graph.position[near], node_heights_m(graph, near))
+    near = np.flatnonzero(((network.position >= low) & (network.position <= high)).all(axis=1))
+    return Obstacles(network.position[near], node_heights_m(network, near))

@@ -13,12 +13,13 @@ from django.utils import timezone
 from inspection.geodesy import LonLat
 from missions.fleet_selectors import performance_of
 from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
-from missions.flight_plan.performance import Performance, performance_from_json, performance_to_json
+from missions.flight_plan.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
 from missions.services.places import places_of
 from missions.services.requests import (
+    InvalidRequest,
     LockRequest,
     LostLinkRequest,
     PlanRequest,
@@ -254,9 +255,12 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
 
 def _performance(row: MissionUav) -> Performance:
     """As stored with the mission; a mission of before there were batteries has its UAV's of today."""
-    if row.performance or row.uav is None:
-        return performance_from_json(row.performance)
-    return performance_of(row.uav)
+    try:
+        if row.performance or row.uav is None:
+            return performance_from_json(row.performance)
+        return performance_of(row.uav)
+    except InvalidPerformance as error:
+        raise InvalidRequest({f"uavs.{row.sequence}.{error.place}": error.message}) from error
 
 
 def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:

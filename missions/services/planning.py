@@ -1,5 +1,6 @@
 """One plan from request to answer: on which zones it stands, the attempts on them, and the last look before it leaves."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,12 +18,13 @@ from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
 from missions.services.battery import battery_overruns, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
-from missions.services.last_look import keys_of_zones_met
+from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
+from missions.services.warnings import warnings_of
 from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 
@@ -117,7 +119,8 @@ class _Planner:
         for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
-                stop=self.stop, on_progress=self.on_progress, seed=self.seed, search_s=self.search_s * share, usable_share=usable_share,
+                stop=self.stop, on_progress=self.on_progress, seed=self.seed,
+                search_s=self.search_s * share / 2**number, usable_share=usable_share,
             )  # fmt: skip
             self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
             alone = found.routes(self.request, ground_heights_m if has_terrain else None)
@@ -127,18 +130,23 @@ class _Planner:
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
             for uav, share_left in over.items():
-                usable_share[uav] = min(usable_share.get(uav, 1.0), share_left)
+                usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
+        if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
+            routes, separation, others = self._apart(alone, choice, may_raise=False)
+            met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
 
-    def _apart(self, alone: Sequence[PlannedRoute], choice: ZoneChoice) -> tuple[list[PlannedRoute], Separation, OtherFlights]:
+    def _apart(
+        self, alone: Sequence[PlannedRoute], choice: ZoneChoice, *, may_raise: bool = True
+    ) -> tuple[list[PlannedRoute], Separation, OtherFlights]:
         """A route that is put off until after the flights that were looked up may meet those that come later: these are looked up, too."""
         window_s = settings.FLIGHT_RULES.longest_flight_s
         for _ in range(MOST_WINDOWS):
             others = _others_in_the_air(self.request, window_s)
-            routes, separation = routes_apart(self.request, alone, choice.table, others.routes)
-            ends_s = max((route.departs_s + route.duration_s for route in routes), default=0.0)
+            routes, separation = routes_apart(self.request, alone, choice.table, others.routes, may_raise=may_raise)
+            ends_s = max((route.departs_s + in_the_air_s(route) for route in routes), default=0.0)
             if ends_s <= window_s:
                 break
             window_s = 2.0 * ends_s
@@ -178,12 +186,12 @@ def make_plan(
         request,
         plan.routes,
         plan.found.left_out,
-        [{"code": why.code, "uav": number, "message": why.message} for number, why in plan.found.grounded.items()],
+        warnings_of(request, plan.found.grounded),
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
         separation=separation_json(plan.separation, plan.others.untimed),
-        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.whole_graph, has_terrain=plan.has_terrain),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, has_terrain=plan.has_terrain),
         quality=_quality(request, plan, freest),
         as_text=as_text,
     )

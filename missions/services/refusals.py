@@ -8,6 +8,7 @@ from django.conf import settings
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
+from inspection.graph.network import Network
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import Edition
 from missions.fleet_selectors import states_out_of_service
@@ -27,6 +28,7 @@ class Scene:
     """
 
     whole_graph: InspectionGraph
+    network: Network  # free of zones
     graph: InspectionGraph
     zones: ZoneIndex
     leg_zones: ZoneIndex

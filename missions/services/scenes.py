@@ -26,7 +26,7 @@ def scene_on(ground: PlanningGround, chosen: BoolArray | None) -> Scene:
     graph = ground.graph(zones)
     in_transit = ground.table.reaching(flight.transit_agl_m - flight.terrain_tolerance_m, flight.max_agl_m + flight.terrain_tolerance_m)
     leg_zones = ground.zones(in_transit if chosen is None else chosen & in_transit)
-    return Scene(graph, flyable_graph(graph, flight), zones, leg_zones, access, flight, ground.edition)
+    return Scene(graph, ground.network(), flyable_graph(graph, flight), zones, leg_zones, access, flight, ground.edition)
 
 
 def current_scene(request: PlanRequest | None = None) -> Scene:

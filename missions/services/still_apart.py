@@ -15,7 +15,7 @@ def separation_of_stored(mission: Mission) -> dict[str, Any] | None:
     timed = tuple(route for route in found if route is not None)
     if len(timed) < len(found):
         return None
-    others = _others(mission)
+    others = _others(mission, max((route.end_s for route in timed), default=0.0))
     rules, layers = settings.SEPARATION_RULES, (mission.separation or {}).get("layers") or [0.0] * len(timed)
     delays = tuple(route.take_off_s for route in timed)
     closest = closest_encounter(timed, others.routes, rules=rules)
@@ -23,8 +23,9 @@ def separation_of_stored(mission: Mission) -> dict[str, Any] | None:
     return separation_json(Separation(rules, timed, delays, tuple(layers), closest, left), others.untimed)
 
 
-def _others(mission: Mission) -> OtherFlights:
+def _others(mission: Mission, ends_s: float) -> OtherFlights:
     if mission.departs_at is None:
         return OtherFlights()
     from_s = mission.departs_at.timestamp()
-    return flights_at_the_same_time(mission.organisation_id, from_s, from_s + settings.FLIGHT_RULES.longest_flight_s, but=mission.pk)
+    to_s = from_s + max(ends_s, settings.FLIGHT_RULES.longest_flight_s)
+    return flights_at_the_same_time(mission.organisation_id, from_s, to_s, but=mission.pk)

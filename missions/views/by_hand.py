@@ -8,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import services
-from missions.leg_selectors import LegEnd, leg_faults
+from missions.leg_selectors import LegEnd, faults_of_legs
 from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
@@ -54,7 +54,7 @@ class LegChecks(APIView):
         body = by_hand.LegChecksInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         departs_at = body.validated_data.get("departs_at")
-        found = [leg_faults(*(_end(leg[side]) for side in ("start", "end")), departs_at) for leg in body.validated_data["legs"]]
+        found = faults_of_legs([(_end(leg["start"]), _end(leg["end"])) for leg in body.validated_data["legs"]], departs_at)
         return Response(by_hand.LegChecksSerializer({"legs": found}).data)
 
 

@@ -36,7 +36,10 @@ def stops_of(
     waypoints: Waypoints, towers: list[int], charging_w: float = 200.0, performance: Performance = IRIS
 ) -> tuple[ChargingStop, ...]:
     clock = clock_of(waypoints, performance)
-    return charging_stops(waypoints, clock, towers=towers, charging_w=charging_w, performance=performance, conditions=CALM, rules=RULES)
+    tops_m = [45.0] * len(towers)
+    return charging_stops(
+        waypoints, clock, towers=towers, tops_m=tops_m, charging_w=charging_w, performance=performance, conditions=CALM, rules=RULES
+    )
 
 
 def test_a_route_within_the_battery_needs_no_stop() -> None:
