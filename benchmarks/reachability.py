@@ -35,7 +35,8 @@ from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.ways_taken import FlightClass
 from missions.routing.problem import End
-from missions.routing.reachability import Flight, Reach, Verdict, reach
+from missions.routing.reachability import Flight, reach
+from missions.routing.reached_assets import Reach, Verdict
 from missions.routing.rules import RoutingRules
 from missions.routing.terminals import AccessRules
 

@@ -1,11 +1,10 @@
 """UAVs that fly at the same time are kept apart: in time by when they take off, in height by layers."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -418,34 +417,3 @@ def _least_wait_s(intervals: FloatArray) -> tuple[float, bool]:
                 return _least_wait_s(finite)[0], True
             wait_s = float(math.ceil(last_s + SLACK_S))
     return wait_s, False
-
-
-def separation_json(separation: Separation, untimed: Sequence[tuple[str, str]] = ()) -> dict[str, Any]:
-    """As a plan has it. untimed: mission and UAV of flights of which nobody knows when they are where."""
-    rules = separation.rules
-    return {
-        "lateral_m": rules.lateral_m,
-        "vertical_m": rules.vertical_m,
-        "time_s": rules.time_s,
-        "delays": list(separation.delays_s),
-        "layers": list(separation.layers_m),
-        "closest": None if separation.closest is None else _encounter_json(separation.closest),
-        "unresolved": [
-            {"code": "hovers_in_the_way" if encounter.blocks else "too_near", **_encounter_json(encounter)}
-            for encounter in separation.unresolved
-        ]
-        + [{"code": "times_not_known", "uavs": [uav], "missions": [mission]} for mission, uav in untimed],
-    }
-
-
-def _encounter_json(encounter: Encounter) -> Mapping[str, Any]:
-    return {
-        "metres": round(encounter.metres, 1),
-        "vertical_m": None if encounter.vertical_m is None else round(encounter.vertical_m, 1),
-        "seconds": round(encounter.seconds, 1),
-        "uavs": list(encounter.uavs),
-        "missions": list(encounter.missions),
-        "legs": list(encounter.legs),
-        "at_s": [round(moment, 1) for moment in encounter.at_s],
-        "position": [round(encounter.position.lon, 7), round(encounter.position.lat, 7)],
-    }

@@ -10,7 +10,8 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
-from missions.flight_plan.separation import Separation, separation_json
+from missions.flight_plan.separation import Separation
+from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
 from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart

@@ -13,7 +13,8 @@ from inspection.selectors.planning import planning_read
 from missions.flight_plan.ways_taken import FlightClass
 from missions.models import EndAction
 from missions.routing.problem import End, UavStart
-from missions.routing.reachability import Flight, Reach, Verdict, reach
+from missions.routing.reachability import Flight, reach
+from missions.routing.reached_assets import Reach, Verdict
 from missions.services.refusals import Scene, groundings, zone_at
 from missions.services.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.scenes import scene_on

@@ -17,9 +17,9 @@ from missions.flight_plan.separation import (
     conflicts,
     keep_apart,
     raised_agl_m,
-    separation_json,
     timed_route,
 )
+from missions.flight_plan.separation_report import separation_json
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
 from tests.missions.flight_plan.dense_separation import least_seconds_apart, moments_of

@@ -22,7 +22,8 @@ from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.ways_taken import FlightClass
 from missions.routing.problem import End
-from missions.routing.reachability import Flight, Verdict, reach
+from missions.routing.reachability import Flight, reach
+from missions.routing.reached_assets import Verdict
 from missions.routing.terminals import AccessRules, Terminal, ways_between
 
 RULES = AccessRules(access_leg_m=10_000.0, direct_leg_m=5_000.0, on_asset_m=250.0, off_network_factor=2.0, zone_clearance_m=5.0)
