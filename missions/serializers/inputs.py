@@ -376,7 +376,9 @@ class PlanInputSerializer(OptionsSerializer):
         return attrs
 
     def to_request(self) -> PlanRequest:
-        return replace(plan_request(self.validated_data), organisation=self.context["organisation"].pk)
+        """A plan for a certain time is kept apart from what the organisation has in the air then."""
+        asked = plan_request(self.validated_data)
+        return asked if asked.departs_at is None else replace(asked, organisation=self.context["organisation"].pk)
 
 
 class MissionInputSerializer(OptionsSerializer):
