@@ -199,7 +199,7 @@ def metres(problem: Problem, classes: int = 1) -> Quantity:
     along_m = np.array([visit.length_m for visit in problem.visits])
     onward_m = np.minimum(problem.between_m + along_m, NO_WAY_M)[None]
     return Quantity(
-        first=np.minimum(problem.from_start_m + along_m, NO_WAY_M).reshape(len(problem.uavs), len(problem.visits)),
+        first=np.ascontiguousarray(np.minimum(problem.from_start_m + along_m, NO_WAY_M)).reshape(len(problem.uavs), len(problem.visits)),
         onward=onward_m if classes <= 1 else np.repeat(onward_m, classes, axis=0),
         end=np.ascontiguousarray(np.minimum(problem.end_m, NO_WAY_M).T).reshape(len(problem.uavs), len(problem.visits)),
         along=along_m[None] if classes <= 1 else np.repeat(along_m[None], classes, axis=0),
