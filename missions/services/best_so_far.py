@@ -14,6 +14,7 @@ from missions.routing.problem import End, Objective, Problem, Routes
 from missions.routing.progress import Progress
 from missions.routing.terminals import Ways
 
+UNITS = {Objective.TOTAL: "m", Objective.MAKESPAN: "s", Objective.TIME: "s", Objective.ENERGY: "Wh"}
 MOST_POINTS = 6_000  # of all lines together: some 150 kB, once a second
 
 
@@ -53,15 +54,12 @@ class Sketch:
         return None if progress.best_routes is None else self._drawn(progress.best_routes, progress.bound)
 
     def _drawn(self, routes: Routes, bound: float | None) -> dict[str, Any]:
-        problem, is_total = self.problem, self.problem.objective is Objective.TOTAL
-        measured = [
-            problem.route_length_m(uav, route) if is_total else problem.route_duration_s(uav, route) for uav, route in enumerate(routes)
-        ]
+        problem = self.problem
         lines = {uav: self._line(uav, route) for uav, route in enumerate(routes) if route}
         step = max(1, -(-sum(map(len, lines.values())) // MOST_POINTS))
         return {
-            "unit": "m" if is_total else "s",
-            "value": round(sum(measured) if is_total else max(measured, default=0.0), 3),
+            "unit": UNITS[problem.objective],
+            "value": round(problem.value(routes), 3),
             "bound": None if bound is None else round(bound, 3),
             "left_out": problem.target_count - len({problem.visits[visit].target for route in routes for visit in route}),
             "routes": {
