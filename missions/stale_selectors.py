@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from django.db.models import Exists, OuterRef
-from django.utils.formats import date_format
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset
@@ -117,7 +116,7 @@ def _zone_causes(route: Route, flown: FlownRoute, met: Sequence[MetZone]) -> lis
         causes.append(
             StaleCause(
                 "zone",
-                f"{_leg_words(meetings[0].name, ends, route.mission_uav.name)} {_when_and_how_high(agl_m, times)}",
+                f"{_leg_words(meetings[0].name, ends, route.mission_uav.name)} {_how_high(agl_m)}",
                 route.mission_uav.sequence,
                 leg=ends,
                 position=(float(flown.position[first, 0].mean()), float(flown.position[first, 1].mean())),
@@ -147,13 +146,10 @@ def _times(meetings: Sequence[MetZone]) -> tuple[datetime, datetime] | None:
     return datetime.fromtimestamp(min(starts), UTC), datetime.fromtimestamp(max(ends), UTC)
 
 
-def _when_and_how_high(agl_m: tuple[float, float], times: tuple[datetime, datetime] | None) -> str:
+def _how_high(agl_m: tuple[float, float]) -> str:
     low, high = (f"{height_m:.0f}" for height_m in agl_m)
-    values = {"heights": low if low == high else _("%(low)s to %(high)s") % {"low": low, "high": high}}
-    if times is None:
-        return _("It is flown %(heights)s m above ground.") % values
-    values |= {"day": date_format(times[0], "j M"), "start": f"{times[0]:%H:%M}", "end": f"{times[1]:%H:%M}"}
-    return _("It is flown %(heights)s m above ground, on %(day)s from %(start)s to %(end)s UTC.") % values
+    heights = low if low == high else _("%(low)s to %(high)s") % {"low": low, "high": high}
+    return _("It is flown %(heights)s m above ground.") % {"heights": heights}
 
 
 def _leg_names(route: Route, leg: int) -> tuple[str, str]:

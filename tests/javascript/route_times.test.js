@@ -6,7 +6,7 @@ import { arrivalsOf, batteryOf, delayText, landing_s, separationOf, staysOf, sta
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const heron = {
-  uav: "Heron", geometry: {}, departs_s: 0, energy_wh: 50, battery_percent: 32,
+  uav: "Heron", geometry: {}, departs_s: 0, duration_s: 324, energy_wh: 50, battery_percent: 32,
   waypoints: [{ kind: "start", target: null }, { kind: "target", target: 1 }, { kind: "target", target: 1 }, { kind: "end", target: null }],
   arrival_s: [0, 100, 160, 300], battery_left_percent: [100, 80, 70, 32],
 };
@@ -16,7 +16,7 @@ const apart = { lateral_m: 30, vertical_m: 15, time_s: 60, delays: [0, 180], lay
 test("a target is reached where its route first comes to it", () => {
   assert.deepEqual([...visitsOf(heron)], [[1, { arrival_s: 100, battery_percent: 80 }]]);
   assert.deepEqual([...arrivalsOf({ targets: [{ key: "a" }, { key: "b" }], result: { departs_at: null, routes: [heron] } })], [["b", "+01:40"]]);
-  assert.equal(landing_s(heron), 300);
+  assert.equal(landing_s(heron), 324);
 });
 
 test("a plan from before has no times, and nothing is said of them", () => {

@@ -157,7 +157,7 @@ export function wishWordsOf({ objective, wish }) {
 export function bestWordsOf(best) {
   if (!best) return "";
   const { unit, value, bound, left_out } = best;
-  const textOf = unit === "m" ? lengthText : durationText;
+  const textOf = { m: lengthText, s: durationText, Wh: energyText }[unit];
   const figure = textOf(value);
   const words = bound > 0 && !left_out ? t("{figure} so far, at most {share} above what is possible ({least})", { figure, share: shareText(Math.max(0, value / bound - 1)), least: textOf(bound) }) : t("{figure} so far", { figure });
   return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")].filter(Boolean).join(", ");

@@ -26,7 +26,7 @@ export function arrivalsOf(plan) {
 }
 
 /** "lands 14:32" is the last of these; null in plans without times. */
-export const landing_s = ({ arrival_s }) => arrival_s?.at(-1) ?? null;
+export const landing_s = ({ arrival_s, departs_s, duration_s }) => (arrival_s?.length > 0 && arrival_s.at(-1) !== null ? departs_s + duration_s : null);
 
 /** Where a route waits on the way: at a base between two flights, on a tower to charge. [{ index, kind: "base" | "charging", stay_s, charged_wh }] */
 export function staysOf({ waypoints, charging }) {

@@ -220,4 +220,5 @@ export default {
   "{time} sooner": "{time} früher",
   "“{name}” holds the present targets now.": "„{name}“ enthält jetzt die gegenwärtigen Ziele.",
   "“{name}” is kept.": "„{name}“ ist gespeichert.",
+  "There from {start} to {end}.": "Dort von {start} bis {end}.",
 };

@@ -5,6 +5,7 @@ import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
+import { departureText } from "../flight_options.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
@@ -146,7 +147,7 @@ function staleNotice(mission, actions, { canPlan, showPlace }) {
   const [headline, ...rest] = (mission.stale_reason || t("The ground has changed since this was planned.")).split(/(?<=\.) /);
   const causes = mission.stale_causes ?? [];
   const planAgain = canPlan && way({ label: t("Plan again"), act: actions.plan });
-  const lines = causes.slice(0, MOST_CAUSES).map((cause) => h("li", {}, cause.message, " ", cause.position && way({ label: t("See the place"), act: () => showPlace(cause.position) })));
+  const lines = causes.slice(0, MOST_CAUSES).map((cause) => h("li", {}, cause.message, " ", cause.from && `${t("There from {start} to {end}.", { start: departureText(cause.from), end: clockText(cause.to) })} `, cause.position && way({ label: t("See the place"), act: () => showPlace(cause.position) })));
   const more = causes.length - lines.length;
   return h(
     "div",
