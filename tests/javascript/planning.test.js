@@ -108,6 +108,7 @@ test("only so many plans are kept, and the newest of one question", () => {
   assert.equal(Object.keys(figures).length, 16);
   assert.equal(withResult(figures, "basis 39", { number: "again" })["basis 39"].number, "again");
   assert.equal(Object.keys(withResult(figures, "basis 39", {})).length, 16);
+  assert.deepEqual(Object.keys(withResult(figures, "basis 40", { ground_revision: 8 })), ["basis 40"]); // a zone has come in
 });
 
 const uav = (id, more) => ({ id, name: `UAV ${id}`, base_name: "West yard", type_name: "Quad", sensors: ["RGB"], state: "active", battery_percent: 90, position: [0, 0], ...more });

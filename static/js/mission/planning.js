@@ -17,9 +17,9 @@ export function planOf(result, selection) {
   return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs, charging_w };
 }
 
-/** Results by what they were made for; the oldest go. */
+/** Results by what they were made for; the oldest go, and those of another ground: a zone may have come in since. */
 export function withResult(figures, basis, result) {
-  const rest = Object.entries(figures).filter(([known]) => known !== basis);
+  const rest = Object.entries(figures).filter(([known, other]) => known !== basis && other.ground_revision === result.ground_revision);
   return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
 }
 

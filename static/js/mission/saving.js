@@ -8,7 +8,7 @@ import { draftDecision, isStarted } from "./draft.js";
 import { UNSAID } from "./flight_options.js";
 import { merged } from "./merge.js";
 import { isPlanCurrent, isUnsaved } from "./plan_view.js";
-import { planOf } from "./planning.js";
+import { planOf, withResult } from "./planning.js";
 import * as picks from "./selection.js";
 
 export const RETRY_S = 8;
@@ -49,7 +49,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       plan: plan ?? store.state.plan,
       planIsStored: Boolean(plan),
       savedBasis: picks.basisOf(stored),
-      figures: plan ? { ...store.state.figures, [plan.basis]: plan.result } : store.state.figures,
+      figures: plan ? withResult(store.state.figures, plan.basis, plan.result) : store.state.figures,
       problem: unlessOfSaving(store.state.problem),
       conflict: null,
       isAway: false,
