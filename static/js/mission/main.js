@@ -34,7 +34,7 @@ import { watchMission } from "./together.js";
 const page = readPage();
 const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
-  plan: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
+  plan: null, groundRevision: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
   tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], hand: null,

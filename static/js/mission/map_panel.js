@@ -13,6 +13,7 @@ import * as zonesLayer from "../map/layers/zones.js";
 import { createUavs } from "../map/layers/uavs.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { goTo } from "../map/places_found.js";
+import { TILES } from "../map/style.js";
 import { tipOf } from "../map/tips.js";
 import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";
@@ -192,6 +193,13 @@ export function mountMap(store, actions, page, { askForUav }) {
     store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
+    let drawnGround = null;
+    const drawGround = (revision) => {
+      if (!(revision > (drawnGround ?? -1))) return;
+      if (drawnGround !== null) map.getSource(TILES)?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${revision}`]); // a zone may have come in
+      drawnGround = revision;
+    };
+    store.listen(["groundRevision", "plan"], ({ groundRevision, plan }) => [plan?.result.ground_revision, groundRevision].forEach(drawGround));
     store.listen(["ground"], ({ ground }) => {
       controls.setGround(ground);
     });

@@ -43,7 +43,7 @@ export function watchMission(store, { editor, take, connectedAgain, tellDeleted 
   async function report() {
     reportedAt = Date.now();
     const { data } = await presence(true);
-    store.update({ others: data.others });
+    store.update({ others: data.others, groundRevision: data.ground_revision });
     const { mission } = store.state;
     if (!mission.plan || mission.is_stale || mission.plan.ground_revision === data.ground_revision) return;
     const { data: fresh } = await get(`/missions/${mission.id}`); // the ground has changed, the mission has not
