@@ -12,7 +12,7 @@ from inspection.models import TerrainTile
 from inspection.selectors import ground_heights_m
 from inspection.services import import_terrain
 from inspection.services.terrain_import import remove_terrain
-from missions.services import drawing, make_plan
+from missions.services import make_plan, planning
 from tests.inspection.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
 from tests.missions.test_planning import request
@@ -88,7 +88,7 @@ def test_heights_are_worked_out_again_where_the_terrain_changes_meanwhile(here: 
         looked.append(len(positions))
         return heights
 
-    with mock.patch.object(drawing, "ground_heights_m", changing):
+    with mock.patch.object(planning, "ground_heights_m", changing):
         plan = make_plan(request=request(here.towers[5]))
     assert len(looked) == 2
     assert TerrainTile.objects.exists()
