@@ -92,6 +92,7 @@ export default {
   "Not known": "Nicht bekannt",
   "Not loaded: {reason}": "Nicht geladen: {reason}",
   "not needed": "nicht gebraucht",
+  "reaches none of what is left": "erreicht nichts von dem, was übrig ist",
   "Not planned yet": "Noch nicht geplant",
   "Not reached": "Nicht erreicht",
   "Not saved yet": "Noch nicht gespeichert",

@@ -60,7 +60,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const look = () => store.update({ lookedAt: route.sequence });
     const leave = () => store.update({ lookedAt: null });
     const old = before && counterpart(route, before);
-    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), staysText(route), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : t("not needed");
+    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), staysText(route), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : state.plan.result.unassigned.length ? t("reaches none of what is left") : t("not needed");
     const delta = (words) => old && h("small", {}, words);
     const landing = isUsed && state.plan.result.departs_at && !old ? landing_s(route) : null;
     const battery = isUsed ? batteryOf(route) : null;
