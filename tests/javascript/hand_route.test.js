@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { createHandEditing } from "../../static/js/mission/hand_editing.js";
-import { bodyOf, changedLegs, changesOf, dropped, faultsOf, inserted, legOf, moved, pointsOf, raised } from "../../static/js/mission/hand_route.js";
+import { backTo, bodyOf, changedLegs, changesOf, dropped, faultsOf, inserted, legOf, moved, pointsOf, raised } from "../../static/js/mission/hand_route.js";
 import { createStore } from "../../static/js/store.js";
 
 const at = (lon, kind, target = null) => ({ position: [lon, 40], altitude_agl_m: 60, kind, target });
@@ -78,4 +78,11 @@ test("each change is a step that can be undone, and each changed leg is asked ab
   assert.deepEqual([store.state.hand.canUndo, store.state.hand.canRedo], [true, false]);
   store.update({ why: null });
   assert.equal(store.state.hand, null); // closing the panel ends it
+});
+
+test("back to what was is stored on top of what is: points that are still there keep their places, those taken out come in again", () => {
+  const point = (longitude, kind, was) => ({ position: [longitude, 56], kind, target: null, was });
+  const before = [point(10, "start", 0), point(10.1, "pass", 1), point(10.2, "pass", 2), point(10.3, "end", 3)];
+  const now = [point(10, "start", 0), point(10.15, "pass", 1), point(10.2, "pass", 2), point(10.3, "end", 3)];
+  assert.deepEqual(backTo(before, now).map(({ was }) => was), [0, null, 2, 3]);
 });

@@ -9,7 +9,7 @@ import * as hand from "./hand_route.js";
 const MOST_ASKED = 200; // legs at once: missions/serializers/by_hand.py
 
 /** saving: { save(), keepOpen(mission, asked) }. While somebody changes a route, store.state.hand says all of it; else it is null. */
-export function createHandEditing({ store, selection, problem, wordsOf }, { save, keepOpen }) {
+export function createHandEditing({ store, history, selection, problem, wordsOf }, { save, keepOpen }) {
   const verdicts = new Map(); // leg → { is_clear, zone, message }
   let [past, future] = [[], []];
   let isAsking = false;
@@ -81,16 +81,34 @@ export function createHandEditing({ store, selection, problem, wordsOf }, { save
     return true;
   }
 
+  async function stored(mission, sequence, points) {
+    const answer = await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, { body: hand.bodyOf(points), headers: { "If-Match": `"${mission.revision}"` } });
+    return answer.data;
+  }
+
+  /** The route as it was before it was kept; who has changed the mission since is told so. */
+  async function takeBack(mission, sequence, points) {
+    try {
+      keepOpen(await stored(mission, sequence, points), { selection: selection(), name: store.state.name });
+      say(t("Undone."));
+    } catch (error) {
+      toast(t("Not undone: {reason}", { reason: wordsOf(error) }));
+    }
+  }
+
   async function keep() {
     const { sequence, points, original } = state();
     if (!hand.changesOf(points, original)) return end();
     const { mission, name } = store.state;
     put({ isSaving: true });
     try {
-      const { data } = await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, { body: hand.bodyOf(points), headers: { "If-Match": `"${mission.revision}"` } });
+      const data = await stored(mission, sequence, points);
       end();
       keepOpen(data, { selection: selection(), name });
+      history.startFrom(selection()); // a step back from here would plan anew, and the change by hand would be gone
+      const undo = () => takeBack(data, sequence, hand.backTo(original, hand.pointsOf(data.plan.routes[sequence])));
       say(t("The route is kept as changed by hand."));
+      toast(t("The route is kept as changed by hand."), { label: t("Undo"), act: undo });
     } catch (error) {
       if (!state()) return undefined;
       const faults = hand.faultsOf(error.details);

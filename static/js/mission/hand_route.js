@@ -53,6 +53,17 @@ export function changesOf(points, original) {
   return original.length - kept.length + points.filter((point) => !isAtPlace(point, original)).length;
 }
 
+/** The points of before, to be stored on top of what is stored now: each is the first one left that lies where it does and is of its kind. */
+export function backTo(before, now) {
+  let from = 0;
+  return before.map((point) => {
+    const isSame = (other) => other.kind === point.kind && other.target === point.target && other.position.every((degrees, axis) => Math.abs(degrees - point.position[axis]) < 1e-9);
+    const found = now.findIndex((other, at) => at >= from && isSame(other));
+    if (found >= 0) from = found + 1;
+    return { ...point, was: found < 0 ? null : now[found].was };
+  });
+}
+
 /** A leg as it is asked about; times are those of the stored waypoints around it. */
 export function legOf(points, index) {
   const end = ({ position, altitude_agl_m }, arrival_s) => ({ position, altitude_agl_m, arrival_s });

@@ -91,6 +91,7 @@ export default {
   "not in the mission": "nicht in der Mission",
   "Not known": "Nicht bekannt",
   "Not loaded: {reason}": "Nicht geladen: {reason}",
+  "Not undone: {reason}": "Nicht rückgängig gemacht: {reason}",
   "not needed": "nicht gebraucht",
   "reaches none of what is left": "erreicht nichts von dem, was übrig ist",
   "Not planned yet": "Noch nicht geplant",
