@@ -50,8 +50,16 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     queueMicrotask(plan); // after whoever saved has settled
   });
 
-  async function plan() {
+  const isByHand = () => (store.state.plan?.result.routes ?? []).some(({ by_hand }) => by_hand?.length > 0);
+
+  /** `isSure` is true where somebody has been told what is lost; events are no answer. */
+  async function plan(isSure) {
     if (store.state.planning) return;
+    if (isSure !== true && isByHand()) {
+      const anyway = { label: t("Plan all the same"), act: () => plan(true) };
+      problem(t("A route was changed by hand."), t("Planning again takes that away."), [anyway], { untilChanged: true, level: "warning" });
+      return;
+    }
     if (store.state.saving) {
       isWanted = true;
       return;
