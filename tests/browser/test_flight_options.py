@@ -31,7 +31,7 @@ def is_saved(page: Page) -> None:
 
 
 def departure(page: Page) -> Locator:
-    return page.get_by_label("Departure", exact=True)
+    return page.get_by_role("textbox", name="Departure")
 
 
 def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_what_they_mean(visitor: Visitor, picture: Picture) -> None:
