@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
+from django.conf import settings
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
@@ -110,6 +111,7 @@ class BlockingZoneSerializer(serializers.Serializer):
 class LegalWindowsSerializer(TimeSpanSerializer):
     """Departures between two moments, the routes being flown as planned."""
 
+    margin_s = serializers.FloatField(help_text="by so much before and after its times a zone counts")
     windows = TimeSpanSerializer(many=True, help_text="departures at which no zone is met")
     zones = BlockingZoneSerializer(many=True, help_text="that the routes meet in space and height, at whatever time")
 
@@ -117,6 +119,7 @@ class LegalWindowsSerializer(TimeSpanSerializer):
 def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict[str, Any]:
     """uavs: for each route the index of its UAV."""
     return _span_json(span) | {
+        "margin_s": settings.ZONE_RULES.time_margin_s,
         "windows": [_span_json(window) for window in found.windows],
         "zones": [
             {

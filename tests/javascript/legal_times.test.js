@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 globalThis.document = { documentElement: { lang: "en", dataset: { timeZone: "Europe/Berlin" } } };
-const { legalTimesOf, legsText, momentAt, shareOf, spanText, stepWithin, ticksOf, wordsOf } = await import("../../static/js/mission/legal_times.js");
+const { legalTimesOf, legsText, momentAt, shareOf, spanText, stepWithin, ticksOf, wordsOf, marginText } = await import("../../static/js/mission/legal_times.js");
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const at = (text) => Date.parse(`2026-11-${text}Z`);
@@ -51,4 +51,9 @@ test("spans and legs in words", () => {
   assert.equal(spanText({ from_ms: at("21T18:30:00"), to_ms: at("21T20:00:00") }), "21 Nov, 19:30 to 21:00");
   assert.equal(legsText([{ uav: "Heron", leg: 2 }, { uav: "Heron", leg: 4 }, { uav: "Kite", leg: 0 }]), "Heron, legs 3 to 5; Kite, leg 1");
   assert.equal(legsText([{ uav: "Heron", leg: -1 }]), "Heron, at take-off");
+});
+
+test("why a window ends sooner than a zone begins is said where there is a zone", () => {
+  assert.equal(marginText({ zones: [], margin_s: 300 }), "");
+  assert.equal(plain(marginText({ zones: [{}], margin_s: 300 })), "Zones count 5 min before and after their times.");
 });

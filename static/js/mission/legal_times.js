@@ -11,9 +11,9 @@ const TICK_HOURS = 6;
 const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
 
 /** The server's answer with moments as ms; nameOf(index) names the UAV of a leg. */
-export function legalTimesOf({ from, to, windows, zones }, nameOf = String) {
+export function legalTimesOf({ from, to, windows, zones, margin_s = 0 }, nameOf = String) {
   const named = (legs) => legs.map(({ uav, leg }) => ({ uav: nameOf(uav), leg }));
-  return { ...span({ from, to }), windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
+  return { ...span({ from, to }), margin_s, windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
 }
 
 /** How far along the bar, 0 to 1. */
@@ -56,6 +56,9 @@ export function spanText({ from_ms, to_ms }) {
   const isOneDay = typedMoment(from).slice(0, 10) === typedMoment(to).slice(0, 10);
   return t("{from} to {to}", { from: departureText(from), to: isOneDay ? clockText(to) : departureText(to) });
 }
+
+/** Why a window ends sooner than a zone begins; empty where that is not so. */
+export const marginText = ({ zones, margin_s }) => (zones.length && margin_s > 0 ? t("Zones count {time} before and after their times.", { time: durationText(margin_s) }) : "");
 
 /** What the bar says, and whether the chosen departure is one of the legal ones: { sentence, departure }. */
 export function wordsOf(times, departs_at) {

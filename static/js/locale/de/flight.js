@@ -61,6 +61,7 @@ export default {
   "Energy": "Energie",
   "Every changed leg is clear.": "Jede geänderte Teilstrecke ist frei.",
   "Finish soonest": "Am frühesten fertig",
+  "Zones count {time} before and after their times.": "Zonen zählen {time} vor und nach ihren Zeiten.",
   "For the routes as planned, by the clock of {zone}.": "Für die Routen wie geplant, nach der Uhr von {zone}.",
   "from the {side}": "aus {side}",
   "From|wind": "Aus",

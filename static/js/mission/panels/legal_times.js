@@ -6,7 +6,7 @@ import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { zoneText } from "../../units.js";
 import { departureText } from "../flight_options.js";
-import { legalTimesOf, legsText, momentAt, shareOf, spanAt, spanText, STEP_MS, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
+import { STEP_MS, legalTimesOf, legsText, marginText, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
 
 const HOUR_MS = 3_600_000;
 
@@ -61,7 +61,7 @@ export function showLegalTimes(store, actions) {
   function draw() {
     const { departs_at } = store.state.selection;
     const words = wordsOf(times, departs_at);
-    said.textContent = words.sentence;
+    said.textContent = [words.sentence, marginText(times)].filter(Boolean).join(" ");
     departure.textContent = words.departure;
     const focused = chart.contains(document.activeElement) ? document.activeElement.dataset.part : null;
     const slider = sliderOf(departs_at ? Date.parse(departs_at) : null);
