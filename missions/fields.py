@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+from django.utils.translation import gettext_lazy as _
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
@@ -46,6 +47,18 @@ class FiniteFloatField(serializers.FloatField):
         if not _is_number(data):
             self.fail("invalid")
         return float(data)
+
+
+class AboveZeroField(FiniteFloatField):
+    """A JSON number above 0."""
+
+    default_error_messages = {"above_zero": _("This must be above 0.")}
+
+    def to_internal_value(self, data: Any) -> float:
+        value = super().to_internal_value(data)
+        if value <= 0:
+            self.fail("above_zero")
+        return value
 
 
 def _is_number(value: Any) -> bool:

@@ -4,10 +4,10 @@ from typing import Any
 
 from rest_framework import serializers
 
-from missions.fields import FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
 from missions.models import Base, CredentialKind, UavCredential, UavType
-from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS, above_zero
+from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, LARGEST_DISK_M2, LARGEST_POWER_W, MOST_RESERVE_PERCENT
 
 MOST_SENSORS = 12
@@ -18,43 +18,22 @@ class UavTypeSerializer(serializers.Serializer):
 
     id = serializers.IntegerField(read_only=True)
     name = serializers.CharField(max_length=100)
-    max_range_m = FiniteFloatField(allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery")
-    cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
-    battery_wh = FiniteFloatField(allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery")
-    mass_kg = FiniteFloatField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off")
+    max_range_m = AboveZeroField(allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery")
+    cruise_speed_mps = AboveZeroField(required=False, max_value=FASTEST_MPS)
+    battery_wh = AboveZeroField(allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery")
+    mass_kg = AboveZeroField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off")
     reserve_percent = FiniteFloatField(required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses")
-    max_airspeed_mps = FiniteFloatField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: not limited")
-    rotor_disk_m2 = FiniteFloatField(
+    max_airspeed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: not limited")
+    rotor_disk_m2 = AboveZeroField(
         allow_null=True, required=False, max_value=LARGEST_DISK_M2, help_text="area swept by all rotors; null: the Iris's"
     )
-    hover_power_w = FiniteFloatField(
+    hover_power_w = AboveZeroField(
         allow_null=True, required=False, max_value=LARGEST_POWER_W, help_text="in a calm hover, as measured; null: worked out"
     )
     sensors = serializers.ListField(child=serializers.CharField(max_length=50), required=False, max_length=MOST_SENSORS)
     uav_count = serializers.IntegerField(read_only=True)
     revision = serializers.IntegerField(read_only=True, help_text="the ETag")
     updated_at = serializers.DateTimeField(read_only=True)
-
-    def validate_max_range_m(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_cruise_speed_mps(self, value: float) -> float | None:
-        return above_zero(value)
-
-    def validate_battery_wh(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_mass_kg(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_max_airspeed_mps(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_rotor_disk_m2(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_hover_power_w(self, value: float | None) -> float | None:
-        return above_zero(value)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         """Figures that go together: the power of a hover and the mass and rotors that it holds up."""

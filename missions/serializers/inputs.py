@@ -9,7 +9,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-from missions.fields import FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.fleet_selectors import performance_of, uavs_of_organisation
 from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
 from missions.flight_plan.lost_link import LostLink
@@ -89,31 +89,16 @@ class ConditionsSerializer(serializers.Serializer):
 class PerformanceFieldsSerializer(serializers.Serializer):
     """Battery, mass and airspeed; missing: the stored UAV's type's."""
 
-    battery_wh = FiniteFloatField(
+    battery_wh = AboveZeroField(
         required=False, allow_null=True, max_value=LARGEST_BATTERY_WH, help_text="of a full battery; null: its energy is not counted"
     )
-    mass_kg = FiniteFloatField(required=False, allow_null=True, max_value=HEAVIEST_KG, help_text="at take-off; null: the Iris's")
+    mass_kg = AboveZeroField(required=False, allow_null=True, max_value=HEAVIEST_KG, help_text="at take-off; null: the Iris's")
     reserve_percent = FiniteFloatField(
         required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="of the battery, that no plan uses"
     )
-    max_airspeed_mps = FiniteFloatField(required=False, allow_null=True, max_value=FASTEST_MPS, help_text="null: not limited")
-    rotor_disk_m2 = FiniteFloatField(required=False, allow_null=True, max_value=LARGEST_DISK_M2, help_text="null: the Iris's")
-    hover_power_w = FiniteFloatField(required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="as measured; null: worked out")
-
-    def validate_battery_wh(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_mass_kg(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_max_airspeed_mps(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_rotor_disk_m2(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_hover_power_w(self, value: float | None) -> float | None:
-        return above_zero(value)
+    max_airspeed_mps = AboveZeroField(required=False, allow_null=True, max_value=FASTEST_MPS, help_text="null: not limited")
+    rotor_disk_m2 = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_DISK_M2, help_text="null: the Iris's")
+    hover_power_w = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="as measured; null: worked out")
 
 
 class UavInputSerializer(PerformanceFieldsSerializer):
@@ -122,8 +107,8 @@ class UavInputSerializer(PerformanceFieldsSerializer):
     id = serializers.IntegerField(required=False, allow_null=True)
     name = serializers.CharField(max_length=LONGEST_UAV_NAME, required=False)
     position = PositionField(required=False)
-    max_range_m = FiniteFloatField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")
-    cruise_speed_mps = FiniteFloatField(required=False, max_value=FASTEST_MPS)
+    max_range_m = AboveZeroField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")
+    cruise_speed_mps = AboveZeroField(required=False, max_value=FASTEST_MPS)
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
     most_targets = serializers.IntegerField(
         required=False, allow_null=True, min_value=1, max_value=MOST_TARGETS, help_text="null or missing: not limited"
@@ -141,23 +126,11 @@ class UavInputSerializer(PerformanceFieldsSerializer):
         help_text="missing: the stored UAV's",
     )
 
-    def validate_max_range_m(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_cruise_speed_mps(self, value: float) -> float | None:
-        return above_zero(value)
-
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         missing = [field for field in ("name", "position") if field not in attrs]
         if attrs.get("id") is None and missing:
             raise serializers.ValidationError(dict.fromkeys(missing, _("This field is required for a UAV without an id.")))
         return attrs
-
-
-def above_zero(value: float | None) -> float | None:
-    if value is not None and value <= 0:
-        raise serializers.ValidationError(_("This must be above 0."))
-    return value
 
 
 class TargetInputSerializer(serializers.Serializer):
@@ -251,9 +224,6 @@ class OptionsSerializer(serializers.Serializer):
 
     def validate_lost_link(self, value: dict[str, Any] | None) -> LostLinkRequest:
         return lost_link_from_json(value or {})
-
-    def validate_charging_w(self, value: float | None) -> float | None:
-        return above_zero(value)
 
     def validate_departs_at(self, value: datetime | None) -> datetime | None:
         if value is not None and abs((value - timezone.now()).days) > MOST_DAYS_AHEAD:

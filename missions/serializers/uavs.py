@@ -4,10 +4,10 @@ from typing import Any
 
 from rest_framework import serializers
 
-from missions.fields import FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.fleet_selectors import bases_of_organisation, types_of_organisation
 from missions.models import CredentialKind, EndAction, Uav, UavState
-from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS, above_zero
+from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 
 OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "heading_deg", "battery_percent", "sensor", "end_action")
 FROM_TYPE = ("max_range_m", "cruise_speed_mps")
@@ -25,12 +25,10 @@ class UavPropertiesSerializer(serializers.Serializer):
     state = serializers.ChoiceField(choices=UavState.choices, required=False)
     serial_number = serializers.CharField(max_length=100, allow_blank=True, required=False)
     mavlink_system_id = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=254, help_text="one vehicle each")
-    max_range_m = FiniteFloatField(
+    max_range_m = AboveZeroField(
         allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
     )
-    cruise_speed_mps = FiniteFloatField(
-        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual"
-    )
+    cruise_speed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual")
     heading_deg = FiniteFloatField(
         allow_null=True, required=False, min_value=0, max_value=359.999999, help_text="degrees from true north, clockwise; null: not known"
     )
@@ -47,12 +45,6 @@ class UavPropertiesSerializer(serializers.Serializer):
     )
     revision = serializers.IntegerField(read_only=True, help_text="the ETag")
     updated_at = serializers.DateTimeField(read_only=True)
-
-    def validate_max_range_m(self, value: float | None) -> float | None:
-        return above_zero(value)
-
-    def validate_cruise_speed_mps(self, value: float | None) -> float | None:
-        return above_zero(value)
 
 
 class UavFlatSerializer(UavPropertiesSerializer):
