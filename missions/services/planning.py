@@ -13,6 +13,7 @@ from inspection.selectors.planning import PlanningGround, edition_now, has_terra
 from missions.flight_plan.separation import Separation
 from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
+from missions.routing.problem import Reason
 from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
@@ -23,6 +24,7 @@ from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
+from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
 from missions.services.warnings import warnings_of
@@ -32,6 +34,7 @@ from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
 MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
 MOST_TRIES = 6  # with more zones each time
+OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
 
 
 class GraphOutdated(Exception):
@@ -112,10 +115,23 @@ class _Planner:
         raise GraphOutdated
 
     def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        """An attempt, drawn. Where a route takes more of its battery than the search had counted, it counts on so much less that this
-        route is out of the question, and tries again; in the end the UAV stays on the ground."""
+        """An attempt, drawn. Ways near infrastructure are preferred; what is out of reach on them may not be so on the shortest ones."""
         scene = scene_on(ground, chosen)
-        has_terrain = has_terrain_at(ground.edition)
+        preferred = self._drawn(scene, choice, share)
+        if scene.is_by_length or not self._is_out_of_reach(preferred):
+            return preferred
+        shortest = self._drawn(scene.by_length(), choice, share / 2)
+        return shortest if shortest.worth.left_out < preferred.worth.left_out else preferred
+
+    def _is_out_of_reach(self, plan: Finished) -> bool:
+        """Whether a target is left out for which another way might do."""
+        reasons = {item.reason for item in plan.found.left_out}
+        return not reasons.isdisjoint(OUT_OF_REACH) or (Reason.NO_PATH in reasons and not self.request.conditions.is_calm)
+
+    def _drawn(self, scene: Scene, choice: ZoneChoice, share: float) -> Finished:
+        """An attempt on the scene's ways. Where a route takes more of its battery than the search had counted, it counts on so much less
+        that this route is out of the question, and tries again; in the end the UAV stays on the ground."""
+        has_terrain = has_terrain_at(scene.edition)
         usable_share: dict[int, float] = {}
         for number in range(MOST_TRIES):
             found = attempt(
@@ -187,7 +203,7 @@ def make_plan(
         request,
         plan.routes,
         plan.found.left_out,
-        warnings_of(request, plan.found.grounded),
+        warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,

@@ -1,12 +1,13 @@
 """Why a target is left out of a plan before any route is looked for, and why a UAV stays on the ground."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from django.conf import settings
 
 from inspection.geodesy import LonLat
+from inspection.graph.by_length import by_length
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.network import Network
 from inspection.graph.zone_index import ZoneIndex
@@ -18,6 +19,8 @@ from missions.models import UavState
 from missions.routing.terminals import AccessRules, tallest_support_m
 from missions.services.places import Place
 from missions.services.requests import UavRequest
+
+SHORTEST = 1.0  # what a metre away from infrastructure costs where length alone counts
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,14 @@ class Scene:
     access: AccessRules
     flight: FlightRules
     edition: Edition  # of the ground, when the plan was begun
+
+    def by_length(self) -> "Scene":
+        """On which the shortest ways are the best, near infrastructure or not."""
+        return replace(self, graph=by_length(self.graph), access=replace(self.access, off_network_factor=SHORTEST))
+
+    @property
+    def is_by_length(self) -> bool:
+        return self.access.off_network_factor == SHORTEST
 
 
 @dataclass(frozen=True)

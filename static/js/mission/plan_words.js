@@ -15,6 +15,7 @@ const SENTENCES = [
   [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
   [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed, missing })],
   [/^Over these hills the battery of (.+) does not last for it\.$/, (name) => t("Over these hills the battery of {name} does not last for it.", { name })],
+  [/^The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach\.$/, () => t("The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach.")],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 

@@ -148,6 +148,7 @@ export default {
   "The mission": "Die Mission",
   "The next legal one is {when}.": "Der nächste erlaubte ist {when}.",
   "The route is kept as changed by hand.": "Die Route bleibt, wie sie von Hand geändert ist.",
+  "The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach.": "Die Routen nehmen die kürzesten Wege, auch abseits der Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
   "The UAVs keep apart.": "Die UAVs halten Abstand.",
   "the wind": "der Wind",
   "the wind, {time} more than in calm air": "der Wind, {time} mehr als bei Windstille",
