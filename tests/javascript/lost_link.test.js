@@ -74,7 +74,7 @@ test("waypoints with one trouble are told together, with the worst figure and th
   assert.equal(link.failureText(barred).where, "Waypoint 4 to its start");
   assert.equal(link.failureText(barred).why, "the way back meets Greenlawn");
   assert.equal(barred.zone_id, 7);
-  assert.equal(link.checkText("lost", plan), "From 3 of 4 waypoints a UAV does not come home so.");
+  assert.equal(link.checkText("lost", plan), "From 3 of 4 waypoints a UAV would not get home.");
 });
 
 test("the map shows each way back to where it would have led", () => {

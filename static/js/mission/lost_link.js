@@ -10,7 +10,7 @@ const USUAL_HOLD_S = 60;
 const DIGITS = 6; // some 0.1 m
 
 export const BEHAVIOURS = [
-  { value: "go_on", words: t("Go on"), meaning: t("Each UAV flies its route to the end, as it was checked.") },
+  { value: "go_on", words: t("Fly on"), meaning: t("Each UAV flies its route to the end, as it was checked.") },
   { value: "hold", words: t("Hold, then return"), meaning: t("Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.") },
   { value: "return", words: t("Return"), meaning: t("Each UAV flies straight to the nearest of its start and the rally points, and lands.") },
 ];
@@ -52,7 +52,7 @@ const holdText = (hold_s) => (hold_s < 100 ? `${numberText(hold_s)}\u00a0s` : du
 /** "holds 60 s and returns, 2 rally points". */
 export function lostLinkText(lost_link) {
   const { behaviour, rally_points, hold_s } = wholeLostLink(lost_link);
-  if (behaviour === GO_ON) return t("goes on");
+  if (behaviour === GO_ON) return t("flies on");
   const does = behaviour === "hold" ? t("holds {time}, then returns", { time: holdText(hold_s) }) : t("returns");
   return rally_points.length ? [does, tn(rally_points.length, "{count} rally point", "{count} rally points")].join(", ") : does;
 }
@@ -129,9 +129,9 @@ export function checkText(state, plan) {
   if (state === "lost") {
     const count = new Set(plan.result.lost_link.failed.map(({ route, waypoint }) => `${route} ${waypoint}`)).size;
     const total = flownOf(plan).reduce((sum, { waypoints }) => sum + waypoints.length, 0);
-    return tn(count, "From {count} of {total} waypoints a UAV does not come home so.", "From {count} of {total} waypoints a UAV does not come home so.", { total: total.toLocaleString(localeOf(language)) });
+    return tn(count, "From {count} of {total} waypoints a UAV would not get home.", "From {count} of {total} waypoints a UAV would not get home.", { total: total.toLocaleString(localeOf(language)) });
   }
-  return uncountedOf(plan).length === flownOf(plan).length ? t("From every waypoint the way back meets no zone.") : t("From every waypoint each UAV comes home with its reserve, and meets no zone.");
+  return uncountedOf(plan).length === flownOf(plan).length ? t("From every waypoint the way back meets no zone.") : t("From every waypoint each UAV gets home with its reserve, and meets no zone.");
 }
 
 /** Nothing that is not known is taken for safe: who has no battery stated is named. */

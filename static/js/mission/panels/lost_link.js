@@ -148,7 +148,7 @@ function tell(input, element, words) {
 function checkOf(store, { showPlaces }) {
   const said = h("p", { class: "link-said", role: "status" });
   const uncounted = h("p", { class: "caption" });
-  const rows = h("ul", { class: "link-failures", "aria-label": t("From where no UAV comes home") });
+  const rows = h("ul", { class: "link-failures", "aria-label": t("From where a UAV would not get home") });
   const more = h("button", { type: "button", class: "text-button", onclick: () => ((showsAll = true), draw(store.state)) });
   const element = h("div", { class: "link-check" }, said, rows, more, uncounted);
   let showsAll = false;
