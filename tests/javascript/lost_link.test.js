@@ -69,9 +69,9 @@ test("waypoints with one trouble are told together, with the worst figure and th
   const plan = planWith({ ...back, failed: [failed(1, "battery", { missing_wh: 2.31 }), failed(2, "battery", { missing_wh: 4.52 }), failed(3, "zone", { zone: "Greenlawn", zone_id: 7 })] });
   const [short, barred] = link.failuresOf(plan);
   assert.deepEqual(short.waypoints, [1, 2]);
-  assert.equal(link.failureText(short).where, "Waypoints 2 to 3 to its start");
+  assert.equal(link.failureText(short).where, "waypoints 2–3, back to its start");
   assert.equal(spaces(link.failureText(short).why), "up to 4.6 Wh are missing with the reserve kept");
-  assert.equal(link.failureText(barred).where, "Waypoint 4 to its start");
+  assert.equal(link.failureText(barred).where, "waypoint 4, back to its start");
   assert.equal(link.failureText(barred).why, "the way back meets Greenlawn");
   assert.equal(barred.zone_id, 7);
   assert.equal(link.checkText("lost", plan), "From 3 of 4 waypoints a UAV would not get home.");
@@ -91,5 +91,5 @@ test("energy that nobody counts is not taken for enough", () => {
 });
 
 test("places of waypoints are counted from 1 and run together", () => {
-  assert.equal(link.placesText([4, 2, 3, 11]), "3 to 5, 12");
+  assert.equal(link.placesText([4, 2, 3, 11]), "3–5, 12");
 });

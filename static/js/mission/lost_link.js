@@ -83,7 +83,7 @@ export function failuresOf(plan) {
   return [...groups.values()];
 }
 
-/** "3 to 9, 12", counted from 1. */
+/** "3–9, 12", counted from 1. */
 export function placesText(waypoints) {
   const runs = [];
   for (const number of [...waypoints].sort((a, b) => a - b)) {
@@ -91,7 +91,7 @@ export function placesText(waypoints) {
     if (last && number === last.to + 1) last.to = number;
     else runs.push({ from: number, to: number });
   }
-  return runs.map(({ from, to }) => (from === to ? `${from + 1}` : t("{first} to {last}", { first: from + 1, last: to + 1 }))).join(", ");
+  return runs.map(({ from, to }) => (from === to ? `${from + 1}` : `${from + 1}–${to + 1}`)).join(", ");
 }
 
 export const havenText = (haven) => (haven === 0 ? t("its start") : rallyName(haven - 1));
@@ -99,10 +99,10 @@ export const havenText = (haven) => (haven === 0 ? t("its start") : rallyName(ha
 /** Wh to a tenth: what is missing may be little. */
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
 
-/** What a group of failures says: { where: "Waypoints 3 to 9 to R2", why: "12.4 Wh are missing" }. */
+/** What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }. */
 export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_m }) {
   const values = { places: placesText(waypoints), haven: havenText(haven) };
-  const where = waypoints.length === 1 ? t("Waypoint {places} to {haven}", values) : t("Waypoints {places} to {haven}", values);
+  const where = waypoints.length === 1 ? t("waypoint {places}, back to {haven}", values) : t("waypoints {places}, back to {haven}", values);
   const isOne = waypoints.length === 1;
   const lack = lackText(missing_wh);
   const why = {

@@ -59,7 +59,7 @@ if (page.canPlan) {
   mountFlightOptions(store, actions);
   mountEndings(store, actions);
 } else mountOptionsRead(store);
-mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces: (positions) => map.showPlaces(positions) });
+mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces: (positions) => (layout.showMap(), map.showPlaces(positions)) });
 mountFoot(store, actions);
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });

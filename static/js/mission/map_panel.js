@@ -21,6 +21,7 @@ import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
 import { staysOf } from "./route_times.js";
 import { mountHandMap } from "./hand_map.js";
+import { usesRallyPoints } from "./lost_link.js";
 import { mountLostLinkMap } from "./lost_link_map.js";
 import { mountReachLayer } from "./reach_layer.js";
 import { createMapPicking } from "./map_picking.js";
@@ -227,10 +228,11 @@ export function mountMap(store, actions, page, { askForUav }) {
     map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes }));
   });
 
-  /** Routes and targets; UAVs only as long as nothing says which of them fly. */
+  /** Routes, targets and rally points; UAVs only as long as nothing says which of them fly. */
   function positionsOfMission({ plan, selection }) {
     const flown = routesOf(plan).flatMap((route) => route.geometry?.coordinates ?? []);
-    const places = [...flown, ...selection.targets.map((target) => target.centre).filter(Boolean)];
+    const rally = usesRallyPoints(selection.lost_link) ? selection.lost_link.rally_points : [];
+    const places = [...flown, ...rally, ...selection.targets.map((target) => target.centre).filter(Boolean)];
     return flown.length ? places : [...places, ...selection.uavs.map((uav) => uav.position)];
   }
 

@@ -96,6 +96,7 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
 
   function removes(index) {
     set(link.withoutRallyPoint(wish(), index));
+    (list.children[Math.min(index, list.children.length - 1)]?.querySelector("button:last-of-type") ?? onMap).focus(); // no field: there, undo is of typing
     toast(t("{name} is removed.", { name: link.rallyName(index) }), { label: t("Undo"), act: actions.undo });
   }
 

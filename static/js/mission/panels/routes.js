@@ -185,7 +185,8 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
 
   function showLostLink() {
     const place = byId("lost-link");
-    place.scrollIntoView({ block: "center" });
+    const scroll = place.closest(".side-scroll"); // alone: scrollIntoView would move what must not scroll
+    scroll.scrollBy({ top: place.getBoundingClientRect().top - scroll.getBoundingClientRect().top });
     place.querySelector(".link-failures button")?.focus({ preventScroll: true });
   }
 
