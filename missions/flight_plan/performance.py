@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 GRAVITY_MPS2 = 9.806_65
@@ -96,6 +96,13 @@ class Performance:
             return self.efficiency
         return self._ideal_hover_w / (self.hover_power_w - self.avionics_w) if self.hover_power_w > self.avionics_w else math.inf
 
+    def with_mass(self, mass_kg: float) -> "Performance":
+        """With other payload on the same rotors: a measured hover takes as much more as thrust to the power of 1.5. Raises
+        InvalidPerformance."""
+        _check(mass_kg, *MASSES_KG, "mass_kg")
+        lifting_w = None if self.hover_power_w is None else (self.hover_power_w - self.avionics_w) * (mass_kg / self.mass_kg) ** 1.5
+        return replace(self, mass_kg=mass_kg, hover_power_w=None if lifting_w is None else self.avionics_w + lifting_w)
+
     @property
     def _ideal_hover_w(self) -> float:
         """Momentum theory: T ** 1.5 / sqrt(2 rho A)."""
@@ -104,6 +111,8 @@ class Performance:
 
 # What the API and a UAV type hold; the rest is the same for all.
 PERFORMANCE_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
+# What a UAV may have of its own; its rotors are its type's.
+OWN_PERFORMANCE_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps")
 
 
 def performance_to_json(performance: Performance) -> dict[str, Any]:

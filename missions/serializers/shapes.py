@@ -158,6 +158,7 @@ class FailedReturnSerializer(serializers.Serializer):
     trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
     missing_wh = serializers.FloatField(allow_null=True)
     zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
+    zone_id = serializers.IntegerField(allow_null=True, required=False, help_text="its id; not there in checks of before")
     over_m = serializers.FloatField(allow_null=True, help_text="by how much it would fly above the limit")
 
 

@@ -24,7 +24,7 @@ from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.models import EndAction, Mission, Route, Waypoint
 from missions.services.last_look import flown_route
-from missions.services.missions import lock_mission, note, request_of_mission
+from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
 from missions.services.still_apart import separation_of_stored
@@ -73,6 +73,7 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
         counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
         locked.total_energy_wh = sum(counted) if counted else None
         locked.separation = separation_of_stored(locked)
+        check_lost_link(mission=locked)
         locked.plan_quality = (locked.plan_quality or {}) | {"is_proven": False, "gap": None, "method": "by hand"}
         locked.revision += 1
         locked.save()

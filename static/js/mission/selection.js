@@ -205,8 +205,13 @@ export function requestOf(selection) {
   };
 }
 
-/** Equal selections ask for equal plans. */
+/** Equal selections ask for equal routes: what is done without a link does not change them. */
 export function basisOf(selection) {
+  return storedBasisOf({ ...selection, lost_link: null });
+}
+
+/** Equal selections are stored as the same mission. */
+export function storedBasisOf(selection) {
   return JSON.stringify(requestOf(selection));
 }
 

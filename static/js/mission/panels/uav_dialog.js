@@ -21,7 +21,7 @@ function number(value, min, max, required = true) {
   return h("input", { class: "input", type: "number", step: "any", min, max, required, value: value ?? "" });
 }
 
-const END_CHOICES = [
+export const END_CHOICES = [
   ["hover", t("Hover over its last target")],
   ["return", t("Return to start")],
   ["land", t("Land at its last target")],
