@@ -1,6 +1,6 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
-from missions.services.by_hand import HandPoint, change_route
+from missions.services.by_hand import HandPoint, change_route, take_back_change
 from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet import (
     change_base,
@@ -76,6 +76,7 @@ __all__ = [
     "change_base",
     "change_mission",
     "change_route",
+    "take_back_change",
     "change_uav",
     "change_uav_type",
     "create_base",
