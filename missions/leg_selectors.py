@@ -49,9 +49,7 @@ class LegFlyer(NamedTuple):
 def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegFlyer | None = None) -> list[dict[str, Any]]:
     """What is wrong with each; flyer: who flies them, needed where one has a speed."""
     table, has_ground = zone_table(), has_terrain()
-    return [
-        _faults(leg.start, leg.end, departs_at, table, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT for leg in legs
-    ]
+    return [_faults(leg.start, leg.end, departs_at, table, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT for leg in legs]
 
 
 def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:

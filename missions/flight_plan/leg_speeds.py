@@ -35,9 +35,7 @@ def speeds_out_of_range(
     return found
 
 
-def _range(
-    waypoints: Waypoints, place: int, cruise_speed_mps: float, max_airspeed_mps: float | None, conditions: Conditions
-) -> SpeedRange:
+def _range(waypoints: Waypoints, place: int, cruise_speed_mps: float, max_airspeed_mps: float | None, conditions: Conditions) -> SpeedRange:
     if max_airspeed_mps is None:
         return SpeedRange(LEAST_HEADWAY_MPS, cruise_speed_mps)
     points = waypoints.points

@@ -81,7 +81,6 @@ class LegChecks(APIView):
         found = faults_of_legs(legs, departs_at, self._flyer(request, body.validated_data, legs))
         return Response(by_hand.LegChecksSerializer({"legs": found}).data)
 
-
     def _flyer(self, request: Request, body: dict[str, Any], legs: list[Leg]) -> LegFlyer | None:
         """Who flies the legs that have a speed."""
         if all(leg.speed_mps is None for leg in legs):
