@@ -105,7 +105,8 @@ class BlockingZoneSerializer(serializers.Serializer):
     name = serializers.CharField()
     blocked = TimeSpanSerializer(many=True, help_text="departures at which the mission would meet it")
     legs = MetLegSerializer(many=True, help_text="that meet it in space and height")
-    schedule_in_words = serializers.CharField()
+    schedule = serializers.JSONField(allow_null=True, help_text="as stored, in UTC; null: always")
+    schedule_in_words = serializers.CharField(help_text="the same for people, in UTC")
 
 
 class LegalWindowsSerializer(TimeSpanSerializer):
@@ -127,6 +128,7 @@ def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict
                 "name": zone.name,
                 "blocked": [_span_json(blocked) for blocked in zone.blocked],
                 "legs": [{"uav": uavs[route], "leg": leg} for route, leg in zone.legs],
+                "schedule": zone.schedule,
                 "schedule_in_words": schedule_sentence(zone.schedule),
             }
             for zone in found.zones
