@@ -166,7 +166,10 @@ class Route(models.Model):
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
     before_hand = models.JSONField(
-        default=list, db_default=[], blank=True, help_text="its waypoints before each change by hand that can be taken back; see services/by_hand.py"
+        default=list,
+        db_default=[],
+        blank=True,
+        help_text="its waypoints before each change by hand that can be taken back; see services/by_hand.py",
     )
 
     class Meta:

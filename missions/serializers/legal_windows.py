@@ -113,6 +113,7 @@ class LegalWindowsSerializer(TimeSpanSerializer):
     """Departures between two moments, the routes being flown as planned."""
 
     margin_s = serializers.FloatField(help_text="by so much before and after its times a zone counts")
+    height_margin_m = serializers.FloatField(help_text="by so much below and above its limits a zone counts")
     windows = TimeSpanSerializer(many=True, help_text="departures at which no zone is met")
     zones = BlockingZoneSerializer(many=True, help_text="that the routes meet in space and height, at whatever time")
 
@@ -121,6 +122,7 @@ def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict
     """uavs: for each route the index of its UAV."""
     return _span_json(span) | {
         "margin_s": settings.ZONE_RULES.time_margin_s,
+        "height_margin_m": settings.ZONE_RULES.height_margin_m,
         "windows": [_span_json(window) for window in found.windows],
         "zones": [
             {

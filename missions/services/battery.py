@@ -27,7 +27,10 @@ class DrawnLack:
         return f"{drawn} {self.missing_wh:,.1f} Wh more than the battery of {self.uav} may give."
 
 
-WITH_THAT_KEPT_BACK = "Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it."
+WITH_THAT_KEPT_BACK = (
+    "Drawn over the ground and what stands tall, routes take more than is counted on the network;"
+    " with that kept back no battery lasts for it."
+)
 
 
 def battery_overruns(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute]) -> dict[int, float]:
