@@ -6,6 +6,7 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import FASTEST_MPS
 from missions.services.by_hand import MOST_WAYPOINTS, HandPoint
 
@@ -13,7 +14,7 @@ MOST_LEGS = 200
 HIGHEST_AGL_M = 10_000.0
 
 
-class HandPointSerializer(serializers.Serializer):
+class HandPointSerializer(KnownFieldsSerializer):
     """A waypoint as it is wished."""
 
     position = PositionField()
@@ -26,7 +27,7 @@ class HandPointSerializer(serializers.Serializer):
     )
 
 
-class HandRouteSerializer(serializers.Serializer):
+class HandRouteSerializer(KnownFieldsSerializer):
     waypoints = HandPointSerializer(many=True, allow_empty=False)
 
     def validate_waypoints(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -41,13 +42,13 @@ class HandRouteSerializer(serializers.Serializer):
         ]
 
 
-class LegEndSerializer(serializers.Serializer):
+class LegEndSerializer(KnownFieldsSerializer):
     position = PositionField()
     altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_AGL_M)
     arrival_s = FiniteFloatField(required=False, allow_null=True, help_text="seconds after the departure; null: at any time of the flight")
 
 
-class LegSerializer(serializers.Serializer):
+class LegSerializer(KnownFieldsSerializer):
     start = LegEndSerializer()
     end = LegEndSerializer()
     speed_mps = AboveZeroField(
@@ -55,7 +56,7 @@ class LegSerializer(serializers.Serializer):
     )
 
 
-class LegChecksInputSerializer(serializers.Serializer):
+class LegChecksInputSerializer(KnownFieldsSerializer):
     legs = LegSerializer(many=True, allow_empty=False)
     departs_at = serializers.DateTimeField(required=False, allow_null=True, help_text="null: at any time")
     mission = serializers.UUIDField(required=False, allow_null=True, help_text="whose wind and UAV bound the speeds")

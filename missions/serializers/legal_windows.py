@@ -14,6 +14,7 @@ from inspection.zones.activity import Span
 from missions.fields import PositionField
 from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.zone_selectors import LegalWindows
 
 MOST_WAYPOINTS = 20_000
@@ -71,7 +72,7 @@ class TimedRouteField(serializers.Field):
         )
 
 
-class LegalWindowsInputSerializer(serializers.Serializer):
+class LegalWindowsInputSerializer(KnownFieldsSerializer):
     routes = serializers.ListField(
         child=TimedRouteField(), allow_empty=False, max_length=MOST_ROUTES, help_text="of a plan, as it was answered"
     )
