@@ -69,4 +69,4 @@ def rising_over(points: RoutePoints, things: TallThings) -> RoutePoints:
     risen = points.with_points_between(legs, shares)
     agl_m = risen.agl_m.copy()
     agl_m[legs + 1 + np.arange(len(legs))] = [least_m for _, _, least_m in low]
-    return RoutePoints(risen.position, agl_m, risen.kind, risen.asset, risen.target, risen.task)
+    return RoutePoints(risen.position, agl_m, risen.kind, risen.asset, risen.target, risen.task, risen.speed_mps)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from django.conf import settings
@@ -18,7 +18,7 @@ from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
-from missions.services.battery import battery_overruns, without_overruns
+from missions.services.battery import DrawnLack, battery_overruns, drawn_lacks, with_drawn_reasons, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
@@ -133,6 +133,7 @@ class _Planner:
         that this route is out of the question, and tries again; in the end the UAV stays on the ground."""
         has_terrain = has_terrain_at(scene.edition)
         usable_share: dict[int, float] = {}
+        lacks: dict[int, DrawnLack] = {}
         for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
@@ -144,10 +145,13 @@ class _Planner:
             over = battery_overruns(self.request, found, alone)
             if not over:
                 break
+            lacks |= drawn_lacks(self.request, alone, over)
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
+        if lacks:
+            found = replace(found, left_out=with_drawn_reasons(found.left_out, lacks))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
