@@ -21,6 +21,7 @@ from missions.services.battery import battery_overruns, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
+from missions.services.over_wires import spans_in_the_way, walls_of_spans, without_routes_barred
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -113,10 +114,13 @@ class _Planner:
 
     def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
         """An attempt, drawn. Where a route takes more of its battery than the search had counted, it counts on so much less that this
-        route is out of the question, and tries again; in the end the UAV stays on the ground."""
+        route is out of the question, and tries again; and what cannot be flown over is gone round from then on. In the end the UAV stays
+        on the ground."""
         scene = scene_on(ground, chosen)
         has_terrain = has_terrain_at(ground.edition)
+        terrain = ground_heights_m if has_terrain else None
         usable_share: dict[int, float] = {}
+        barred: frozenset[int] = frozenset()
         for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
@@ -124,12 +128,17 @@ class _Planner:
                 search_s=self.search_s * share / 2**number, usable_share=usable_share,
             )  # fmt: skip
             self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
-            alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+            alone = found.routes(self.request, terrain)
             over = battery_overruns(self.request, found, alone)
-            if not over:
+            in_the_way = spans_in_the_way(alone, scene.network, terrain)
+            if not over and not in_the_way:
                 break
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
+                found, alone = without_routes_barred(self.request, found, alone, in_the_way)
+            if in_the_way:
+                barred |= frozenset().union(*in_the_way.values())
+                scene = scene_on(ground, chosen, walls_of_spans(scene.network, barred))
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         routes, separation, others = self._apart(alone, choice)
