@@ -12,16 +12,18 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.graph.spans import spans_of
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
 from missions.flight_plan.leg_speeds import speeds_out_of_range
-from missions.flight_plan.obstacles import legs_too_low, tall_things
+from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
 from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
+from missions.flight_plan.tall_clearance import spans_too_near
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.leg_selectors import LegFlyer, speed_words
@@ -104,6 +106,7 @@ def _fly(locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: 
     assert flown.waypoints is not None  # noqa: S101 - just drawn
     leads_to = _leads_to(wished, flown.waypoints.points)
     _refuse(_speed_faults(flown, leads_to, request, uav))
+    _refuse(_wire_faults(flown))
     _refuse(_zone_faults(flown, leads_to, locked))
     _refuse(_reach_faults(flown, request, uav))
     _store(locked, route, flown, by_hand)
@@ -190,9 +193,28 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
 
 
 def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
-    low = legs_too_low(points, tall_things(planning_read().ground().network(), settings.FLIGHT_RULES))
-    words = _("Something tall stands here: fly at %(height)s m above ground over it.")
-    return {f"legs.{leg}": words % {"height": f"{least_m:.0f}"} for leg, _share, least_m in reversed(low)}
+    """Where waypoints and legs as they are wished, straight from one to the next, pass something tall too low."""
+    flight, ground = settings.FLIGHT_RULES, ground_heights_m if has_terrain() else None
+    under_m = np.full(len(points), np.nan) if ground is None else ground(points.position)
+    amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
+    low = too_low(Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network()), ground, flight)
+    if low is None:
+        return {}
+    faults: dict[str, str] = {}
+    for place, is_leg, agl_m in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), strict=True):
+        words = _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
+        if agl_m > flight.max_agl_m:
+            words = _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{flight.max_agl_m:.0f}"}
+        faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", words)
+    return faults
+
+
+def _wire_faults(flown: PlannedRoute) -> dict[str, str]:
+    """The last look at the route as it is drawn over the ground."""
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    ground = None if flown.is_flat else ground_heights_m
+    near = spans_too_near(flown.waypoints, spans_of(planning_read().ground().network()), ground, settings.FLIGHT_RULES)
+    return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
 
 
 def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:
