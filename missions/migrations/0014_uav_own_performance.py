@@ -5,7 +5,7 @@ from django.db import migrations, models
 
 class Migration(migrations.Migration):
     dependencies = [
-        ("missions", "0012_hand_sorties_lost_link"),
+        ("missions", "0013_speeds_by_hand"),
         ("workspace", "0006_job_best"),
     ]
 

@@ -24,7 +24,8 @@ from missions.services.requests import UavRequest
 class Scene:
     """What every step of one plan looks at. `graph` is the part of `whole_graph` that can be flown over.
 
-    `zones` are all that are kept clear of, `leg_zones` those of them that reach the heights between targets.
+    `zones` are all that are kept clear of, `leg_zones` those of them that reach the heights between targets; both with what is too tall
+    to be flown over.
     """
 
     whole_graph: InspectionGraph
@@ -35,6 +36,7 @@ class Scene:
     access: AccessRules
     flight: FlightRules
     edition: Edition  # of the ground, when the plan was begun
+    is_by_length: bool = False  # whether the shortest ways are the best on it, near infrastructure or not
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,11 @@ def refused_place(place: Place, scene: Scene) -> LeftOut | None:
     """Why a place can be on no route at all, or None. Zones count at the heights between its inspection and the flight to it."""
     height_m = place_height_m(place, scene)
     agl_m = inspection_agl_m(height_m, scene.flight)
+    if is_above_limit(height_m, scene.flight):
+        needed_m = height_m + scene.flight.clearance_m
+        limit_m = scene.flight.max_agl_m
+        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
+        return LeftOut(place.target, "above_height_limit", message)
     if place.is_stretch:
         zone = _zone_along(place.course, agl_m, scene)
         if zone is not None:
@@ -62,18 +69,13 @@ def refused_place(place: Place, scene: Scene) -> LeftOut | None:
         zone = zone_at(place.course[0], scene, agl_m)
         if zone is not None:
             return LeftOut(place.target, "inside_zone", f"It stands inside {zone}.")
-    if is_above_limit(height_m, scene.flight):
-        needed_m = height_m + scene.flight.clearance_m
-        limit_m = scene.flight.max_agl_m
-        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
-        return LeftOut(place.target, "above_height_limit", message)
     return None
 
 
 def place_height_m(place: Place, scene: Scene) -> float:
     """The asset's height; over a stretch of a line not less than its tallest support."""
     if place.is_stretch and place.asset is not None:
-        return max(place.height_m, tallest_support_m(scene.whole_graph, place.asset, place.course))
+        return max(place.height_m, tallest_support_m(scene.network, place.asset, place.course))
     return place.height_m
 
 

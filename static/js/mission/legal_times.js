@@ -3,6 +3,7 @@
 import { language, localeOf, t, tn } from "../text.js";
 import { clockText, durationText, typedMoment } from "../units.js";
 import { departureText } from "./flight_options.js";
+import { marginWords } from "./zones_passed.js";
 
 export const STEP_MS = 5 * 60_000;
 const HOUR_MS = 3_600_000;
@@ -11,9 +12,9 @@ const TICK_HOURS = 6;
 const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
 
 /** The server's answer with moments as ms; nameOf(index) names the UAV of a leg. */
-export function legalTimesOf({ from, to, windows, zones, margin_s = 0 }, nameOf = String) {
+export function legalTimesOf({ from, to, windows, zones, margin_s = 0, height_margin_m = 0 }, nameOf = String) {
   const named = (legs) => legs.map(({ uav, leg }) => ({ uav: nameOf(uav), leg }));
-  return { ...span({ from, to }), margin_s, windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
+  return { ...span({ from, to }), margin_s, height_margin_m, windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
 }
 
 /** How far along the bar, 0 to 1. */
@@ -58,7 +59,7 @@ export function spanText({ from_ms, to_ms }) {
 }
 
 /** Why a window ends sooner than a zone begins; empty where that is not so. */
-export const marginText = ({ zones, margin_s }) => (zones.length && margin_s > 0 ? t("Zones count {time} before and after their times.", { time: durationText(margin_s) }) : "");
+export const marginText = ({ zones, margin_s: time_s, height_margin_m: height_m }) => (zones.length ? marginWords({ time_s, height_m }) : "");
 
 /** What the bar says, and whether the chosen departure is one of the legal ones: { sentence, departure }. */
 export function wordsOf(times, departs_at) {

@@ -132,6 +132,12 @@ EAST = World(TOWERS, [at(0, 0)], [([at(2000, 0)], 45.0, 10.0)])
 WEST_WIND = Conditions((WindLayer(10, 5, 270),))
 
 
+def test_where_no_base_is_free_there_is_no_way_to_land_at_one() -> None:
+    costs = EAST.costs([IRIS], [BASE], Conditions())
+    assert costs.seconds.end.tolist() == costs.wh.end.tolist() == [[np.inf]]
+    assert np.isfinite(costs.seconds.first).all()
+
+
 def test_in_calm_air_a_route_takes_its_parts() -> None:
     """60 m up at 2.5 m/s, 2 km at 10 m/s, 15 m down, 10 s there, 15 m up, 2 km back and 60 m down."""
     costs = EAST.costs([IRIS], [RETURN], Conditions())

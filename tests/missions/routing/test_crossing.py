@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from missions.routing.arcs import NO_WAY_M, Arcs
+from missions.routing.arcs import Arcs
 from missions.routing.crossing import NONE, added_m, draw_move, make, measured
 from missions.routing.plan_state import copy_plan, empty_plan, ground_of, settle, workspace
 from missions.routing.problem import Objective, Problem
+from missions.routing.quantities import NO_WAY_M
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.ruin_and_recreate import construct
 from tests.missions.routing.random_problems import mixed_problem, random_problem, windy_problem

@@ -5,6 +5,7 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { zoneText } from "../../units.js";
+import { scheduleText } from "../../zones/schedule_words.js";
 import { departureText } from "../flight_options.js";
 import { STEP_MS, legalTimesOf, legsText, marginText, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
 
@@ -68,7 +69,7 @@ export function showLegalTimes(store, actions) {
     chart.replaceChildren(
       axis(),
       row(h("strong", {}, t("The mission")), "", unionTrack(), "union"),
-      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [zone.schedule_in_words, legsText(zone.legs)].filter(Boolean).join(" · "), zoneTrack(zone))),
+      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [scheduleText(zone.schedule, { now: times.from_ms, otherwise: zone.schedule_in_words }), legsText(zone.legs)].filter(Boolean).join(" · "), zoneTrack(zone))),
       h("div", { class: "legal-over" }, mark(Date.now(), "legal-now", t("now")), slider),
     );
     if (focused) chart.querySelector(`[data-part="${focused}"]`)?.focus();

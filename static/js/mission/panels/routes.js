@@ -13,7 +13,8 @@ import { GROUNDING } from "../plan_words.js";
 import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
 import { createPillDrag } from "../strip_drag.js";
 import { uavsByName } from "../selection.js";
-import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
+import { paleStrip, profileOf, spanStrip, stripAxis, stripTable } from "../span_strip.js";
+import { passedZones } from "../zones_passed.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
 const BATTERY_PX = 76 + 12; // where one has a battery
@@ -212,9 +213,10 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     for (const route of routesOf(plan).filter(({ geometry }) => geometry).slice(0, MOST_LOOKED_AT)) {
       if (zonesOf.has(route.waypoints)) continue;
       grounds(route).then(
-        ({ zones }) => {
-          zonesOf.set(route.waypoints, zones);
-          if (zones.length && store.state.plan === plan) draw(store.state);
+        (ground) => {
+          const { places } = profileOf(route.waypoints, route.length_m);
+          zonesOf.set(route.waypoints, passedZones(ground, route, places, plan.result.departs_at ?? null));
+          if (ground.zones.length && store.state.plan === plan) draw(store.state);
         },
         () => {}, // the strip stands without them; the profile says what failed
       );
