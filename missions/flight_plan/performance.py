@@ -24,12 +24,13 @@ EFFICIENCIES = (0.1, 0.95)  # of a hover: a fault of units lies outside
 
 
 class InvalidPerformance(ValueError):
-    """Figures that no UAV has; `place` names the entry as the JSON does."""
+    """Figures that no UAV has; `place` names the entry as the JSON does, `bounds` are what it has to lie between."""
 
-    def __init__(self, place: str, message: str) -> None:
+    def __init__(self, place: str, message: str, bounds: tuple[float, float] | None = None) -> None:
         super().__init__(f"{place}: {message}")
         self.place = place
         self.message = message
+        self.bounds = bounds
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,8 @@ class Performance:
         low, high = EFFICIENCIES
         if self.hover_power_w is not None and not low <= self.hover_efficiency <= high:
             least_w, most_w = (self.avionics_w + self._ideal_hover_w / share for share in (high, low))
-            raise InvalidPerformance("hover_power_w", f"must be from {least_w:.0f} to {most_w:.0f} for this mass and these rotors")
+            words = f"must be from {least_w:.0f} to {most_w:.0f} for this mass and these rotors"
+            raise InvalidPerformance("hover_power_w", words, (least_w, most_w))
 
     @property
     def weight_n(self) -> float:
@@ -142,4 +144,4 @@ def performance_from_json(value: Any) -> Performance:
 
 def _check(value: float | None, low: float, high: float, place: str) -> None:
     if value is not None and not low <= value <= high:
-        raise InvalidPerformance(place, f"must be from {low:g} to {high:g}")
+        raise InvalidPerformance(place, f"must be from {low:g} to {high:g}", (low, high))

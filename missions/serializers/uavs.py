@@ -10,6 +10,7 @@ from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerfor
 from missions.models import CredentialKind, EndAction, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
+from missions.serializers.performance import fault_words
 
 OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "heading_deg", "battery_percent", "sensor", "end_action")
 FROM_TYPE = ("max_range_m", "cruise_speed_mps", *OWN_PERFORMANCE_KEYS)
@@ -90,7 +91,7 @@ class UavFlatSerializer(UavPropertiesSerializer):
         try:
             performance_with(uav_type, own)
         except InvalidPerformance as error:
-            return {error.place: error.message}
+            return {error.place: fault_words(error)}
         return {}
 
 

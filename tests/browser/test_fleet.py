@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks
+from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
@@ -105,6 +105,23 @@ def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor
     assert uav["properties"]["from_type"] == ["max_range_m", "cruise_speed_mps", "mass_kg"]
     assert (uav["properties"]["battery_wh"], uav["properties"]["reserve_percent"]) == (480.0, 30.0)
     picture(page, "uavs-light")
+
+    page.goto("/missions/new")
+    wait_for_map(page)
+    page.get_by_role("button", name="Add a UAV").click()
+    page.keyboard.press("Enter")  # the middle of the map
+    dialog = page.get_by_role("dialog", name="Add a UAV")
+    dialog.get_by_label("Name").fill("Harrier 2")
+    dialog.get_by_label("Type").select_option("Harrier")
+    expect(dialog.get_by_label("Battery", exact=True)).to_have_attribute("placeholder", "400")
+    dialog.get_by_label("Mass at take-off").fill("7.5")
+    assert faults(page) == []
+    dialog.get_by_role("button", name="Add").click()
+    expect(page.get_by_role("checkbox", name="Harrier 2")).to_be_checked()
+    (added,) = asks(page, "/uavs?text=Harrier 2")["features"]
+    assert {name: added["properties"][name] for name in ("battery_wh", "mass_kg", "type_name")} == {
+        "battery_wh": 400.0, "mass_kg": 7.5, "type_name": "Harrier",
+    }  # fmt: skip
 
 
 def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) -> None:

@@ -85,6 +85,12 @@ def test_a_uav_that_is_heavier_than_its_type_hovers_as_well_with_more_power(clie
     assert flown["hover_power_w"] == pytest.approx(8.0 + 8.0 * 150.0)
 
 
+def test_a_hover_that_no_rotors_manage_is_told_with_its_bounds(client: Client) -> None:
+    """15.15 N on 0.206 m2 in air of 1.225 kg/m3 take 83.04 W at best: with 8 W beside, 95.4 W at 95 % and 838.4 W at 10 %."""
+    answer = post(client, "uav-types", KESTREL | {"hover_power_w": 50})
+    assert answer.json()["error"]["details"] == {"hover_power_w": ["From 96 to 838 W for this mass and these rotors."]}
+
+
 def test_a_uav_without_a_type_has_a_battery_of_its_own(client: Client) -> None:
     uav = uav_of(client, battery_wh=56.6)
     (flown,) = made(client, "missions", mission_body() | {"uavs": [{"id": uav["id"]}]})["uavs"]

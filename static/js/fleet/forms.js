@@ -3,6 +3,7 @@
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { coordinateText, lengthText, LONG_UNIT, SPEED_UNIT, speedText } from "../units.js";
+import { BOUNDS, boundsIn, IRIS, USUAL_RESERVE_PERCENT, usualOf } from "../uav_figures.js";
 import { choiceField, numberField, textField } from "./fields.js";
 import { ENDS } from "./words.js";
 
@@ -22,11 +23,7 @@ export const bodies = {
   bases: ({ name, position, note }) => ({ name, position, note }),
 };
 
-const USUAL_RESERVE_PERCENT = 20;
-/** Of missions/flight_plan/performance.py: figures of the PX4 Iris, which count where nothing is stated, and the bounds there. */
-const IRIS = { mass_kg: 1.545, rotor_disk_m2: 0.2059 };
-const BOUNDS = { battery_wh: { min: 1, max: 100_000 }, mass_kg: { min: 0.05, max: 1000 }, reserve_percent: { min: 0, max: 90 }, rotor_disk_m2: { min: 0.001, max: 1000 }, hover_power_w: { min: 1, max: 1_000_000 } };
-const AIRSPEED_BOUNDS = { min: Number((1 / SPEED_UNIT.mps).toFixed(1)), max: Math.floor(100 / SPEED_UNIT.mps) };
+const AIRSPEED_BOUNDS = boundsIn("max_airspeed_mps", SPEED_UNIT.mps);
 
 export const BLANK = {
   uavs: { name: "", type: null, base: null, position: null, serial_number: "", mavlink_system_id: null, max_range_m: null, cruise_speed_mps: null, battery_wh: null, mass_kg: null, reserve_percent: null, max_airspeed_mps: null, battery_percent: null, sensor: "", end_action: "hover", from_type: [] },
@@ -70,7 +67,7 @@ function uavFields(uav, { types, bases, place, isNew }) {
   /** What counts in an empty field stands in it in grey. */
   function showUsual() {
     const chosen = typeOf(type.read());
-    for (const field of power) field.usual(chosen ? chosen[field.name] : { mass_kg: IRIS.mass_kg, reserve_percent: USUAL_RESERVE_PERCENT }[field.name]);
+    for (const field of power) field.usual(usualOf(chosen)[field.name]);
     range.usual(chosen?.max_range_m);
     speed.usual(chosen?.cruise_speed_mps);
     const isCounted = Boolean(chosen?.battery_wh) || power[0].read() !== null;

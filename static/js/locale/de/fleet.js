@@ -15,7 +15,6 @@ export default {
   "As measured in still air, with this mass; empty: worked out from mass and rotors.": "Gemessen in ruhiger Luft, mit dieser Masse; leer: aus Masse und Rotoren errechnet.",
   "At least {least}.": "Mindestens {least}.",
   "At most {most}.": "Höchstens {most}.",
-  "At take-off.": "Beim Start.",
   "At take-off; empty: that of a PX4 Iris, in grey.": "Beim Start; leer: die einer PX4 Iris, in Grau.",
   "At the end": "Am Ende",
   "At the end, where a mission does not say “Return to start”": "Am Ende, wenn eine Mission nicht „Zum Start zurück“ sagt",

@@ -15,7 +15,7 @@ export function mountEndings(store, actions) {
       return h("li", {}, h("span", { class: `letter route-${routeNumber(sequence)}` }, routeLetter(sequence)), h("span", { class: "name" }), choice);
     },
     (row, { name, end_action }) => {
-      row.querySelector(".name").textContent = name;
+      row.querySelector(".name").textContent = row.querySelector(".name").title = name;
       const choice = row.querySelector("select");
       choice.setAttribute("aria-label", t("How the flight of {name} ends", { name }));
       choice.value = end_action;

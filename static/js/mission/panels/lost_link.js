@@ -153,6 +153,7 @@ function checkOf(store, { showPlaces }) {
   const more = h("button", { type: "button", class: "text-button", onclick: () => ((showsAll = true), draw(store.state)) });
   const element = h("div", { class: "link-check" }, said, rows, more, uncounted);
   let showsAll = false;
+  let held = null; // the group that was clicked stays lit while its row has focus
 
   const light = (group) => store.update({ litReturn: group?.key ?? null, litZones: group?.zone_id ? [group.zone_id] : [] });
 
@@ -160,7 +161,7 @@ function checkOf(store, { showPlaces }) {
     const { where, why } = link.failureText(group);
     const places = plan.result.routes[group.sequence].waypoints;
     const look = () => {
-      light(group);
+      light((held = group));
       showPlaces(link.returnLinesOf(plan).filter(({ key }) => key === group.key).flatMap(({ from, to }) => [from, to]).concat(group.waypoints.slice(0, 1).map((index) => places[index].position)));
     };
     return h(
@@ -168,7 +169,7 @@ function checkOf(store, { showPlaces }) {
       {},
       h(
         "button",
-        { type: "button", title: t("Show on the map"), onclick: look, onpointerenter: () => light(group), onpointerleave: () => light(null), onfocus: () => light(group), onblur: () => light(null) },
+        { type: "button", title: t("Show on the map"), onclick: look, onpointerenter: () => light(group), onpointerleave: () => light(held), onfocus: () => light(group), onblur: () => light((held = null)) },
         h("span", { class: `letter route-${routeNumber(group.sequence)}` }, group.letter),
         h("span", {}, h("strong", {}, `${group.name}: ${where}`), h("small", {}, why)),
       ),
