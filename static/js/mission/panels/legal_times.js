@@ -69,8 +69,8 @@ export function showLegalTimes(store, actions) {
     const slider = sliderOf(departs_at ? Date.parse(departs_at) : null);
     chart.replaceChildren(
       axis(),
-      row(h("strong", {}, t("The mission")), "", unionTrack(), "union"),
-      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [scheduleText(zone.schedule, { now: times.from_ms, otherwise: zone.schedule_in_words }), legsText(zone.legs)].filter(Boolean).join(" · "), zoneTrack(zone))),
+      row(h("strong", {}, t("The mission")), [], unionTrack(), "union"),
+      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [scheduleText(zone.schedule, { now: times.from_ms, otherwise: zone.schedule_in_words }), legsText(zone.legs)].filter(Boolean), zoneTrack(zone))),
       h("div", { class: "legal-over" }, mark(Date.now(), "legal-now", t("now")), slider),
     );
     if (focused) chart.querySelector(`[data-part="${focused}"]`)?.focus();
@@ -88,7 +88,7 @@ export function showLegalTimes(store, actions) {
     return element;
   }
 
-  const row = (name, second, track, kind = "") => h("div", { class: `legal-row ${kind}`.trim() }, h("div", { class: "legal-name" }, name, second && h("small", { title: second }, second)), track);
+  const row = (name, seconds, track, kind = "") => h("div", { class: `legal-row ${kind}`.trim() }, h("div", { class: "legal-name" }, name, seconds.map((words) => h("small", { title: words }, words))), track);
 
   function axis() {
     const ticks = ticksOf(times).map(({ at_ms, words, isDay }) => {
