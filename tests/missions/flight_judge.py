@@ -15,6 +15,7 @@ from tests.missions.ground_judge import Hills, TallThings, wrong_heights
 from tests.missions.plane import apart_m
 from tests.missions.refusal_judge import RefusalJudge, course_of
 from tests.missions.return_judge import ReturnJudge
+from tests.missions.wire_judge import WireJudge
 from tests.missions.zone_judge import ZoneJudge, legs_of
 
 
@@ -24,6 +25,7 @@ class Judge:
     def __init__(self, hills: Hills | None = None) -> None:
         self.hills = hills
         self.zones, self.tall = ZoneJudge(), TallThings()
+        self.wires = WireJudge(None if hills is None else hills.metres)
         self.refusals = RefusalJudge(self.zones, self.tall, 0.0 if hills is None else hills.steepest)
         self.returns = ReturnJudge(self.zones, hills, self.tall)
 
@@ -38,7 +40,6 @@ class Judge:
             *_wrong_routes(request, plan),
             *wrong_clocks(request, plan),
             *wrong_heights(plan, self.hills),
-            *self.tall.flown_too_low(plan),
             *too_near(request, plan),
         ]
 

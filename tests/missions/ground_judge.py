@@ -16,7 +16,6 @@ from tests.missions.plane import EARTH_M, apart_m
 
 CLEARANCE_M = 15.0
 TALLEST_M = 105.0  # what can be flown over
-BESIDE_M = 20.0  # of the 25 m within which a tall thing counts as under a leg
 HEIGHT_M = 1.0  # what heights may differ by
 STRAY_M = 11.5  # of 10 m that the ground may stray between waypoints; more only between the places that are looked at
 SPACING_M = 40.0
@@ -93,20 +92,3 @@ class TallThings:
     def beside(self, start: Any, end: Any, beside_m: float) -> Any:
         """Their numbers."""
         return self.tree.query(shapely.linestrings(self.metres([start, end])), predicate="dwithin", distance=beside_m)
-
-    def flown_too_low(self, plan: dict[str, Any]) -> Iterator[str]:
-        """Legs beside a tower that can be flown over, lower than it and its clearance."""
-        for route in plan["routes"]:
-            points = route["waypoints"]
-            if len(points) < 2 or not len(self.heights):
-                continue
-            line = self.metres([point["position"] for point in points])
-            agl_m = np.array([point["altitude_agl_m"] for point in points])
-            legs = shapely.linestrings(np.stack([line[:-1], line[1:]], axis=1))
-            for leg, thing in zip(*self.tree.query(legs, predicate="dwithin", distance=BESIDE_M).tolist(), strict=True):
-                gone = legs[leg].length
-                share = legs[leg].line_locate_point(shapely.Point(self.metres(self.places[thing]))) / gone if gone > 0.0 else 0.0
-                flown_m = agl_m[leg] + share * (agl_m[leg + 1] - agl_m[leg])
-                is_between = 0.001 < share < 0.999
-                if is_between and self.heights[thing] <= TALLEST_M and flown_m < self.heights[thing] + CLEARANCE_M - HEIGHT_M:
-                    yield f"{route['uav']} flies at {flown_m:.0f} m beside a tower of {self.heights[thing]:.0f} m, after waypoint {leg}"

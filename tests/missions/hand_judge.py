@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from datetime import timedelta
 from typing import Any
 
+import shapely
+
 from inspection.geodesy import LonLat
 from inspection.models import Asset
 from missions.services import HandPoint, InvalidRequest, PlanRequest, change_route
@@ -17,6 +19,7 @@ from tests.missions.ground_judge import CLEARANCE_M
 from tests.missions.plane import apart_m
 from tests.missions.random_flights import stored
 from tests.missions.return_judge import MORE
+from tests.missions.wire_judge import BESIDE_M
 from tests.missions.zone_judge import legs_of
 from workspace.models import User
 
@@ -55,18 +58,25 @@ class HandJudge:
         seen["changed by hand"] += 1
         routes = [stored_route(row) for row in mission.routes.all()]
         flown = plan | {"routes": routes, "separation": mission.separation, "lost_link": mission.lost_link_check}
-        faults = [*self.judge.faults_of_routes(asked, flown), *self.judge.returns.faults(asked, flown)]
+        faults = [*self.judge.faults_of_routes(asked, flown), *self.judge.wires.faults(flown), *self.judge.returns.faults(asked, flown)]
         return [f"by hand: {fault}" for fault in (*faults, *_not_as_wished(routes[number]["waypoints"], wished))]
 
     def _is_true(self, asked: PlanRequest, number: int, route: dict[str, Any], wished: list[dict[str, Any]], place: str, said: str) -> bool:
         what, _, rest = place.partition(".")
         if what == "waypoints" and rest:
             point = wished[int(rest.split(".")[0])]
-            return _is_moved(point) if rest.endswith("position") else _is_at_wrong_height(point)
+            if rest.endswith("position"):
+                return _is_moved(point)
+            if "stands" not in said:
+                return _is_at_wrong_height(point)
         uav = asked.uavs[number]
         drawn = self._drawn(asked, uav, route, wished)
+        if "stands" in said:
+            return self._is_too_low(drawn["waypoints"], int(rest.split(".")[0]), is_leg=what == "legs")
         if what == "legs":
             return self._is_true_of_leg(asked, drawn, int(rest), said)
+        if "mast or wires" in said:
+            return bool(self.judge.wires.faults({"routes": [drawn]}))
         if "range" in said:
             return uav.max_range_m is not None and max(flights_m(drawn["waypoints"])) > 0.99 * uav.max_range_m
         clock = clock_of(asked, uav, drawn)
@@ -81,16 +91,20 @@ class HandJudge:
     def _is_true_of_leg(self, asked: PlanRequest, drawn: dict[str, Any], leg: int, said: str) -> bool:
         """The leg from one wished waypoint to the next; the first and the last with the columns beside them."""
         points = drawn["waypoints"]
-        if "tall" in said:
-            start, end = points[leg], points[leg + 1]
-            lowest_m = min(start["altitude_agl_m"], end["altitude_agl_m"])
-            things = self.judge.tall.beside(start["position"], end["position"], 27.0)
-            return any(lowest_m < self.judge.tall.heights[thing] + CLEARANCE_M for thing in things)
         legs = legs_of(drawn, asked.departs_at, drawn["departs_s"] + drawn["duration_s"], _NO_STOPS)
         own = [legs[leg + 1], *(legs[:1] if leg == 0 else []), *(legs[-1:] if leg >= len(points) - 2 else [])]
         if drawn["end_action"] == "hover":
             own = [one if one.times is None else one._replace(times=(one.times[0], one.times[1] + timedelta(hours=4))) for one in own]
         return any(zone.name in said for _, zone in self.judge.zones.met(own, MORE))
+
+    def _is_too_low(self, points: list[dict[str, Any]], place: int, *, is_leg: bool) -> bool:
+        """Over a wire, a tower or a bridge beside a leg or a waypoint."""
+        wires, name = self.judge.wires, "altitude_agl_m" if self.judge.hills is None else "altitude_amsl_m"
+        ends = [points[place], points[place + 1 if is_leg else place]]
+        start, end = wires._metres([point["position"] for point in ends])
+        level_m = [point[name] for point in ends]
+        near = wires.tree.query(shapely.LineString([start, end]), predicate="dwithin", distance=BESIDE_M)
+        return any(wires._short_m(start, end, *level_m, wire) > 0.5 for wire in near.tolist())
 
     def _drawn(self, asked: PlanRequest, uav: Any, route: dict[str, Any], wished: list[dict[str, Any]]) -> dict[str, Any]:
         """The wished waypoints as a route, with heights above the sea and times as judges count them."""
@@ -111,9 +125,9 @@ class HandJudge:
 
 
 def _wished(until_now: list[dict[str, Any]], draw: random.Random) -> list[dict[str, Any]]:
-    """One to three changes; each point keeps what it was, and `from`, where it was. Few of them are such as nobody may make."""
+    """Up to three changes; each point keeps what it was, and `from`, where it was. Few of them are such as nobody may make."""
     points = [point | {"was": number, "from": point["position"], "put_in": False} for number, point in enumerate(until_now)]
-    for _ in range(draw.randint(1, 3)):
+    for _ in range(draw.randint(0, 3)):
         passed = [number for number, point in enumerate(points) if point["kind"] == "pass" and 0 < number < len(points) - 1]
         kind = draw.choice(["put in", "put in", "move", "move", "take out", "height", "height", "wrong height", "move a target"])
         if kind == "put in":

@@ -30,7 +30,7 @@ HIGHEST_AGL_M = 120.0
 STAYS_S = 60.0  # more than any task of these missions takes
 REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path"}
 OF_WAYS = {"no_path", "beyond_range", "beyond_energy", "too_far_from_network"}
-NO_NUMBER = ("alone", "kept back")  # beside others nothing is missing that has one number
+NO_NUMBER = ("alone", "kept back", "charges on the way")  # beside others nothing is missing that has one number
 _MISSING = re.compile(r"([\d,.]+) (k?m|Wh) more than")
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from inspection.geodesy import LonLat
-from inspection.models import Asset, NoFlyZone
+from inspection.models import NoFlyZone
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.lost_link import LostLink
 from missions.flight_plan.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
@@ -23,7 +23,7 @@ from tests.missions.ground_judge import Hills
 from tests.missions.hand_judge import HandJudge
 from tests.missions.random_flights import A_MONDAY, period, stored
 from tests.missions.schedule_judge import applies_at, sun
-from tests.missions.worlds import rebuild, request, uav, world, zone_around
+from tests.missions.worlds import request, uav, world, zone_around
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
@@ -268,24 +268,6 @@ def test_heights_that_are_not_over_the_ground_are_seen(tmp_path: Path) -> None:
     assert any("nobody knows" in fault for fault in Judge().faults(asked, plan))
 
 
-def test_a_leg_too_low_beside_a_tall_tower_is_seen() -> None:
-    here = world()
-    elsewhere()
-    asked = request(here.towers[5])
-    plan = make_plan(request=asked)
-    Asset.objects.filter(pk=here.towers[3].pk).update(centre=here.towers[3].centre.clone(), height_m=90.0)
-    assert any("beside a tower of 90 m" in fault for fault in faults_of(asked, plan, lambda route: _without(route, here.towers[3].pk)))
-    rebuild()
-    assert Judge().faults(asked, make_plan(request=asked)) == []
-
-
-def _without(route: dict[str, Any], asset: int) -> None:
-    """The leg passes over what it came by."""
-    kept = [number for number, point in enumerate(route["waypoints"]) if point["asset"] != asset]
-    for name in ("waypoints", "arrival_s"):
-        route[name] = [route[name][number] for number in kept]
-
-
 # --- a lost link --------------------------------------------------------------------------------------------------------------
 
 
@@ -353,6 +335,7 @@ def test_why_a_change_by_hand_is_refused_is_judged() -> None:
     assert is_true(through, "legs.1", "This leg meets Hospital.")
     assert not is_true(through, "legs.2", "This leg meets Hospital.")
     assert not is_true(wished, "legs.0", "This leg meets Hospital.")
+    assert not is_true(wished, "waypoints", "The route passes a mast or wires too near.")
     assert not is_true(wished, "legs.0", "Something tall stands here: fly at 105 m above ground over it.")
     assert not is_true(wished, "waypoints", "The battery of Tern lacks 5.0 Wh for this.")
     assert not is_true(wished, "waypoints", "This is 2.0 km; the range of Tern is 1.0 km.")

@@ -75,7 +75,7 @@ def _judged(asked: PlanRequest, judge: Judge, draw: random.Random, seen: Counter
     plan = make_plan(request=asked)
     _count(seen, plan)
     found = [*judge.faults(asked, plan), *_refusals_that_can_be_flown(asked, plan, draw, seen)]
-    return found if by_hand is None else [*found, *by_hand.faults(asked, plan, draw, seen)]
+    return found if by_hand is None else [*found, *judge.wires.faults(plan), *by_hand.faults(asked, plan, draw, seen)]
 
 
 def _count(seen: Counter[str], plan: dict[str, Any]) -> None:
