@@ -62,7 +62,7 @@ def walls_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_])
         return np.zeros(0, dtype=object)
     scale = plane_scale(np.hstack([np.minimum(start, end), np.maximum(start, end)]))
     start_m, end_m = start * scale, end * scale
-    pieces = shapely.buffer(shapely.linestrings(np.stack([start_m, end_m], axis=1)), BESIDE_M, cap_style="flat")
+    pieces: Geometries = np.asarray(shapely.buffer(shapely.linestrings(np.stack([start_m, end_m], axis=1)), BESIDE_M, cap_style="flat"))
     for place_m, side in ((start_m, 0), (end_m, 1)):
         rounded = is_round[:, side]
         caps = shapely.buffer(shapely.points(place_m[rounded]), BESIDE_M * ROUNDER, quad_segs=CORNERS)
