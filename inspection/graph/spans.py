@@ -23,8 +23,9 @@ IntArray = NDArray[np.int64]
 class Spans:
     """k spans: straight from top to top, so never lower than the wire. What stands alone is a span from its place to its place.
 
-    start, end (k, 2) lon, lat [deg]; start_height_m, end_height_m and the greater of both (k,) above ground, guessed where no tag states
-    one. They are found on a grid: cell c has the spans member[first[c]] to member[first[c + 1] - 1]; low and step (2,) [deg] and shape (2,) tell the grid.
+    start, end (k, 2) lon, lat [deg]; start_height_m, end_height_m and the greater of both, (k,), above ground, guessed where no tag
+    states one. They are found on a grid: cell c has the spans member[first[c]] to member[first[c + 1] - 1]; low and step (2,) [deg]
+    and shape (2,) tell the grid.
     """
 
     start: FloatArray

@@ -56,6 +56,11 @@ def with_walls(zones: ZoneIndex, walls: ZoneIndex) -> ZoneIndex:
     )
 
 
+def at_all_heights(zones: ZoneIndex) -> ZoneIndex:
+    """The same zones as if they had no bands."""
+    return ZoneIndex(zones.polygons, zones.ids, zones.names)
+
+
 def walls_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_]) -> Geometries:
     """BESIDE_M around lines in lon/lat, (n, 2) each, what touches in one piece; round the ends where that is told, (n, 2)."""
     if not len(start):

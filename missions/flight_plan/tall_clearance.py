@@ -109,7 +109,7 @@ def _too_near(
         by_x, by_y = line[there, 0] - line[here, 0], line[there, 1] - line[here, 1]
         along_x, along_y = end[pair, 0] - start[pair, 0], end[pair, 1] - start[pair, 1]
         squared = along_x * along_x + along_y * along_y
-        steps = int(math.ceil(math.hypot(by_x, by_y) / STEP_M)) + 1
+        steps = math.ceil(math.hypot(by_x, by_y) / STEP_M) + 1
         for step in range(steps + 1):
             share = step / steps
             off_x, off_y = line[here, 0] + share * by_x - start[pair, 0], line[here, 1] + share * by_y - start[pair, 1]

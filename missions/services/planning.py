@@ -5,9 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from django.conf import settings
 
 from inspection.geodesy import LonLat
+from inspection.graph.walls import at_all_heights, with_walls
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation
@@ -17,7 +19,7 @@ from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
-from missions.services.battery import battery_overruns, without_overruns
+from missions.services.battery import battery_overruns, not_charged_for, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
@@ -101,31 +103,42 @@ class _Planner:
         return [*ends, *(at for place in self.places for at in place.course)]
 
     def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""
+        """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with.
+
+        What rises over wires in a valley may come into a zone under which its way was to lead: that is kept clear of at all heights then.
+        """
+        closed = np.zeros_like(chosen)
         for _ in range(MOST_TRIES):
-            tried = self._finished(ground, choice, chosen, share)
+            tried = self._finished(ground, choice, chosen, share, closed)
             if not tried.met:
                 return tried
             more = choice.with_zones(chosen, tried.met)
             if (more == chosen).all():
-                raise ZoneNotAvoided(sorted(tried.met))
+                more_closed = choice.with_zones(closed, tried.met)
+                if (more_closed == closed).all():
+                    raise ZoneNotAvoided(sorted(tried.met))
+                closed = more_closed
             chosen = more
         raise GraphOutdated
 
-    def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
+    def _finished(
+        self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float, closed: BoolArray | None = None
+    ) -> Finished:
         """An attempt, drawn. Where a route takes more of its battery than the search had counted, it counts on so much less that this
         route is out of the question, and tries again; and what cannot be flown over is gone round from then on. In the end the UAV stays
-        on the ground."""
-        scene = scene_on(ground, chosen)
+        on the ground. closed: zones to be kept clear of at all heights."""
+        walls = None if closed is None or not closed.any() else at_all_heights(ground.zones(closed))
+        scene = scene_on(ground, chosen, walls)
         has_terrain = has_terrain_at(ground.edition)
         terrain = ground_heights_m if has_terrain else None
         usable_share: dict[int, float] = {}
+        kept_from: dict[int, frozenset[int]] = {}
         barred: frozenset[int] = frozenset()
         for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
                 stop=self.stop, on_progress=self.on_progress, seed=self.seed,
-                search_s=self.search_s * share / 2**number, usable_share=usable_share,
+                search_s=self.search_s * share / 2**number, usable_share=usable_share, kept_from=kept_from,
             )  # fmt: skip
             self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
             alone = found.routes(self.request, terrain)
@@ -138,7 +151,12 @@ class _Planner:
                 found, alone = without_routes_barred(self.request, found, alone, in_the_way)
             if in_the_way:
                 barred |= frozenset().union(*in_the_way.values())
-                scene = scene_on(ground, chosen, walls_of_spans(scene.network, barred))
+                wires = walls_of_spans(scene.network, barred)
+                scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires))
+            if number < MOST_TRIES - 2:
+                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
+                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
+                    over.pop(uav)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         routes, separation, others = self._apart(alone, choice)
@@ -146,7 +164,8 @@ class _Planner:
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
             routes, separation, others = self._apart(alone, choice, may_raise=False)
             met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
+        is_whole = not usable_share and not kept_from
+        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), is_whole)
 
     def _apart(
         self, alone: Sequence[PlannedRoute], choice: ZoneChoice, *, may_raise: bool = True
