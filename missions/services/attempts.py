@@ -67,7 +67,10 @@ def attempt(
     usable_share: Mapping[int, float],
     kept_from: Mapping[int, Collection[int]],
 ) -> Attempt:
-    """every_place: the request's targets on the ground, `gone` those that are no longer there; usable_share, kept_from as in `assignment`."""
+    """every_place: the request's targets on the ground, `gone` those that are no longer there.
+
+    usable_share and kept_from as in `assignment`.
+    """
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]

@@ -3,10 +3,10 @@
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.sorties import wh_of_sorties
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
-from missions.flight_plan.heights import GroundHeights
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 

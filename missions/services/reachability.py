@@ -161,9 +161,7 @@ def _message(why: Verdict, zone: int, missing: np.ndarray, zone_names: Sequence[
         return words % {"least": _km(float(missing.min())), "most": _km(float(missing.max()))}
     if why is Verdict.BEYOND_ENERGY:
         if may_charge:
-            words = _(
-                "%(least)s to %(most)s Wh more are needed than one battery gives: whether charging on the way suffices, a plan tells."
-            )
+            words = _("One battery gives %(least)s to %(most)s Wh too little: whether charging on the way suffices, a plan tells.")
         else:
             words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
         return words % {"least": f"{np.ceil(missing.min()):,.0f}", "most": f"{np.ceil(missing.max()):,.0f}"}
