@@ -52,9 +52,8 @@ def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundH
     if is_known and ground_heights_m is not None:
         used = np.unique(span)
         highest_m = float((level_m - points.agl_m).max())
-        for side, places in enumerate((spans.start[near], spans.end[near])):
-            told_m = ground_heights_m(places[used])
-            top_m[used, side] += np.where(np.isnan(told_m), highest_m, told_m)
+        told_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
+        top_m[used] += np.where(np.isnan(told_m), highest_m, told_m)
     found: set[int] = set()
     too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
     for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):

@@ -177,7 +177,7 @@ def _message(why: Verdict, zone: int, missing: np.ndarray, zone_names: Sequence[
         return _("Landing there leads through a no-fly zone.")
     if zone >= 0:
         return _("Inside %(zone)s.") % {"zone": zone_names[zone]}
-    return _("A no-fly zone lies on it.")
+    return _("A no-fly zone, or wires that cannot be flown over, lie on it.")
 
 
 def _km(length_m: float) -> str:
