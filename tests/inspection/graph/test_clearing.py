@@ -177,7 +177,7 @@ def test_an_edge_is_there_unless_a_zone_is_in_its_way(whole, drawn):
 
 
 def test_a_line_is_not_flown_where_it_would_have_to_rise_over_another_into_a_zone():
-    """A low line under a tall one, and a zone from 90 m upwards where they cross; a tower too tall for any flight bars it at any height."""
+    """A low line under a tall one, and a zone from 90 m upwards where they cross; what is too tall for any flight bars it without one."""
     low, tall = [(0.0, 0.0), (400.0, 0.0), (800.0, 0.0)], [(200.0, -300.0), (200.0, 300.0)]
 
     def crossed(height_m: float) -> Network:
