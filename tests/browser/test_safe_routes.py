@@ -19,6 +19,10 @@ pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
 # Within the two days of the bar of legal times.
 DAY = datetime.now(UTC).replace(hour=0, minute=0, second=0, microsecond=0) + timedelta(days=1)
+CLOSE = 13.2
+HAS_PICTURES = os.environ.get("SPANWISE_SCREENSHOTS") == "1"
+THEMES = ("dark", "light") if HAS_PICTURES else ()
+HALF_DEG = 0.004
 
 
 def in_both_themes(page: Page, picture: Picture, name: str) -> None:

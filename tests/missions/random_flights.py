@@ -35,7 +35,7 @@ EVENTS = ("BMCT", "SR", "SS", "EECT")
 def bring_in(path: Path, folder: Path, draw: random.Random) -> Hills | None:
     """The middle of a region, with some tall towers, and with hills where it has any."""
     import_osm(path=path)
-    _cut_out(ASSETS)
+    cut_out(ASSETS)
     _make_tall(draw)
     if path.name not in HILLY:
         return None
@@ -44,7 +44,7 @@ def bring_in(path: Path, folder: Path, draw: random.Random) -> Hills | None:
     return hills
 
 
-def _cut_out(most: int) -> None:
+def cut_out(most: int) -> None:
     """Leaves the assets nearest to the middle of the region: a small network is cleared of zones in no time."""
     rows = [(key, *centre.coords) for key, centre in Asset.objects.values_list("pk", "centre")]
     places = np.array([row[1:3] for row in rows])
