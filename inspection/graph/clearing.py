@@ -10,7 +10,7 @@ from inspection.graph.edges import NO_ASSET, Edges, component_labels, joined
 from inspection.graph.flown_heights import FlownHeights, FlownNodes
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.links import bridge_to_tower_links, railway_to_tower_links
-from inspection.graph.network import Network, Nodes, contracted, measured
+from inspection.graph.network import Network, Nodes, put_together
 from inspection.graph.rules import LinkingRules
 from inspection.graph.walls import low_ceilings, too_tall_walls, with_walls
 from inspection.graph.zone_index import ZoneIndex
@@ -62,23 +62,9 @@ def cleared(
     to_railway = railway_to_tower_links(nodes.of_kind(NodeKind.RAILWAY), supports, flown, edges, barred, rules)
     edges = joined(edges, to_railway.edges)
     round_zones = detours([*wanted, *to_tower.unlinked, *to_railway.unlinked], flown, barred, rules, heights)
-    edges, nodes = contracted(joined(edges, round_zones.edges()), _with_bends(nodes, round_zones.bend))
-    edges, length_m, cost = measured(edges, nodes.position, rules)
+    whole = put_together(joined(edges, round_zones.edges()), _with_bends(nodes, round_zones.bend), rules)
     graph = InspectionGraph(
-        version=version,
-        ground_revision=ground_revision,
-        position=nodes.position,
-        node_kind=nodes.kind,
-        node_asset=nodes.asset,
-        node_height_m=nodes.height_m,
-        edge=edges.pair.astype(np.int32),
-        length_m=length_m,
-        cost=cost,
-        edge_kind=edges.kind,
-        edge_asset=edges.asset,
-        zone_wkb=zones.wkb,
-        zone_id=zones.ids,
-        zone_name=zones.names,
+        version=version, ground_revision=ground_revision, **vars(whole), zone_wkb=zones.wkb, zone_id=zones.ids, zone_name=zones.names
     )
     components, _ = component_labels(graph.node_count, graph.edge)
     return ClearedGraph(graph, components, excluded_nodes, excluded_edges + to_tower.blocked + to_railway.blocked)

@@ -23,14 +23,16 @@ IntArray = NDArray[np.int64]
 class Spans:
     """k spans: straight from top to top, so never lower than the wire. What stands alone is a span from its place to its place.
 
-    start, end (k, 2) lon, lat [deg]; start_height_m, end_height_m (k,) above ground, guessed where no tag states one. They are found
-    on a grid: cell c has the spans member[first[c]] to member[first[c + 1] - 1]; low and step (2,) [deg] and shape (2,) tell the grid.
+    start, end (k, 2) lon, lat [deg]; start_height_m, end_height_m and the greater of both, (k,), above ground, guessed where no tag
+    states one. They are found on a grid: cell c has the spans member[first[c]] to member[first[c + 1] - 1]; low and step (2,) [deg]
+    and shape (2,) tell the grid.
     """
 
     start: FloatArray
     end: FloatArray
     start_height_m: FloatArray
     end_height_m: FloatArray
+    highest_m: FloatArray
     low: FloatArray
     step: FloatArray
     shape: IntArray
@@ -39,11 +41,6 @@ class Spans:
 
     def __len__(self) -> int:
         return len(self.start)
-
-    @property
-    def highest_m(self) -> FloatArray:
-        highest_m: FloatArray = np.maximum(self.start_height_m, self.end_height_m)
-        return highest_m
 
 
 _made: WeakKeyDictionary[Network, Spans] = WeakKeyDictionary()
@@ -86,7 +83,8 @@ def spans_between(start: FloatArray, end: FloatArray, start_height_m: FloatArray
     step = np.maximum(extent / MOST_CELLS, LEAST_CELL_DEG)
     shape = (extent // step).astype(np.int64) + 1
     first, member = _on_grid(west_south, east_north, low, step, shape)
-    return Spans(start, end, start_height_m, end_height_m, low, step, shape, first, member)
+    highest_m = np.maximum(start_height_m, end_height_m)
+    return Spans(start, end, start_height_m, end_height_m, highest_m, low, step, shape, first, member)
 
 
 @njit(cache=True, nogil=True)

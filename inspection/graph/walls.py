@@ -56,13 +56,18 @@ def with_walls(zones: ZoneIndex, walls: ZoneIndex) -> ZoneIndex:
     )
 
 
+def at_all_heights(zones: ZoneIndex) -> ZoneIndex:
+    """The same zones as if they had no bands."""
+    return ZoneIndex(zones.polygons, zones.ids, zones.names)
+
+
 def walls_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_]) -> Geometries:
     """BESIDE_M around lines in lon/lat, (n, 2) each, what touches in one piece; round the ends where that is told, (n, 2)."""
     if not len(start):
         return np.zeros(0, dtype=object)
     scale = plane_scale(np.hstack([np.minimum(start, end), np.maximum(start, end)]))
     start_m, end_m = start * scale, end * scale
-    pieces = shapely.buffer(shapely.linestrings(np.stack([start_m, end_m], axis=1)), BESIDE_M, cap_style="flat")
+    pieces: Geometries = np.asarray(shapely.buffer(shapely.linestrings(np.stack([start_m, end_m], axis=1)), BESIDE_M, cap_style="flat"))
     for place_m, side in ((start_m, 0), (end_m, 1)):
         rounded = is_round[:, side]
         caps = shapely.buffer(shapely.points(place_m[rounded]), BESIDE_M * ROUNDER, quad_segs=CORNERS)

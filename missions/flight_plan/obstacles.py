@@ -58,10 +58,10 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     if is_known and ground_heights_m is not None:
         under_m = level_m - points.agl_m
         here_m = np.maximum(under_m[place], under_m[np.minimum(place + 1, len(points) - 1)])
-        for side, ends in enumerate((spans.start, spans.end)):
-            heights_m = ground_heights_m(ends[span])
-            ground_m[:, side] = np.where(np.isnan(heights_m), here_m, heights_m)
-    least_m = ground_m + np.column_stack([spans.start_height_m[span], spans.end_height_m[span]]) + rules.clearance_m
+        told_m = ground_heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
+        ground_m = np.where(np.isnan(told_m), here_m[:, None], told_m)
+    heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
+    least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)
     is_leg = np.arange(len(place)) < len(leg)
     row, begin, until, needed_m = stretches_too_low(points.position, level_m, place, is_leg, span, least_m, spans)
     if not len(row):
@@ -70,8 +70,8 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     under_m = np.zeros(len(at))
     if is_known and ground_heights_m is not None:
         here_m = (level_m - points.agl_m)[place[row]]
-        heights_m = ground_heights_m(at)
-        under_m = np.where(np.isnan(heights_m), np.tile(here_m, 2), heights_m)
+        told_m = ground_heights_m(at)
+        under_m = np.where(np.isnan(told_m), np.tile(here_m, 2), told_m)
     agl_m = needed_m - under_m.reshape(2, -1).min(axis=0)
     order = np.lexsort((begin, ~is_leg[row], place[row]))
     return TooLow(place[row][order], is_leg[row][order], begin[order], until[order], needed_m[order], agl_m[order], span[row][order])

@@ -5,10 +5,12 @@ beside it, which hang no higher than straight from top to top. Where a UAV takes
 are not looked at.
 """
 
+import math
 from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
+from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
@@ -34,10 +36,8 @@ def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundH
     points = waypoints.points
     if len(points) < 2 or not len(spans):
         return set()
-    near = _rows_near(spans, points.position)
     is_known = waypoints.amsl_m is not None and ground_heights_m is not None
-    if not is_known:
-        near = near[spans.highest_m[near] + rules.clearance_m - SHORT_M > points.agl_m.min()]
+    near = _rows_near(spans, points.position, 0.0 if is_known else float(points.agl_m.min()) - rules.clearance_m + SHORT_M)
     if not len(near):
         return set()
     frame = LocalFrame.around(*points.position.mean(axis=0).tolist())
@@ -52,20 +52,18 @@ def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundH
     if is_known and ground_heights_m is not None:
         used = np.unique(span)
         highest_m = float((level_m - points.agl_m).max())
-        for side, places in enumerate((spans.start[near], spans.end[near])):
-            told_m = ground_heights_m(places[used])
-            top_m[used, side] += np.where(np.isnan(told_m), highest_m, told_m)
-    found = set()
-    for own_leg, own_span in zip(leg.tolist(), span.tolist(), strict=True):
-        if int(near[own_span]) in found or not _is_too_near(line, level_m, own_leg, start[own_span], end[own_span], top_m[own_span], rules):
-            continue
+        told_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
+        top_m[used] += np.where(np.isnan(told_m), highest_m, told_m)
+    found: set[int] = set()
+    too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
+    for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):
         if not _is_inspected(points, line, own_leg, start[own_span], end[own_span]):
             found.add(int(near[own_span]))
     return found
 
 
-def _rows_near(spans: Spans, position: FloatArray) -> IntArray:
-    """Spans of which the box comes near that of the route."""
+def _rows_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
+    """Spans that are higher, and of which the box comes near that of the route."""
     if spans not in _by_west:
         west = np.minimum(spans.start[:, 0], spans.end[:, 0])
         order = np.argsort(west, kind="stable")
@@ -76,9 +74,11 @@ def _rows_near(spans: Spans, position: FloatArray) -> IntArray:
     about = np.array([NEAR_DEG / stretch, NEAR_DEG])
     low, high = low - about, high + about
     rows = order[np.searchsorted(west, low[0] - widest) : np.searchsorted(west, high[0], side="right")]
+    rows = rows[spans.highest_m[rows] > lowest_m]
     start, end = spans.start[rows], spans.end[rows]
     near = (np.maximum(start, end) >= low).all(axis=1) & (np.minimum(start, end) <= high).all(axis=1)
-    return rows[near]
+    chosen: IntArray = rows[near]
+    return chosen
 
 
 def _pairs(line: FloatArray, start: FloatArray, end: FloatArray) -> tuple[IntArray, IntArray]:
@@ -95,18 +95,32 @@ def _drawn(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
     return drawn
 
 
-def _is_too_near(
-    line: FloatArray, level_m: FloatArray, leg: int, start: FloatArray, end: FloatArray, top_m: FloatArray, rules: FlightRules
-) -> bool:
-    steps = int(np.ceil(np.hypot(*(line[leg + 1] - line[leg])) / STEP_M)) + 1
-    share = np.linspace(0.0, 1.0, max(steps, 2))
-    at = line[leg] + share[:, None] * (line[leg + 1] - line[leg])
-    along = end - start
-    squared = float(along @ along)
-    where = np.clip((at - start) @ along / squared, 0.0, 1.0) if squared > 0 else np.zeros(len(at))
-    beside_m = np.hypot(*(at - start - where[:, None] * along).T)
-    over_m = level_m[leg] + share * (level_m[leg + 1] - level_m[leg]) - (top_m[0] + where * (top_m[1] - top_m[0]))
-    return bool(((beside_m <= BESIDE_M) & (over_m < rules.clearance_m - SHORT_M - SLOPE * beside_m)).any())
+@njit(cache=True, nogil=True)
+def _too_near(
+    line: FloatArray, level_m: FloatArray, leg: IntArray, start: FloatArray, end: FloatArray, top_m: FloatArray, clearance_m: float
+) -> NDArray[np.bool_]:
+    """Of pairs of a leg and a wire from start to end, (p, 2) each, between tops (p, 2): whether a step of the leg is too near to it."""
+    too_near = np.zeros(len(leg), dtype=np.bool_)
+    for pair in range(len(leg)):
+        here, there = leg[pair], leg[pair] + 1
+        if min(level_m[here], level_m[there]) >= max(top_m[pair, 0], top_m[pair, 1]) + clearance_m - SHORT_M:
+            continue
+        by_x, by_y = line[there, 0] - line[here, 0], line[there, 1] - line[here, 1]
+        along_x, along_y = end[pair, 0] - start[pair, 0], end[pair, 1] - start[pair, 1]
+        squared = along_x * along_x + along_y * along_y
+        steps = math.ceil(math.hypot(by_x, by_y) / STEP_M) + 1
+        for step in range(steps + 1):
+            share = step / steps
+            off_x, off_y = line[here, 0] + share * by_x - start[pair, 0], line[here, 1] + share * by_y - start[pair, 1]
+            where = min(max((off_x * along_x + off_y * along_y) / squared, 0.0), 1.0) if squared > 0.0 else 0.0
+            beside_m = math.hypot(off_x - where * along_x, off_y - where * along_y)
+            if beside_m > BESIDE_M:
+                continue
+            over_m = level_m[here] + share * (level_m[there] - level_m[here]) - top_m[pair, 0] - where * (top_m[pair, 1] - top_m[pair, 0])
+            if over_m < clearance_m - SHORT_M - SLOPE * beside_m:
+                too_near[pair] = True
+                break
+    return too_near
 
 
 def _is_inspected(points: RoutePoints, line: FloatArray, leg: int, start: FloatArray, end: FloatArray) -> bool:

@@ -197,11 +197,15 @@ def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
     flight, ground = settings.FLIGHT_RULES, ground_heights_m if has_terrain() else None
     under_m = np.full(len(points), np.nan) if ground is None else ground(points.position)
     amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
-    low = too_low(Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network()), ground, flight)
+    waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network())
+    low = too_low(waypoints, spans, ground, flight)
     if low is None:
         return {}
+    near = spans_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
     faults: dict[str, str] = {}
-    for place, is_leg, agl_m in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), strict=True):
+    for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
+        if span not in near:
+            continue
         words = _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
         if agl_m > flight.max_agl_m:
             words = _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{flight.max_agl_m:.0f}"}

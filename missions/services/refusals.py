@@ -111,7 +111,7 @@ def zone_at(position: LonLat, scene: Scene, agl_m: float = 0.0) -> str | None:
     """
     if not len(scene.zones):
         return None
-    low_m, high_m = _column_m(agl_m, scene)
+    low_m, high_m = column_m(agl_m, scene)
     if not scene.zones.contains([position], scene.access.zone_clearance_m, low_m, high_m)[0]:
         return None
     found = scene.zones.zone_at(position, low_m, high_m)
@@ -120,7 +120,7 @@ def zone_at(position: LonLat, scene: Scene, agl_m: float = 0.0) -> str | None:
 
 def _zone_along(course: tuple[LonLat, ...], agl_m: float, scene: Scene) -> str | None:
     line = np.array(course)
-    low_m, high_m = _column_m(agl_m, scene)
+    low_m, high_m = column_m(agl_m, scene)
     met = np.flatnonzero(scene.zones.meets(line[:-1], line[1:], scene.access.zone_clearance_m, low_m, high_m))
     if not len(met):
         return None
@@ -131,7 +131,7 @@ def _zone_along(course: tuple[LonLat, ...], agl_m: float, scene: Scene) -> str |
     return f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
 
 
-def _column_m(agl_m: float, scene: Scene) -> tuple[float, float]:
+def column_m(agl_m: float, scene: Scene) -> tuple[float, float]:
     """From this height to that of the flight to it, with all that a height may stray and that is kept from a zone's limits."""
     give_m = scene.flight.terrain_tolerance_m + settings.ZONE_RULES.height_margin_m
     return min(agl_m, scene.flight.transit_agl_m) - give_m, max(agl_m, scene.flight.transit_agl_m) + give_m

@@ -62,7 +62,7 @@ export function scheduleEditor(schedule) {
       entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
     }));
     time.addEventListener("change", change(() => (entry[`${which}Time`] = timeFromField(time.value))));
-    return h("div", { class: "field" }, h("span", { class: "field-label" }, words), h("div", { class: "time-row" }, time, event));
+    return h("div", { class: "field" }, h("span", { class: "field-label" }, t("{side}, UTC", { side: words })), h("div", { class: "time-row" }, time, event));
   }
 
   function days(entry) {

@@ -52,13 +52,13 @@ def moved_as_measured(problem: Problem, seed: int) -> int:
     return made
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 1_000_000), st.integers(1, 4), st.integers(2, 14))
 def test_a_move_changes_a_plan_by_what_was_measured(seed: int, uavs: int, targets: int) -> None:
     moved_as_measured(mixed_problem(seed, uavs=uavs, targets=targets), seed)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 1_000_000), st.sampled_from(list(Objective)), st.integers(1, 4), st.integers(2, 14))
 def test_so_it_does_in_the_wind_between_uavs_that_fly_otherwise(seed: int, objective: Objective, uavs: int, targets: int) -> None:
     moved_as_measured(windy_problem(seed, objective, uavs=uavs, targets=targets), seed)

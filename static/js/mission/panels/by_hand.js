@@ -38,12 +38,14 @@ export function createByHand(store, actions) {
   const takeBack = h("button", { type: "button", class: "button", onclick: actions.takeBackByHand }, icon("undo-2", "small"), t("Take back the last change"));
   const backSaid = h("p", { class: "quiet-text" });
   const back = h("div", { class: "stack hand-back" }, backSaid, h("div", { class: "hand-acts" }, takeBack));
-  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, h("div", { class: "hand-acts" }, keep, leave), back);
+  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-acts hand-end" }, keep, leave));
+
+  const ownSpeed = () => store.state.mission?.uavs[hand().sequence]?.cruise_speed_mps ?? null;
 
   /** Over the leg to a point: as set by hand, or the UAV's own. */
   function speedWords(point) {
     if (!isFlownTo(point)) return t("No leg leads here.");
-    const own = store.state.mission?.uavs[hand().sequence]?.cruise_speed_mps;
+    const own = ownSpeed();
     if (point.speed_mps !== null) return own ? t("By hand; empty: {speed} as planned.", { speed: speedText(own) }) : t("By hand.");
     return own ? t("{speed} over ground, as planned.", { speed: speedText(own) }) : t("As planned.");
   }
@@ -95,6 +97,7 @@ export function createByHand(store, actions) {
     height.value = typed(point.altitude_agl_m);
     [longitude.value, latitude.value] = point.position.map((degrees) => Number(degrees.toFixed(6)));
     speed.value = point.speed_mps === null ? "" : typedSpeed(point.speed_mps);
+    speed.placeholder = ownSpeed() && isFlownTo(point) ? typedSpeed(ownSpeed()) : "";
     speed.disabled = !isFlownTo(point);
     speedSaid.textContent = speedWords(point);
     latitude.disabled = longitude.disabled = !free;

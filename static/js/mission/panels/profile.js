@@ -27,6 +27,7 @@ export function mountProfile(store, { grounds }) {
     place.hidden = !route;
     if (!route) {
       drawn = null;
+      byId("zone-keys").hidden = true;
       place.replaceChildren();
       return;
     }
@@ -58,8 +59,9 @@ export function mountProfile(store, { grounds }) {
     place.className = `route-profile route-${routeNumber(route.sequence)}`;
     place.replaceChildren(
       h("div", { class: "profile-said" }, h("span", { class: "letter" }, route.letter), h("p", { id: "profile-words" })),
-      h("div", { class: "profile-place" }, chart.element, zoneKey(flight), h("div", {}, profileTable(route, flight, targets, departsAt()))),
+      h("div", { class: "profile-place" }, chart.element, h("div", {}, profileTable(route, flight, targets, departsAt()))),
     );
+    showZoneKeys(flight);
     follow(store.state);
     light(store.state);
   }
@@ -88,10 +90,10 @@ export function mountProfile(store, { grounds }) {
 }
 
 /** What the drawn zones mean, and by how much they count beyond their times and heights. */
-function zoneKey({ zones, margins }) {
-  if (!zones.length) return "";
+function showZoneKeys({ zones, margins }) {
   const keys = zoneLegend(zones).map(({ kind, words }) => h("span", { class: "zone-key" }, h("i", { class: `zone-swatch ${kind}`, "aria-hidden": "true" }), words));
-  return h("p", { class: "zone-keys" }, keys, h("span", {}, marginWords(margins)));
+  byId("zone-keys").hidden = keys.length === 0;
+  byId("zone-keys").replaceChildren(...keys, h("span", {}, marginWords(margins)));
 }
 
 const line = (words, isStrong = false) => h(isStrong ? "strong" : "span", {}, words);
