@@ -16,9 +16,12 @@ from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.clearance import FlownRoute
+from missions.flight_plan.conditions import Conditions
 from missions.flight_plan.heights import with_heights
+from missions.flight_plan.leg_speeds import SpeedRange, speeds_out_of_range
 from missions.flight_plan.obstacles import too_low
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.zone_selectors import zones_met
 
 NEAR_DEG = 0.002
@@ -33,12 +36,51 @@ class LegEnd(NamedTuple):
     arrival_s: float | None
 
 
-def faults_of_legs(legs: Sequence[tuple[LegEnd, LegEnd]], departs_at: datetime | None) -> list[dict[str, Any]]:
+class Leg(NamedTuple):
+    """speed_mps: over ground; None: as the UAV does."""
+
+    start: LegEnd
+    end: LegEnd
+    speed_mps: float | None = None
+
+
+class LegFlyer(NamedTuple):
+    """Who flies legs with a speed, and in which air."""
+
+    name: str
+    cruise_speed_mps: float
+    performance: Performance
+    conditions: Conditions
+
+
+def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegFlyer | None = None) -> list[dict[str, Any]]:
+    """What is wrong with each; flyer: who flies them, needed where one has a speed."""
     table, has_ground = zone_table(), has_terrain()
-    return [_faults(*leg, departs_at, table, has_ground=has_ground) for leg in legs]
+    return [_faults(leg.start, leg.end, departs_at, table, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT for leg in legs]
 
 
-def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, *, has_ground: bool) -> dict[str, Any]:
+def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
+    """Why a speed cannot be flown over a leg."""
+    low, high = (f"{speed_mps:.1f}" for speed_mps in possible)
+    if flyer.performance.max_airspeed_mps is None:
+        values = {"low": low, "high": high, "uav": flyer.name}
+        return _("Between %(low)s and %(high)s m/s: the top airspeed of %(uav)s is not stated.") % values
+    return _("Between %(low)s and %(high)s m/s over ground here, in this wind.") % {"low": low, "high": high}
+
+
+def _speed_fault(leg: Leg, flyer: LegFlyer | None) -> dict[str, Any] | None:
+    if leg.speed_mps is None or flyer is None:
+        return None
+    start, end = (RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (leg.start, leg.end))
+    points = RoutePoints.of([start, end._replace(speed_mps=leg.speed_mps)])
+    waypoints = Waypoints(points, None, points.agl_m)
+    found = speeds_out_of_range(
+        waypoints, cruise_speed_mps=flyer.cruise_speed_mps, performance=flyer.performance, conditions=flyer.conditions
+    )
+    return _fault(None, speed_words(found[1], flyer)) if found else None
+
+
+def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, *, has_ground: bool) -> dict[str, Any] | None:
     """The first thing that is wrong with a leg; the columns down to the ground at its ends are not looked at."""
     flight = settings.FLIGHT_RULES
     if max(start.agl_m, end.agl_m) > flight.max_agl_m:
@@ -56,9 +98,10 @@ def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: Zone
         if 0 <= meeting.breach.leg < len(position) - 1:
             return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
     low = too_low(flown, _spans_elsewhere(position), ground_heights_m if has_ground else None, flight)
-    if low is not None:
-        return _fault(None, too_low_text(float(low.agl_m.max())))
-    return {"is_clear": True, "zone": None, "message": ""}
+    return None if low is None else _fault(None, too_low_text(float(low.agl_m.max())))
+
+
+_NO_FAULT: dict[str, Any] = {"is_clear": True, "zone": None, "message": ""}
 
 
 def too_low_text(agl_m: float) -> str:

@@ -16,25 +16,30 @@ MOST_ZONES = 200
 
 @dataclass(frozen=True)
 class ZoneStretch:
-    """Where a line lies in a zone; a line may enter a zone several times."""
+    """Where a line lies in a zone; a line may enter a zone several times. is_crossed: it does not merely pass near it there."""
 
     zone: NoFlyZone
     from_m: float
     to_m: float
+    is_crossed: bool = True
 
 
 def zones_along(line: FloatArray, near_m: float = 0.0) -> list[ZoneStretch]:
     """line of shape (k, 2), lon lat [deg]; in the order of the line. With near_m also where it passes within so many metres of a zone."""
     path = LineString(line.tolist(), srid=4326)
-    fields = ("name", "geometry", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference")
+    fields = ("name", "geometry", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference", "schedule")
     around = _box_around(line, near_m) if near_m else path
     found = []
     for zone in NoFlyZone.objects.filter(geometry__intersects=around).only(*fields)[:MOST_ZONES]:
         area = shapely.from_wkb(bytes(zone.geometry.wkb))
-        if near_m:
-            (area,) = widen(np.array([area], dtype=object), near_m)
-        for from_m, to_m in stretches_inside(line, area):
-            found.append(ZoneStretch(zone, from_m, to_m))
+        inside = stretches_inside(line, area)
+        if not near_m:
+            found += [ZoneStretch(zone, from_m, to_m) for from_m, to_m in inside]
+            continue
+        (around_zone,) = widen(np.array([area], dtype=object), near_m)
+        for from_m, to_m in stretches_inside(line, around_zone):
+            is_crossed = any(start_m <= to_m and from_m <= end_m for start_m, end_m in inside)
+            found.append(ZoneStretch(zone, from_m, to_m, is_crossed))
     return sorted(found, key=lambda stretch: (stretch.from_m, stretch.zone.pk))
 
 

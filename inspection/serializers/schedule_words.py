@@ -17,13 +17,27 @@ def schedule_sentence(schedule: Schedule | None) -> str:
 
 
 def _period_words(period: dict[str, Any]) -> str:
-    times = ", ".join(_entry_words(entry) for entry in period["schedule"]) or _("all the time")
+    times = ", ".join(_entry_words(entry) for entry in period["schedule"])
+    if not times:
+        return _dates_words(period["startDateTime"], period["endDateTime"])
     values = {"times": times, "start": _date_words(period["startDateTime"]), "end": _date_words(period["endDateTime"])}
     if values["start"] and values["end"]:
         return _("%(times)s, from %(start)s to %(end)s") % values
     if values["start"]:
         return _("%(times)s, from %(start)s") % values
     return _("%(times)s, until %(end)s") % values if values["end"] else times
+
+
+def _dates_words(start: str | None, end: str | None) -> str:
+    """ "21 Nov 2026, 14:00 to 17:00 UTC" of a few hours of one day."""
+    values = {"start": _date_words(start), "end": _date_words(end)}
+    if start and end:
+        if start[:10] == end[:10]:
+            return _("%(day)s, %(start)s to %(end)s UTC") % {"day": _day_words(start), "start": start[11:16], "end": end[11:16]}
+        return _("from %(start)s to %(end)s") % values
+    if start:
+        return _("from %(start)s on") % values
+    return _("until %(end)s") % values if end else _("all the time")
 
 
 def _entry_words(entry: dict[str, Any]) -> str:
@@ -64,6 +78,9 @@ def _days_words(days: list[str]) -> str:
 def _date_words(moment: str | None) -> str:
     if moment is None:
         return ""
-    when = datetime.fromisoformat(moment.replace("Z", "+00:00"))
-    clock = "" if (when.hour, when.minute) in {(0, 0), (23, 59)} else f" {when:%H:%M} UTC"
-    return f"{date_format(when, 'j M Y')}{clock}"
+    clock = "" if moment[11:16] in {"00:00", "23:59"} else f" {moment[11:16]} UTC"
+    return f"{_day_words(moment)}{clock}"
+
+
+def _day_words(moment: str) -> str:
+    return date_format(datetime.fromisoformat(moment.replace("Z", "+00:00")), "j M Y")

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.conf import settings
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
@@ -86,6 +87,16 @@ class ZoneAlongSerializer(serializers.Serializer):
     to_m = serializers.FloatField()
     lower_limit = LimitSerializer(allow_null=True, help_text="null: not stated")
     upper_limit = LimitSerializer(allow_null=True, help_text="null: not stated")
+    schedule = serializers.JSONField(allow_null=True, help_text="when it applies, as stored, in UTC; null: always")
+    is_crossed = serializers.BooleanField(help_text="false: the line only passes near it there")
+
+
+class ZoneMarginsSerializer(serializers.Serializer):
+    """What plans keep from zones."""
+
+    time_s = serializers.FloatField(help_text="before and after their times")
+    height_m = serializers.FloatField(help_text="below and above their limits")
+    terrain_m = serializers.FloatField(help_text="by which a height above ground may stray between waypoints")
 
 
 class ProfileSerializer(serializers.Serializer):
@@ -100,6 +111,7 @@ class ProfileSerializer(serializers.Serializer):
     vertical_datums = serializers.ListField(child=serializers.CharField())
     sources = serializers.ListField(child=serializers.CharField(), help_text="file names of the models that the heights are from")
     zones = ZoneAlongSerializer(many=True)
+    zone_margins = ZoneMarginsSerializer()
 
 
 class HeightsInputSerializer(serializers.Serializer):
@@ -145,10 +157,16 @@ def model_feature(model: TerrainModel) -> dict[str, Any]:
     }
 
 
+def zone_margins_json() -> dict[str, float]:
+    rules = settings.ZONE_RULES
+    return {"time_s": rules.time_margin_s, "height_m": rules.height_margin_m, "terrain_m": settings.FLIGHT_RULES.terrain_tolerance_m}
+
+
 def zone_along_json(stretch: ZoneStretch) -> dict[str, Any]:
     zone = stretch.zone
     return {
         "id": zone.pk, "name": zone.name, "from_m": round(stretch.from_m, 2), "to_m": round(stretch.to_m, 2),
         "lower_limit": limit_json(zone.lower_limit_m, zone.lower_reference),
         "upper_limit": limit_json(zone.upper_limit_m, zone.upper_reference),
+        "schedule": zone.schedule, "is_crossed": stretch.is_crossed,
     }  # fmt: skip

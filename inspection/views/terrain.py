@@ -25,6 +25,7 @@ from inspection.serializers.terrain import (
     ProfileSerializer,
     model_feature,
     zone_along_json,
+    zone_margins_json,
 )
 from inspection.services.terrain_import import remove_terrain
 from inspection.terrain.heights import amsl_m, counted_from
@@ -112,6 +113,7 @@ class Profile(APIView):
                 "vertical_datums": sorted({model.vertical_datum for model in models}),
                 "sources": sorted({model.data_import.file_name for model in models}),
                 "zones": [zone_along_json(stretch) for stretch in zones_along(line, body.validated_data["near_m"])],
+                "zone_margins": zone_margins_json(),
             }
         )
 

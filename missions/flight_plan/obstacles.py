@@ -141,7 +141,7 @@ def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | 
         told_m = np.full(len(new), np.nan) if ground_heights_m is None else ground_heights_m(flown.position[new])
         ground_m[new] = np.where(np.isnan(told_m), ground_m[~is_new][place], told_m)
     agl_m = flown_m - ground_m
-    risen = RoutePoints(flown.position, agl_m, flown.kind, flown.asset, flown.target, flown.task)
+    risen = RoutePoints(flown.position, agl_m, flown.kind, flown.asset, flown.target, flown.task, flown.speed_mps)
     if waypoints.amsl_m is None:
         return Waypoints(risen, None, agl_m)
     return Waypoints(risen, flown_m, flown_m - (waypoints.amsl_m[0] - waypoints.relative_m[0]))

@@ -31,6 +31,7 @@ def _joined(first: Waypoints, second: Waypoints, turnaround_s: float) -> Waypoin
         np.concatenate([one.asset, [NONE], other.asset]),
         np.concatenate([one.target, [NONE], other.target]),
         tasks,
+        one.speed_mps | {stop + 1 + place: speed_mps for place, speed_mps in other.speed_mps.items()},
     )
 
     def heights(left_m: FloatArray, right_m: FloatArray) -> FloatArray:
@@ -84,6 +85,7 @@ def _part(waypoints: Waypoints, begin: int, end: int) -> Waypoints:
         points.asset[own],
         points.target[own],
         {place - begin: task for place, task in points.task.items() if begin <= place < end},
+        {place - begin: speed_mps for place, speed_mps in points.speed_mps.items() if begin <= place < end},
     )
     return Waypoints(part, None if waypoints.amsl_m is None else waypoints.amsl_m[own], waypoints.relative_m[own])
 

@@ -31,7 +31,8 @@ NONE = -1  # in place of an asset's or a target's number
 class RoutePoint(NamedTuple):
     """A point of a route at its planned height above ground.
 
-    asset is the primary key of the asset that is passed or inspected here; target the index of the target that is being done.
+    asset is the primary key of the asset that is passed or inspected here; target the index of the target that is being done; speed_mps
+    what is wanted over ground on the leg that leads here, None: as the UAV does.
     """
 
     position: LonLat
@@ -40,24 +41,35 @@ class RoutePoint(NamedTuple):
     asset: int | None = None
     target: int | None = None
     task: Task | None = None
+    speed_mps: float | None = None
 
 
 class RoutePoints:
     """Points of a route, column by column: some hundred points are a handful of arrays. Taken one by one, each is a RoutePoint.
 
     position float64 (n, 2), lon lat [deg]; agl_m float64 (n,); kind (n,) places in KINDS; asset, target int64 (n,), NONE where there is
-    none; task: what is done at a point, by its place in the route.
+    none; task: what is done at a point, by its place in the route; speed_mps likewise, where the leg to it is not flown as the UAV does.
     """
 
-    __slots__ = ("agl_m", "asset", "kind", "position", "target", "task")
+    __slots__ = ("agl_m", "asset", "kind", "position", "speed_mps", "target", "task")
 
-    def __init__(self, position: FloatArray, agl_m: FloatArray, kind: IntArray, asset: IntArray, target: IntArray, task: dict[int, Task]):
+    def __init__(
+        self,
+        position: FloatArray,
+        agl_m: FloatArray,
+        kind: IntArray,
+        asset: IntArray,
+        target: IntArray,
+        task: dict[int, Task],
+        speed_mps: dict[int, float] | None = None,
+    ) -> None:
         self.position = position
         self.agl_m = agl_m
         self.kind = kind
         self.asset = asset
         self.target = target
         self.task = task
+        self.speed_mps = speed_mps or {}
 
     @classmethod
     def of(cls, points: Sequence[RoutePoint]) -> "RoutePoints":
@@ -68,6 +80,7 @@ class RoutePoints:
             np.array([NONE if point.asset is None else point.asset for point in points], dtype=np.int64),
             np.array([NONE if point.target is None else point.target for point in points], dtype=np.int64),
             {place: point.task for place, point in enumerate(points) if point.task is not None},
+            {place: point.speed_mps for place, point in enumerate(points) if point.speed_mps is not None},
         )
 
     def __len__(self) -> int:
@@ -82,6 +95,7 @@ class RoutePoints:
             None if asset == NONE else asset,
             None if target == NONE else target,
             self.task.get(place),
+            self.speed_mps.get(place),
         )
 
     def __iter__(self) -> Iterator[RoutePoint]:
@@ -90,10 +104,19 @@ class RoutePoints:
     def with_points_between(self, legs: IntArray, shares: FloatArray) -> "RoutePoints":
         """With a point more, which is passed, at each share of a leg on its straight lon/lat line; both (k,), in the order of the route.
 
-        Between two points of one target it belongs to the target.
+        Between two points of one target it belongs to the target. A leg that is divided is flown as fast as before.
         """
         columns = _with_points_between(self.position, self.agl_m, self.kind, self.asset, self.target, legs, shares)
-        return RoutePoints(*columns, {place + int(np.searchsorted(legs, place)): task for place, task in self.task.items()})
+
+        def moved(place: int) -> int:
+            return place + int(np.searchsorted(legs, place))
+
+        speeds = {
+            number: speed_mps
+            for place, speed_mps in self.speed_mps.items()
+            for number in range(moved(place - 1) + 1 if place else 0, moved(place) + 1)
+        }
+        return RoutePoints(*columns, {moved(place): task for place, task in self.task.items()}, speeds)
 
 
 @njit(cache=True, nogil=True)

@@ -165,6 +165,12 @@ class Route(models.Model):
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
+    before_hand = models.JSONField(
+        default=list,
+        db_default=[],
+        blank=True,
+        help_text="its waypoints before each change by hand that can be taken back; see services/by_hand.py",
+    )
 
     class Meta:
         ordering = ["mission_uav__sequence"]
@@ -197,7 +203,8 @@ class Waypoint(models.Model):
     arrival_s = models.FloatField(null=True, blank=True, help_text="seconds after the mission's departure; empty in older plans")
     used_wh = models.FloatField(null=True, blank=True, help_text="since take-off; empty without a battery")
     battery_left_percent = models.FloatField(null=True, blank=True)
-    is_by_hand = models.BooleanField(default=False, db_default=False, help_text="put in, moved or flown at another height by a person")
+    speed_mps = models.FloatField(null=True, blank=True, help_text="over ground on the leg to it, by hand; empty = the UAV's own")
+    is_by_hand = models.BooleanField(default=False, db_default=False, help_text="put in, moved or flown otherwise by a person")
 
     class Meta:
         ordering = ["sequence"]

@@ -2,16 +2,19 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-from missions.fields import FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, FiniteFloatField, PositionField
+from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.serializers.limits import FASTEST_MPS
 from missions.services.by_hand import MOST_WAYPOINTS, HandPoint
 
 MOST_LEGS = 200
 HIGHEST_AGL_M = 10_000.0
 
 
-class HandPointSerializer(serializers.Serializer):
+class HandPointSerializer(KnownFieldsSerializer):
     """A waypoint as it is wished."""
 
     position = PositionField()
@@ -19,9 +22,12 @@ class HandPointSerializer(serializers.Serializer):
     was = serializers.IntegerField(
         allow_null=True, required=False, min_value=0, help_text="its place in the route until now; null: it is put in"
     )
+    speed_mps = AboveZeroField(
+        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="over ground on the leg that leads here; null: the UAV's own"
+    )
 
 
-class HandRouteSerializer(serializers.Serializer):
+class HandRouteSerializer(KnownFieldsSerializer):
     waypoints = HandPointSerializer(many=True, allow_empty=False)
 
     def validate_waypoints(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -30,28 +36,42 @@ class HandRouteSerializer(serializers.Serializer):
         return value
 
     def points(self) -> list[HandPoint]:
-        return [HandPoint(point["position"], point["altitude_agl_m"], point.get("was")) for point in self.validated_data["waypoints"]]
+        return [
+            HandPoint(point["position"], point["altitude_agl_m"], point.get("was"), point.get("speed_mps"))
+            for point in self.validated_data["waypoints"]
+        ]
 
 
-class LegEndSerializer(serializers.Serializer):
+class LegEndSerializer(KnownFieldsSerializer):
     position = PositionField()
     altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_AGL_M)
     arrival_s = FiniteFloatField(required=False, allow_null=True, help_text="seconds after the departure; null: at any time of the flight")
 
 
-class LegSerializer(serializers.Serializer):
+class LegSerializer(KnownFieldsSerializer):
     start = LegEndSerializer()
     end = LegEndSerializer()
+    speed_mps = AboveZeroField(
+        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="over ground; null: the UAV's own. Only with mission and uav"
+    )
 
 
-class LegChecksInputSerializer(serializers.Serializer):
+class LegChecksInputSerializer(KnownFieldsSerializer):
     legs = LegSerializer(many=True, allow_empty=False)
     departs_at = serializers.DateTimeField(required=False, allow_null=True, help_text="null: at any time")
+    mission = serializers.UUIDField(required=False, allow_null=True, help_text="whose wind and UAV bound the speeds")
+    uav = serializers.IntegerField(required=False, allow_null=True, min_value=0, help_text="its place in that mission")
 
     def validate_legs(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
         if len(value) > MOST_LEGS:
             raise serializers.ValidationError(f"At most {MOST_LEGS} legs.")
         return value
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        missing = [name for name in ("mission", "uav") if attrs.get(name) is None]
+        if missing and any(leg.get("speed_mps") is not None for leg in attrs["legs"]):
+            raise serializers.ValidationError(dict.fromkeys(missing, _("A speed is checked for a UAV of a mission.")))
+        return attrs
 
 
 class LegCheckSerializer(serializers.Serializer):

@@ -17,6 +17,7 @@ from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformanc
 from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import (
     FARTHEST_RANGE_M,
     FASTEST_MPS,
@@ -38,6 +39,7 @@ from missions.serializers.limits import (
     MOST_WIND_LAYERS,
     STRONGEST_WIND_MPS,
 )
+from missions.serializers.performance import fault_words
 from missions.services import (
     CALM,
     InvalidRequest,
@@ -52,7 +54,7 @@ from missions.services import (
 from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
 
 
-class TaskSerializer(serializers.Serializer):
+class TaskSerializer(KnownFieldsSerializer):
     """What is done at a target. Without `hold_s` the kind's own: 5 s to look, 10 s for photos, 30 s to hold."""
 
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
@@ -63,7 +65,7 @@ class TaskSerializer(serializers.Serializer):
         return Task(kind, value.get("hold_s", DEFAULT_HOLD_S[kind]))
 
 
-class WindLayerSerializer(serializers.Serializer):
+class WindLayerSerializer(KnownFieldsSerializer):
     """Wind at a height above ground; between two heights it is interpolated, beyond them it stays."""
 
     altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_WIND_M)
@@ -71,7 +73,7 @@ class WindLayerSerializer(serializers.Serializer):
     from_deg = FiniteFloatField(min_value=0, max_value=359.999999, help_text="where it blows from, degrees from true north, clockwise")
 
 
-class ConditionsSerializer(serializers.Serializer):
+class ConditionsSerializer(KnownFieldsSerializer):
     """The air that is flown through; without wind it is calm."""
 
     wind = WindLayerSerializer(many=True, required=False)
@@ -86,7 +88,7 @@ class ConditionsSerializer(serializers.Serializer):
             raise serializers.ValidationError({error.place: [error.message]}) from error
 
 
-class PerformanceFieldsSerializer(serializers.Serializer):
+class PerformanceFieldsSerializer(KnownFieldsSerializer):
     """Battery, mass and airspeed; missing: the stored UAV's type's."""
 
     battery_wh = AboveZeroField(
@@ -133,7 +135,7 @@ class UavInputSerializer(PerformanceFieldsSerializer):
         return attrs
 
 
-class TargetInputSerializer(serializers.Serializer):
+class TargetInputSerializer(KnownFieldsSerializer):
     """An asset, a point (`position`) or `stretch` on one, or a bare `position`."""
 
     asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=LARGEST_KEY)
@@ -158,7 +160,7 @@ class TargetInputSerializer(serializers.Serializer):
         return attrs
 
 
-class LostLinkSerializer(serializers.Serializer):
+class LostLinkSerializer(KnownFieldsSerializer):
     """What UAVs do when their link is lost: go on, or hold for a while and return, or return to their start or the nearest rally point."""
 
     behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
@@ -179,7 +181,7 @@ class LockListSerializer(serializers.ListSerializer):
         return found
 
 
-class LockSerializer(serializers.Serializer):
+class LockSerializer(KnownFieldsSerializer):
     """Targets that one UAV flies in this order with nothing between, if wished as the first or the last of its route."""
 
     uav = serializers.CharField(max_length=LONGEST_UAV_NAME, help_text="name of a UAV of the request")
@@ -196,7 +198,7 @@ class LockSerializer(serializers.Serializer):
 OBJECTIVES_IN_WORDS = "total: fewest metres; makespan: finish soonest; time: least flying time of all together; energy: least Wh"
 
 
-class OptionsSerializer(serializers.Serializer):
+class OptionsSerializer(KnownFieldsSerializer):
     """UAVs, targets and options, all optional: what a mission is made of."""
 
     uavs = UavInputSerializer(many=True, required=False)
@@ -277,7 +279,7 @@ def _checked_uav(index: int, uav: dict[str, Any], stored: Uav | None) -> UavRequ
     try:
         return _uav_request(uav, stored)
     except InvalidPerformance as error:
-        raise serializers.ValidationError({"uavs": {str(index): {error.place: [error.message]}}}) from error
+        raise serializers.ValidationError({"uavs": {str(index): {error.place: [fault_words(error)]}}}) from error
 
 
 def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
@@ -386,14 +388,14 @@ def plan_request(values: dict[str, Any]) -> PlanRequest:
     )
 
 
-class MissionCopySerializer(serializers.Serializer):
+class MissionCopySerializer(KnownFieldsSerializer):
     name = serializers.CharField(max_length=200, required=False, allow_blank=True, help_text="without one: the name with (copy)")
 
 
-class MissionsInputSerializer(serializers.Serializer):
+class MissionsInputSerializer(KnownFieldsSerializer):
     missions = serializers.ListField(child=serializers.UUIDField(), allow_empty=False, max_length=200)
 
 
-class PresenceInputSerializer(serializers.Serializer):
+class PresenceInputSerializer(KnownFieldsSerializer):
     editor = serializers.RegexField(r"^[A-Za-z0-9.-]{1,64}$", help_text="a name that the page made up for itself")
     here = serializers.BooleanField(required=False, default=True, help_text="false: the page is being left")

@@ -14,6 +14,7 @@ from inspection.zones.activity import Span
 from missions.fields import PositionField
 from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.zone_selectors import LegalWindows
 
 MOST_WAYPOINTS = 20_000
@@ -71,7 +72,7 @@ class TimedRouteField(serializers.Field):
         )
 
 
-class LegalWindowsInputSerializer(serializers.Serializer):
+class LegalWindowsInputSerializer(KnownFieldsSerializer):
     routes = serializers.ListField(
         child=TimedRouteField(), allow_empty=False, max_length=MOST_ROUTES, help_text="of a plan, as it was answered"
     )
@@ -105,13 +106,15 @@ class BlockingZoneSerializer(serializers.Serializer):
     name = serializers.CharField()
     blocked = TimeSpanSerializer(many=True, help_text="departures at which the mission would meet it")
     legs = MetLegSerializer(many=True, help_text="that meet it in space and height")
-    schedule_in_words = serializers.CharField()
+    schedule = serializers.JSONField(allow_null=True, help_text="as stored, in UTC; null: always")
+    schedule_in_words = serializers.CharField(help_text="the same for people, in UTC")
 
 
 class LegalWindowsSerializer(TimeSpanSerializer):
     """Departures between two moments, the routes being flown as planned."""
 
     margin_s = serializers.FloatField(help_text="by so much before and after its times a zone counts")
+    height_margin_m = serializers.FloatField(help_text="by so much below and above its limits a zone counts")
     windows = TimeSpanSerializer(many=True, help_text="departures at which no zone is met")
     zones = BlockingZoneSerializer(many=True, help_text="that the routes meet in space and height, at whatever time")
 
@@ -120,6 +123,7 @@ def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict
     """uavs: for each route the index of its UAV."""
     return _span_json(span) | {
         "margin_s": settings.ZONE_RULES.time_margin_s,
+        "height_margin_m": settings.ZONE_RULES.height_margin_m,
         "windows": [_span_json(window) for window in found.windows],
         "zones": [
             {
@@ -127,6 +131,7 @@ def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict
                 "name": zone.name,
                 "blocked": [_span_json(blocked) for blocked in zone.blocked],
                 "legs": [{"uav": uavs[route], "leg": leg} for route, leg in zone.legs],
+                "schedule": zone.schedule,
                 "schedule_in_words": schedule_sentence(zone.schedule),
             }
             for zone in found.zones

@@ -129,7 +129,7 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "ground_revision": mission.ground_revision,
         "flat_ground_assumed": mission.flat_ground_assumed,
         "terrain": FLAT_GROUND if mission.flat_ground_assumed else TERRAIN_MODEL,
-        **(mission.plan_quality or NO_QUALITY),
+        **(NO_QUALITY | {name: value for name, value in (mission.plan_quality or {}).items() if name in NO_QUALITY}),
         "locks": mission.locks,
         "warnings": mission.plan_warnings,
         "routes": [_route(route, mission, sequence_of) for route in mission.routes.all()],
@@ -160,6 +160,12 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "battery_left_percent": None if route.energy_wh is None else [waypoint.battery_left_percent for waypoint in waypoints],
         "charging": route.charging,
         "by_hand": [place for place, waypoint in enumerate(waypoints) if waypoint.is_by_hand],
+        "speeds_by_hand": [
+            {"waypoint": place, "speed_mps": waypoint.speed_mps}
+            for place, waypoint in enumerate(waypoints)
+            if waypoint.speed_mps is not None
+        ],
+        "hand_steps": len(route.before_hand),
         "targets": targets,
         "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),
         "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,

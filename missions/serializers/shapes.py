@@ -36,6 +36,11 @@ class ChargingSerializer(serializers.Serializer):
     stopped_s = serializers.FloatField(help_text="with the way down to the tower and up again")
 
 
+class HandSpeedSerializer(serializers.Serializer):
+    waypoint = serializers.IntegerField(help_text="its place in the route; the leg that leads to it")
+    speed_mps = serializers.FloatField(help_text="over ground")
+
+
 class RouteSerializer(serializers.Serializer):
     """One UAV's part, in the order of the request's UAVs."""
 
@@ -58,8 +63,10 @@ class RouteSerializer(serializers.Serializer):
     battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="for each waypoint")
     charging = ChargingSerializer(many=True, help_text="stops at towers on the way")
     by_hand = serializers.ListField(
-        child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or flies at another height"
+        child=serializers.IntegerField(), help_text="the waypoints, by their places, that a person put in, moved or has flown otherwise"
     )
+    speeds_by_hand = HandSpeedSerializer(many=True, help_text="all other legs are flown as the UAV does")
+    hand_steps = serializers.IntegerField(help_text="how many changes by hand can be taken back, the last one first")
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
     locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
@@ -71,15 +78,15 @@ class UnassignedSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[
             "no_path", "inside_zone", "beyond_range", "too_far_from_network", "above_height_limit", "asset_gone", "not_allowed",
-            "most_targets",
+            "beyond_energy", "most_targets",
         ]
     )  # fmt: skip
     message = serializers.CharField()
 
 
 class WarningSerializer(serializers.Serializer):
-    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated"])
-    uav = serializers.IntegerField(help_text="index of the UAV")
+    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated", "shortest_ways"])
+    uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV; null: of the whole plan")
     message = serializers.CharField()
 
 
@@ -158,6 +165,7 @@ class FailedReturnSerializer(serializers.Serializer):
     trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
     missing_wh = serializers.FloatField(allow_null=True)
     zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
+    zone_id = serializers.IntegerField(allow_null=True, required=False, help_text="its id; not there in checks of before")
     over_m = serializers.FloatField(allow_null=True, help_text="by how much it would fly above the limit")
 
 

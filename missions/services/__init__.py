@@ -1,6 +1,6 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
-from missions.services.by_hand import HandPoint, change_route
+from missions.services.by_hand import HandPoint, change_route, take_back_change
 from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet import (
     change_base,
@@ -109,6 +109,7 @@ __all__ = [
     "restore_uav_type",
     "revoke_credential",
     "store_plan",
+    "take_back_change",
     "take_plan",
     "warm_up",
     "with_bases",

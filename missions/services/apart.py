@@ -73,7 +73,7 @@ def _raised(
     more_m = agl_m - points.agl_m
     amsl_m = route.waypoints.amsl_m
     waypoints = Waypoints(
-        RoutePoints(points.position, agl_m, points.kind, points.asset, points.target, points.task),
+        RoutePoints(points.position, agl_m, points.kind, points.asset, points.target, points.task, points.speed_mps),
         None if amsl_m is None else amsl_m + more_m,
         agl_m if route.waypoints.relative_m is points.agl_m else route.waypoints.relative_m + more_m,
     )

@@ -1,7 +1,7 @@
 """Whether finished routes keep to their batteries."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.sorties import wh_of_sorties
@@ -9,9 +9,30 @@ from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
+from missions.services.unreached import LOCKED
 
 JUST_BELOW = 1e-3
 MOST_TRIED = 40  # targets of a route that are left out of it one by one
+BEYOND_ENERGY = "beyond_energy"
+
+
+@dataclass(frozen=True)
+class DrawnLack:
+    """By how much a route takes more, as it is drawn, than the battery of its UAV may give."""
+
+    uav: str
+    missing_wh: float
+
+    @property
+    def message(self) -> str:
+        drawn = "As drawn, over the ground and what stands tall, a route with it takes"
+        return f"{drawn} {self.missing_wh:,.1f} Wh more than the battery of {self.uav} may give."
+
+
+WITH_THAT_KEPT_BACK = (
+    "Drawn over the ground and what stands tall, routes take more than is counted on the network;"
+    " with that kept back no battery lasts for it."
+)
 
 
 def battery_overruns(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute]) -> dict[int, float]:
@@ -26,6 +47,28 @@ def battery_overruns(request: PlanRequest, found: Attempt, routes: Sequence[Plan
         if usable_wh is not None and most_wh > usable_wh:
             over[number] = (1.0 - JUST_BELOW) * min(1.0, found.most_counted_wh(number) / usable_wh)
     return over
+
+
+def drawn_lacks(request: PlanRequest, routes: Sequence[PlannedRoute], over: Collection[int]) -> dict[int, DrawnLack]:
+    """For each target of the routes that take more than their UAVs may use, what is missing."""
+    lacks = {}
+    for uav in over:
+        route, usable_wh = routes[uav], request.uavs[uav].performance.usable_wh or 0.0
+        missing_wh = route.lacks_wh or (max(wh_of_sorties(route.timing), default=0.0) if route.timing else 0.0) - usable_wh
+        lacks |= dict.fromkeys(route.targets, DrawnLack(request.uavs[uav].name, missing_wh))
+    return lacks
+
+
+def with_drawn_reasons(left_out: Sequence[LeftOut], lacks: Mapping[int, DrawnLack]) -> list[LeftOut]:
+    """Once the search counts on less of a battery than there is, its own figures are not what is missing: what was drawn says it."""
+
+    def told(one: LeftOut) -> LeftOut:
+        if one.reason != BEYOND_ENERGY:
+            return one
+        message = lacks[one.target].message if one.target in lacks else WITH_THAT_KEPT_BACK
+        return replace(one, message=message + (LOCKED if one.message.endswith(LOCKED) else ""))
+
+    return [told(one) for one in left_out]
 
 
 def not_charged_for(
@@ -70,10 +113,6 @@ def without_overruns(
     request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute], over: Collection[int]
 ) -> tuple[Attempt, list[PlannedRoute]]:
     """The UAVs of these numbers stay on the ground, and what they would have done is left out."""
-    left_out = [
-        LeftOut(target, "beyond_energy", f"Over these hills the battery of {request.uavs[uav].name} does not last for it.")
-        for uav in over
-        for target in routes[uav].targets
-    ]
+    left_out = [LeftOut(target, BEYOND_ENERGY, lack.message) for target, lack in drawn_lacks(request, routes, over).items()]
     grounded = [PlannedRoute(end_action=request.end_action(number)) if number in over else route for number, route in enumerate(routes)]
     return replace(found, left_out=[*found.left_out, *left_out]), grounded

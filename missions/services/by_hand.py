@@ -1,4 +1,4 @@
-"""A route changed by hand: waypoints moved, put in, taken out or flown higher; checked like any other before it is kept."""
+"""A route changed by hand: waypoints moved, put in, taken out, flown higher or at another speed; checked like any other, and taken back."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,10 +13,12 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.graph.spans import spans_of
+from inspection.models import Asset
 from inspection.selectors import ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
+from missions.flight_plan.leg_speeds import speeds_out_of_range
 from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
@@ -24,10 +26,10 @@ from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
 from missions.flight_plan.tall_clearance import spans_too_near
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.leg_selectors import too_low_text
+from missions.leg_selectors import LegFlyer, speed_words, too_low_text
 from missions.models import EndAction, Mission, Route, Waypoint
 from missions.services.last_look import flown_route
-from missions.services.missions import lock_mission, note, request_of_mission
+from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
 from missions.services.still_apart import separation_of_stored
@@ -38,50 +40,124 @@ MOVED_M = 0.1  # less is rounding
 HIGHER_M = 0.05
 MOST_WAYPOINTS = 5_000
 LONGEST_M = 1_000_000.0
+SAME_SPEED_MPS = 0.005
+MOST_STEPS = 5  # that can be taken back
 
 
 @dataclass(frozen=True)
 class HandPoint:
-    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in."""
+    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
+
+    speed_mps: over ground on the leg that leads here; None: the UAV's own.
+    """
 
     position: LonLat
     agl_m: float
     was: int | None = None
+    speed_mps: float | None = None
 
 
 def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[HandPoint], expected_revision: int | None = None) -> Mission:
     """Fly the route of one UAV, by its place in the mission, over these points. Its targets stay, and their order.
 
-    Raises InvalidRequest with what is wrong by its place (a point too low or too high, a leg that meets a zone, a battery that does not
-    do), MissionChanged or MissionFrozen. Nothing is kept then.
+    Raises InvalidRequest with what is wrong by its place (a point too low or too high, a leg that meets a zone, a speed that the wind does
+    not leave, a battery that does not do), MissionChanged or MissionFrozen. Nothing is kept then.
     """
     with transaction.atomic():
-        locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
-        route = locked.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
-        if route is None:
-            raise InvalidRequest({"uav": _("This UAV flies no route.")})
-        if route.charging:
-            raise InvalidRequest({"uav": _("A route with stops to charge cannot be changed by hand.")})
+        locked, route = _locked_route(mission, uav, expected_revision)
         until_now = list(route.waypoints.select_related("asset", "target"))
         _refuse(_shape_faults(points, until_now))
-        wished = _route_points(points, until_now)
-        _refuse(_obstacle_faults(wished))
-        request = request_of_mission(mission=locked)
-        flown = _flown(request, uav, wished, route.departs_s)
-        _refuse(_wire_faults(flown))
-        _refuse(_zone_faults(flown, locked))
-        _refuse(_reach_faults(flown, request, uav))
-        _store(locked, route, flown, until_now, points)
-        locked.total_length_m = sum(own.length_m for own in locked.routes.all())
-        locked.longest_route_m = max(own.length_m for own in locked.routes.all())
-        counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
-        locked.total_energy_wh = sum(counted) if counted else None
-        locked.separation = separation_of_stored(locked)
-        locked.plan_quality = (locked.plan_quality or {}) | {"is_proven": False, "gap": None, "method": "by hand"}
-        locked.revision += 1
-        locked.save()
+        route.before_hand = [*route.before_hand, [_step_row(waypoint) for waypoint in until_now]][-MOST_STEPS:]
+        by_hand = {_place(point.position, point.agl_m) for point in points if _is_by_hand(point, until_now)}
+        _fly(locked, route, uav, _route_points(points, until_now), by_hand)
         note(locked, actor, "by-hand", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
+
+
+def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revision: int | None = None) -> Mission:
+    """The route as it was before it was changed by hand last, checked against what holds now. Raises as change_route."""
+    with transaction.atomic():
+        locked, route = _locked_route(mission, uav, expected_revision)
+        if not route.before_hand:
+            raise InvalidRequest({"uav": _("No change by hand of this route can be taken back.")})
+        *route.before_hand, rows = route.before_hand
+        points = _step_points(rows)
+        by_hand = {_place(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
+        _fly(locked, route, uav, RoutePoints.of(points), by_hand)
+        note(locked, actor, "by-hand-undone", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
+    return locked
+
+
+def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> tuple[Mission, Route]:
+    locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
+    route = locked.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
+    if route is None:
+        raise InvalidRequest({"uav": _("This UAV flies no route.")})
+    if route.charging:
+        raise InvalidRequest({"uav": _("A route with stops to charge cannot be changed by hand.")})
+    return locked, route
+
+
+def _fly(locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: set[tuple[float, float, float]]) -> None:
+    """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
+    _refuse(_obstacle_faults(wished))
+    request = request_of_mission(mission=locked)
+    flown = _flown(request, uav, wished, route.departs_s)
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    leads_to = _leads_to(wished, flown.waypoints.points)
+    _refuse(_speed_faults(flown, leads_to, request, uav))
+    _refuse(_wire_faults(flown))
+    _refuse(_zone_faults(flown, leads_to, locked))
+    _refuse(_reach_faults(flown, request, uav))
+    _store(locked, route, flown, by_hand)
+    locked.total_length_m = round(sum(own.length_m for own in locked.routes.all()), 3)
+    locked.longest_route_m = max(own.length_m for own in locked.routes.all())
+    counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
+    locked.total_energy_wh = round(sum(counted), 2) if counted else None
+    locked.separation = separation_of_stored(locked)
+    check_lost_link(mission=locked)
+    locked.plan_quality = _quality(locked)
+    locked.revision += 1
+    locked.save()
+
+
+def _quality(mission: Mission) -> dict[str, Any]:
+    """Nothing is proven of a plan that a hand has changed; once every change is taken back, what was proven before is."""
+    quality = mission.plan_quality or {}
+    planned = quality.get("planned", quality)
+    if not Waypoint.objects.filter(route__mission=mission, is_by_hand=True).exists():
+        return dict(planned)
+    return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
+
+
+def _step_row(waypoint: Waypoint) -> dict[str, Any]:
+    """A waypoint as it is kept to be taken back to; its target by its place in the mission, which a copy shares."""
+    return {
+        "position": list(waypoint.position.coords),
+        "agl_m": waypoint.altitude_agl_m,
+        "kind": waypoint.kind,
+        "asset": waypoint.asset_id,
+        "target": None if waypoint.target is None else waypoint.target.sequence,
+        "task": waypoint.task,
+        "speed_mps": waypoint.speed_mps,
+        "is_by_hand": waypoint.is_by_hand,
+    }
+
+
+def _step_points(rows: Sequence[dict[str, Any]]) -> list[RoutePoint]:
+    there = set(Asset.objects.filter(pk__in={row["asset"] for row in rows} - {None}).values_list("pk", flat=True))
+    return [
+        RoutePoint(
+            LonLat(*row["position"]),
+            WaypointKind(row["kind"]),
+            row["agl_m"],
+            row["asset"] if row["asset"] in there else None,
+            row["target"],
+            task_from_json(row["task"]),
+            row["speed_mps"],
+        )
+        for row in rows
+    ]
 
 
 def _refuse(faults: dict[str, str]) -> None:
@@ -111,6 +187,8 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
         if not low_m - HIGHER_M <= point.agl_m <= flight.max_agl_m + HIGHER_M:
             limits = {"low": f"{low_m:.0f}", "high": f"{flight.max_agl_m:.0f}"}
             faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
+        if point.speed_mps is not None and waypoint is not None and waypoint.kind in {WaypointKind.START, WaypointKind.BASE}:
+            faults[f"waypoints.{number}.speed_mps"] = _("No leg leads here.")
     return faults
 
 
@@ -119,12 +197,15 @@ def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
     flight, ground = settings.FLIGHT_RULES, ground_heights_m if has_terrain() else None
     under_m = np.full(len(points), np.nan) if ground is None else ground(points.position)
     amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
-    low = too_low(Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network()), ground, flight)
+    waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network())
+    low = too_low(waypoints, spans, ground, flight)
     if low is None:
         return {}
+    near = spans_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
     faults: dict[str, str] = {}
-    for place, is_leg, agl_m in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), strict=True):
-        faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
+    for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
+        if span in near:
+            faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
     return faults
 
 
@@ -159,11 +240,12 @@ def _route_points(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
     for point in points:
         waypoint = None if point.was is None else until_now[point.was]
         if waypoint is None or (waypoint.kind == WaypointKind.PASS and _apart_m(point, waypoint) > MOVED_M):
-            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m))
+            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m, speed_mps=point.speed_mps))
             continue
         target = None if waypoint.target is None else waypoint.target.sequence
         at = LonLat(*waypoint.position.coords)
-        drawn.append(RoutePoint(at, WaypointKind(waypoint.kind), point.agl_m, waypoint.asset_id, target, task_from_json(waypoint.task)))
+        task = task_from_json(waypoint.task)
+        drawn.append(RoutePoint(at, WaypointKind(waypoint.kind), point.agl_m, waypoint.asset_id, target, task, point.speed_mps))
     return RoutePoints.of(drawn)
 
 
@@ -194,9 +276,34 @@ def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
         raise InvalidRequest({"waypoints": _("The wind is too strong for %(uav)s on a leg.") % {"uav": asked.name}}) from error
 
 
-def _zone_faults(flown: PlannedRoute, mission: Mission) -> dict[str, str]:
+def _leads_to(wished: RoutePoints, flown: RoutePoints) -> list[int]:
+    """For each point that is flown the wished one that its leg leads to: where a leg is divided, its parts lead to one."""
+    leads_to, number = [], 0
+    for position, agl_m in zip(flown.position, flown.agl_m.tolist(), strict=True):
+        leads_to.append(number)
+        if number < len(wished) - 1 and agl_m == wished.agl_m[number] and (position == wished.position[number]).all():
+            number += 1
+    return leads_to
+
+
+def _speed_faults(flown: PlannedRoute, leads_to: Sequence[int], request: PlanRequest, uav: int) -> dict[str, str]:
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    asked = request.uavs[uav]
+    flyer = LegFlyer(asked.name, asked.cruise_speed_mps, asked.performance, request.conditions)
+    found = speeds_out_of_range(
+        flown.waypoints, cruise_speed_mps=asked.cruise_speed_mps, performance=asked.performance, conditions=request.conditions
+    )
+    return {f"waypoints.{leads_to[place]}.speed_mps": speed_words(found[place], flyer) for place in sorted(found, reverse=True)}
+
+
+def _zone_faults(flown: PlannedRoute, leads_to: Sequence[int], mission: Mission) -> dict[str, str]:
     (met,) = zones_met([flown_route(flown, mission.departs_at)])
-    return {f"legs.{leg_of(meeting)}": _("This leg meets %(zone)s.") % {"zone": meeting.name} for meeting in reversed(met)}
+    last = len(leads_to) - 1
+
+    def leg(meeting: MetZone) -> int:
+        return max(leads_to[min(leg_of(meeting) + 1, last)] - 1, 0)
+
+    return {f"legs.{leg(meeting)}": _("This leg meets %(zone)s.") % {"zone": meeting.name} for meeting in reversed(met)}
 
 
 def leg_of(meeting: MetZone) -> int:
@@ -217,14 +324,14 @@ def _reach_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[s
     return {"waypoints": _("The battery of %(uav)s lacks %(missing)s Wh for this.") % missing}
 
 
-def _store(mission: Mission, route: Route, flown: PlannedRoute, until_now: Sequence[Waypoint], points: Sequence[HandPoint]) -> None:
+def _store(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
     assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - just drawn
-    by_hand = {_place(point.position, point.agl_m) for point in points if _is_by_hand(point, until_now)}
     targets: dict[int, int] = dict(mission.targets.values_list("sequence", "pk"))
     clock = flown.timing
     route.geometry = LineString(flown.line.tolist(), srid=4326)
     route.length_m, route.duration_s = round(flown.length_m, 3), round(flown.duration_s, 1)
-    route.energy_wh, route.battery_percent = clock.total_wh, clock.end_percent
+    route.energy_wh = None if clock.total_wh is None else round(clock.total_wh, 2)
+    route.battery_percent = None if clock.end_percent is None else round(clock.end_percent, 1)
     route.save()
     route.waypoints.all().delete()
     Waypoint.objects.bulk_create(
@@ -243,7 +350,8 @@ def _store(mission: Mission, route: Route, flown: PlannedRoute, until_now: Seque
                 arrival_s=round(float(clock.arrival_s[number]) + route.departs_s, 1),
                 used_wh=None if clock.used_wh is None else round(float(clock.used_wh[number]), 2),
                 battery_left_percent=None if clock.battery_left_percent is None else round(float(clock.battery_left_percent[number]), 1),
-                is_by_hand=_place(waypoint.point.position, waypoint.point.agl_m) in by_hand,
+                speed_mps=waypoint.point.speed_mps,
+                is_by_hand=waypoint.point.speed_mps is not None or _place(waypoint.point.position, waypoint.point.agl_m) in by_hand,
             )
             for number, waypoint in enumerate(flown.waypoints)
         ),
@@ -259,7 +367,14 @@ def _is_by_hand(point: HandPoint, until_now: Sequence[Waypoint]) -> bool:
     if point.was is None:
         return True
     waypoint = until_now[point.was]
-    return waypoint.is_by_hand or _apart_m(point, waypoint) > MOVED_M or abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
+    is_elsewhere = _apart_m(point, waypoint) > MOVED_M or abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
+    return waypoint.is_by_hand or is_elsewhere or not _is_same_speed(point.speed_mps, waypoint.speed_mps)
+
+
+def _is_same_speed(one_mps: float | None, other_mps: float | None) -> bool:
+    if one_mps is None or other_mps is None:
+        return one_mps is other_mps
+    return abs(one_mps - other_mps) < SAME_SPEED_MPS
 
 
 def _place(position: LonLat, agl_m: float) -> tuple[float, float, float]:

@@ -91,6 +91,8 @@ def plan_to_json(
                 "duration_s": round(route.duration_s, 1),
                 **timing_to_json(route, column),
                 "by_hand": [],
+                "speeds_by_hand": [],
+                "hand_steps": 0,
                 "charging": [charging_to_json(stop) for stop in route.charging],
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),

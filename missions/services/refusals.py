@@ -36,6 +36,7 @@ class Scene:
     access: AccessRules
     flight: FlightRules
     edition: Edition  # of the ground, when the plan was begun
+    is_by_length: bool = False  # whether the shortest ways are the best on it, near infrastructure or not
 
 
 @dataclass(frozen=True)

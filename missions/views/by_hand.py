@@ -1,14 +1,16 @@
 """Routes changed by hand."""
 
+from typing import Any
 from uuid import UUID
 
+from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import services
-from missions.leg_selectors import LegEnd, faults_of_legs
+from missions.leg_selectors import Leg, LegEnd, LegFlyer, faults_of_legs
 from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
@@ -39,6 +41,27 @@ class RouteWaypoints(APIView):
         return answer_mission(request.user, mission_id)
 
 
+class RouteWaypointsUndo(APIView):
+    throttle_classes = [ScopedRate]
+    throttle_scope = "plans"
+
+    @extend_schema(
+        operation_id="take_back_change_by_hand",
+        summary="Take back the last change of a route by hand",
+        description="The route is as before, checked against the zones of now. `hand_steps` of the route tells how many changes can be"
+        " taken back; planning again ends that.",
+        parameters=[IF_MATCH],
+        request=None,
+        responses={200: shapes.MissionSerializer, 400: OpenApiResponse(description="What is wrong, by waypoint or leg."), **CHANGED},
+    )
+    def post(self, request: Request, mission_id: UUID, uav: int) -> Response:
+        expected = expected_revision(request)
+        mission = mission_or_404(request.user, mission_id)
+        with api_problems(has_precondition=expected is not None):
+            services.take_back_change(mission=mission, actor=request.user, uav=uav, expected_revision=expected)
+        return answer_mission(request.user, mission_id)
+
+
 class LegChecks(APIView):
     write_roles = frozenset(Role)
     throttle_classes = [ScopedRate]
@@ -54,8 +77,20 @@ class LegChecks(APIView):
         body = by_hand.LegChecksInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         departs_at = body.validated_data.get("departs_at")
-        found = faults_of_legs([(_end(leg["start"]), _end(leg["end"])) for leg in body.validated_data["legs"]], departs_at)
+        legs = [Leg(_end(leg["start"]), _end(leg["end"]), leg.get("speed_mps")) for leg in body.validated_data["legs"]]
+        found = faults_of_legs(legs, departs_at, self._flyer(request, body.validated_data, legs))
         return Response(by_hand.LegChecksSerializer({"legs": found}).data)
+
+    def _flyer(self, request: Request, body: dict[str, Any], legs: list[Leg]) -> LegFlyer | None:
+        """Who flies the legs that have a speed."""
+        if all(leg.speed_mps is None for leg in legs):
+            return None
+        with api_problems():
+            asked = services.request_of_mission(mission=mission_or_404(request.user, body["mission"]))
+        if body["uav"] >= len(asked.uavs):
+            raise Http404
+        uav = asked.uavs[body["uav"]]
+        return LegFlyer(uav.name, uav.cruise_speed_mps, uav.performance, asked.conditions)
 
 
 def _end(value: dict[str, object]) -> LegEnd:

@@ -137,6 +137,14 @@ export function dayText(iso, now = new Date()) {
   return then.toLocaleDateString(LOCALE, parts);
 }
 
+/** "21 November", with the year where it is another one. */
+export function longDayText(iso, now = new Date()) {
+  const then = new Date(iso);
+  const parts = { ...zone, day: "numeric", month: "long" };
+  if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
+  return then.toLocaleDateString(LOCALE, parts);
+}
+
 /** Day, time and the zone's name in full: for tooltips. */
 export function exactText(iso) {
   return new Date(iso).toLocaleString(LOCALE, { ...zone, dateStyle: "medium", timeStyle: "long" });
@@ -151,7 +159,7 @@ export function sinceText(seconds) {
 }
 
 /** Minutes by which the reader's clock is ahead of UTC at a moment [ms]. */
-function aheadOfUtc_min(moment) {
+export function minutesAheadOfUtc(moment) {
   const part = new Intl.DateTimeFormat("en-US", { ...zone, timeZoneName: "longOffset" }).formatToParts(new Date(moment)).find(({ type }) => type === "timeZoneName").value;
   const [, sign, hours, minutes] = /GMT(?:([+-])(\d\d):(\d\d))?/.exec(part);
   return sign ? (sign === "-" ? -1 : 1) * (Number(hours) * 60 + Number(minutes)) : 0;
@@ -160,7 +168,7 @@ function aheadOfUtc_min(moment) {
 /** "Europe/Berlin, UTC+1": by which clock the reader's times are, at a moment. */
 export function zoneText(iso) {
   const name = preferences.timeZone || new Intl.DateTimeFormat().resolvedOptions().timeZone;
-  const ahead = aheadOfUtc_min(Date.parse(iso));
+  const ahead = minutesAheadOfUtc(Date.parse(iso));
   const rest = Math.abs(ahead) % 60;
   const figure = `UTC${ahead < 0 ? "−" : "+"}${Math.floor(Math.abs(ahead) / 60)}${rest ? `:${`${rest}`.padStart(2, "0")}` : ""}`;
   return name === "UTC" ? "UTC" : `${name}, ${figure}`;
@@ -169,15 +177,15 @@ export function zoneText(iso) {
 /** "2026-11-21T19:30": a moment by the reader's clock, as a field for date and time takes it. */
 export function typedMoment(iso) {
   const moment = Date.parse(iso);
-  return new Date(moment + aheadOfUtc_min(moment) * 60_000).toISOString().slice(0, 16);
+  return new Date(moment + minutesAheadOfUtc(moment) * 60_000).toISOString().slice(0, 16);
 }
 
 /** The moment that a field for date and time says, by the reader's clock; an hour that a change of the clocks leaves out is the one after it. */
 export function momentTyped(typed) {
   const asUtc = Date.parse(`${typed}Z`);
   if (!Number.isFinite(asUtc)) return null;
-  const guess = asUtc - aheadOfUtc_min(asUtc) * 60_000;
-  const moment = asUtc - aheadOfUtc_min(guess) * 60_000;
-  const isThere = asUtc - aheadOfUtc_min(moment) * 60_000 === moment;
+  const guess = asUtc - minutesAheadOfUtc(asUtc) * 60_000;
+  const moment = asUtc - minutesAheadOfUtc(guess) * 60_000;
+  const isThere = asUtc - minutesAheadOfUtc(moment) * 60_000 === moment;
   return new Date(isThere ? moment : Math.max(guess, moment)).toISOString();
 }

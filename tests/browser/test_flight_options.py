@@ -155,6 +155,10 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     height = panel.get_by_label("Height above ground")
     height.fill("80")
     height.press("Tab")
+    speed = panel.get_by_label("Speed on the way here")
+    speed.fill("6")
+    speed.press("Tab")
+    expect(panel).to_contain_text("By hand; empty:")
     panel.get_by_role("button", name="Put one in after it").click()
     expect(panel).to_contain_text("2 waypoints are changed. Every changed leg is clear.")
     picture(page, "plan-by-hand-light")
@@ -165,6 +169,13 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     kept = mission_of(page)["plan"]["routes"][1]
     assert len(kept["by_hand"]) >= 2
     assert max(kept["waypoints"][place]["altitude_agl_m"] for place in kept["by_hand"]) == 80.0
+    assert {one["speed_mps"] for one in kept["speeds_by_hand"]} == {6.0}
+    page.reload()
+    page.get_by_role("button", name="Change the route of Kite by hand").click()
+    expect(panel).to_contain_text("1 change by hand is kept and can be taken back.")
+    panel.get_by_role("button", name="Take back the last change").click()
+    expect(route(page, "Kite")).not_to_contain_text("changed by hand")
+    assert mission_of(page)["plan"]["routes"][1]["waypoints"] == planned
 
 
 def test_what_can_be_inspected_is_a_layer_with_counts_and_the_reason_of_each_asset(visitor: Visitor, picture: Picture) -> None:

@@ -80,6 +80,9 @@ def test_a_strip_the_profile_and_the_map_follow_one_pointer(visitor: Visitor, pi
     chart = drawing.bounding_box()
     assert chart and abs(chart["x"] - box["x"]) < 1  # one axis
     picture(page, "plan-profile")
+    page.emulate_media(color_scheme="dark")
+    picture(page, "plan-profile-dark")
+    page.emulate_media(color_scheme="light")
 
     page.mouse.move(0, 0)
     expect(profile).not_to_contain_text(re.compile(r"at \d+\.\d\skm"))

@@ -19,3 +19,10 @@ def test_a_zone_beside_the_line_is_named_only_when_what_is_near_is_asked_for() -
     assert stretch.zone.pk == zone.pk
     around_m = 62.4 + (200.0**2 - 111.3**2) ** 0.5  # half the zone's width, and what a circle of 200 m adds at its corners
     assert (stretch.from_m, stretch.to_m) == pytest.approx((623.5 - around_m, 623.5 + around_m), abs=10)
+
+
+def test_what_the_line_crosses_is_told_from_what_it_passes_near() -> None:
+    beside, crossed = ground.zone((10.005, 56.002), 0.001), ground.zone((10.015, 56.0), 0.001)
+    found = {stretch.zone.pk: stretch.is_crossed for stretch in zones_along(LINE, near_m=200.0)}
+    assert found == {beside.pk: False, crossed.pk: True}
+    assert [(stretch.zone.pk, stretch.is_crossed) for stretch in zones_along(LINE)] == [(crossed.pk, True)]

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { createHandEditing } from "../../static/js/mission/hand_editing.js";
-import { backTo, bodyOf, changedLegs, changesOf, dropped, faultsOf, inserted, legOf, moved, pointsOf, raised } from "../../static/js/mission/hand_route.js";
+import { bodyOf, changedLegs, changesOf, dropped, faultsOf, inserted, legOf, moved, paced, pointsOf, raised } from "../../static/js/mission/hand_route.js";
 import { createStore } from "../../static/js/store.js";
 
 const at = (lon, kind, target = null) => ({ position: [lon, 40], altitude_agl_m: 60, kind, target });
@@ -80,9 +80,24 @@ test("each change is a step that can be undone, and each changed leg is asked ab
   assert.equal(store.state.hand, null); // closing the panel ends it
 });
 
-test("back to what was is stored on top of what is: points that are still there keep their places, those taken out come in again", () => {
-  const point = (longitude, kind, was) => ({ position: [longitude, 56], kind, target: null, was });
-  const before = [point(10, "start", 0), point(10.1, "pass", 1), point(10.2, "pass", 2), point(10.3, "end", 3)];
-  const now = [point(10, "start", 0), point(10.15, "pass", 1), point(10.2, "pass", 2), point(10.3, "end", 3)];
-  assert.deepEqual(backTo(before, now).map(({ was }) => was), [0, null, 2, 3]);
+test("a speed belongs to the leg that leads to a waypoint, and is taken back like the rest", () => {
+  const slow = paced(original, 3, 6);
+  assert.deepEqual(changedLegs(slow, original), [2]);
+  assert.equal(changesOf(slow, original), 1);
+  assert.equal(changesOf(paced(slow, 3, null), original), 0);
+  assert.equal(paced(original, 0, 6), original); // no leg leads to the start
+  assert.deepEqual(bodyOf(slow).waypoints.map(({ speed_mps }) => speed_mps), [null, null, null, 6, null]);
+  assert.equal(inserted(slow, 2)[3].speed_mps, 6); // both parts of the leg
+});
+
+test("a stored speed is known by its waypoint", () => {
+  const stored = pointsOf({ ...route, speeds_by_hand: [{ waypoint: 2, speed_mps: 4.5 }] });
+  assert.deepEqual(stored.map(({ speed_mps }) => speed_mps), [null, null, 4.5, null, null]);
+});
+
+test("a slow leg is asked about for as long as it takes", () => {
+  const { start, end, speed_mps } = legOf(paced(original, 3, 2), 2); // 852 m
+  assert.deepEqual([start.arrival_s, speed_mps], [120, 2]);
+  assert.ok(Math.abs(end.arrival_s - (120 + 426)) < 1);
+  assert.equal(legOf(paced(original, 3, 100), 2).end.arrival_s, 180);
 });

@@ -49,8 +49,10 @@ test("always and never are said as such", () => {
 
 test("spans and legs in words", () => {
   assert.equal(spanText({ from_ms: at("21T18:30:00"), to_ms: at("21T20:00:00") }), "21 Nov, 19:30 to 21:00");
-  assert.equal(legsText([{ uav: "Heron", leg: 2 }, { uav: "Heron", leg: 4 }, { uav: "Kite", leg: 0 }]), "Heron, legs 3 to 5; Kite, leg 1");
-  assert.equal(legsText([{ uav: "Heron", leg: -1 }]), "Heron, at take-off");
+  const waypoints = ["start", "pass", "target", "pass", "target", "end"].map((kind) => ({ kind }));
+  const found = legalTimesOf({ from: "2026-11-21T18:02:00Z", to: "2026-11-23T18:02:00Z", windows: [], zones: [{ name: "School", blocked: [], legs: [[0, -1], [0, 1], [0, 2], [0, 3], [1, 4]].map(([uav, leg]) => ({ uav, leg })) }] }, [{ name: "Heron", letter: "A", waypoints }, { name: "Kite", letter: "B", waypoints }]);
+  assert.equal(legsText(found.zones[0].legs), "Heron, at take-off, start to A1, A1 to A2; Kite, after B2");
+  assert.equal(legsText(["a", "b", "c", "d"].map((way) => ({ uav: "Heron", way }))), "Heron, a, b, c, and more");
 });
 
 test("why a window ends sooner than a zone begins is said where there is a zone", () => {

@@ -1,10 +1,14 @@
 """Plans that heed batteries, wind and airspeed."""
 
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from django.contrib.gis.gdal import GDALRaster
 
 from inspection.geodesy import LonLat
+from inspection.services import import_terrain
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
 from missions.models import EndAction
@@ -167,3 +171,31 @@ def test_without_towers_on_the_way_charging_helps_nobody() -> None:
     small = iris((10.001, 55.95), battery_wh=4.0, end_action=EndAction.RETURN)
     plan = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=100.0))
     assert reasons(plan) == {0: "beyond_energy"}
+
+
+def ridge(folder: Path) -> None:
+    """80 m high and some 60 m wide between the third tower and the fourth, where the network has no node."""
+    columns, rows = 400, 60
+    heights = np.zeros((rows, columns), dtype=np.float32)
+    heights[:, 199:202] = 80.0
+    raster = GDALRaster(
+        {
+            "driver": "GTiff", "name": str(folder / "ridge.tif"), "srid": 4326, "width": columns, "height": rows,
+            "origin": (9.97, 56.03), "scale": (0.0002, -0.001), "datatype": 6,
+            "bands": [{"data": heights.tobytes(), "nodata_value": -9999.0}],
+        }
+    )  # fmt: skip
+    raster._flush()
+    import_terrain(path=folder / "ridge.tif", vertical_datum="EGM96")
+
+
+def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_path: Path) -> None:
+    """The network's nodes know nothing of the ridge: the search's own figures would say that next to nothing is missing."""
+    here = world()
+    ridge(tmp_path)
+    drawn_wh = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
+    small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN)
+    plan = make_plan(request=request(here.towers[5], uavs=(small,)))
+    assert reasons(plan) == {0: "beyond_energy"}
+    said = "As drawn, over the ground and what stands tall, a route with it takes 0.7 Wh more than the battery of Tern may give."
+    assert plan["unassigned"][0]["message"] == said

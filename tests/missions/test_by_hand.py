@@ -1,4 +1,4 @@
-"""Routes changed by hand: what may be, what is refused, and what is kept."""
+"""Routes changed by hand: what may be, what is refused, what is kept, and how it is taken back."""
 
 from typing import Any
 
@@ -164,3 +164,136 @@ def test_a_dragged_leg_over_wires_is_told_how_high_to_fly(here: World, client: C
     assert short["is_clear"]
     assert not over["is_clear"]
     assert words in over["message"]
+
+
+def planned_with(here: World, client: Client, **wishes: Any) -> dict[str, Any]:
+    """One UAV of 12 m/s that may fly 14 m/s through the air, with a battery."""
+    body = mission_body(here.towers[3], here.towers[5]) | {"plan": True} | wishes
+    body["uavs"] = [uav | {"max_airspeed_mps": 14.0, "battery_wh": 100.0, "cruise_speed_mps": 12.0} for uav in body["uavs"]]
+    return post(client, "missions", body).json()
+
+
+def longest_leg(mission: dict[str, Any]) -> int:
+    """The waypoint to which the longest leg leads, by its time."""
+    arrival_s = mission["plan"]["routes"][0]["arrival_s"]
+    return max(range(1, len(arrival_s)), key=lambda place: arrival_s[place] - arrival_s[place - 1])
+
+
+def test_a_speed_over_one_leg_counts_into_all_times_and_the_battery_and_is_stored(here: World, client: Client) -> None:
+    mission = planned_with(here, client)
+    place, wished = longest_leg(mission), as_wished(mission)
+    wished[place]["speed_mps"] = 6.0
+    changed = put(client, mission, wished).json()
+    before, after = (found["plan"]["routes"][0] for found in (mission, changed))
+    flown_s = before["arrival_s"][place] - before["arrival_s"][place - 1]
+    assert after["arrival_s"][:place] == before["arrival_s"][:place]
+    later_s = after["arrival_s"][place] - before["arrival_s"][place]
+    assert later_s == pytest.approx(flown_s, abs=0.5)  # half the speed
+    assert after["duration_s"] - before["duration_s"] == pytest.approx(later_s, abs=0.2)
+    assert after["energy_wh"] > before["energy_wh"]
+    assert after["speeds_by_hand"] == [{"waypoint": place, "speed_mps": 6.0}]
+    assert place in after["by_hand"]
+    copy = post(client, f"missions/{mission['id']}/duplicate", {}).json()
+    assert copy["plan"]["routes"][0]["speeds_by_hand"] == after["speeds_by_hand"]
+
+
+@pytest.mark.parametrize("speed_mps", [0.2, 15.0])
+def test_a_speed_that_cannot_be_flown_is_refused_at_its_waypoint(here: World, client: Client, speed_mps: float) -> None:
+    mission = planned_with(here, client)
+    place, wished = longest_leg(mission), as_wished(mission)
+    wished[place]["speed_mps"] = speed_mps
+    faults = error_of(put(client, mission, wished), 400)["details"]
+    assert set(faults) == {f"waypoints.{place}.speed_mps"}
+    leg = {"start": wished[place - 1] | {"arrival_s": 0}, "end": wished[place] | {"arrival_s": 60}, "speed_mps": speed_mps}
+    for end in ("start", "end"):
+        leg[end] = {name: leg[end][name] for name in ("position", "altitude_agl_m", "arrival_s")}
+    (told,) = post(client, "leg-checks", {"legs": [leg], "mission": mission["id"], "uav": 0}).json()["legs"]
+    assert told == {"is_clear": False, "zone": None, "message": faults[f"waypoints.{place}.speed_mps"][0]}
+
+
+def test_against_the_wind_less_may_be_wished(here: World, client: Client) -> None:
+    wind = {"wind": [{"altitude_agl_m": 50, "speed_mps": 6, "from_deg": heading} for heading in (90,)], "temperature_c": 15}
+    mission = planned_with(here, client, conditions=wind)
+    ways = mission["plan"]["routes"][0]["waypoints"]
+    easts = [ways[place]["position"][0] - ways[place - 1]["position"][0] for place in range(1, len(ways))]
+    against = max(range(len(easts)), key=easts.__getitem__) + 1
+    wished = as_wished(mission)
+    wished[against]["speed_mps"] = 11.0  # 14 m/s through the air leave some 8 m/s
+    assert f"waypoints.{against}.speed_mps" in error_of(put(client, mission, wished), 400)["details"]
+    wished[against]["speed_mps"] = 7.0
+    assert put(client, mission, wished).status_code == 200
+
+
+def test_no_speed_where_no_leg_leads(here: World, client: Client) -> None:
+    mission = planned_with(here, client)
+    wished = as_wished(mission)
+    wished[0]["speed_mps"] = 6.0
+    assert "waypoints.0.speed_mps" in error_of(put(client, mission, wished), 400)["details"]
+
+
+def test_a_speed_is_checked_for_a_uav_of_a_mission_alone(client: Client, here: World) -> None:
+    end = {"position": [10.0, 55.9935], "altitude_agl_m": 60.0}
+    answer = post(client, "leg-checks", {"legs": [{"start": end, "end": end, "speed_mps": 6.0}]})
+    assert set(error_of(answer, 400)["details"]) == {"mission", "uav"}
+
+
+def undo(client: Client, mission: dict[str, Any]) -> Any:
+    return client.post(f"/api/v1/missions/{mission['id']}/routes/0/waypoints/undo", HTTP_IF_MATCH=f'"{mission["revision"]}"')
+
+
+def test_changes_are_taken_back_one_by_one_until_the_route_is_as_planned(here: World, client: Client) -> None:
+    mission = planned_with(here, client)
+    wished = as_wished(mission)
+    wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
+    first = put(client, mission, wished).json()
+    slower = as_wished(first)
+    slower[longest_leg(first)]["speed_mps"] = 6.0
+    second = put(client, first, slower).json()
+    assert [found["plan"]["routes"][0]["hand_steps"] for found in (mission, first, second)] == [0, 1, 2]
+    back = undo(client, second).json()
+    assert without_steps(back) == without_steps(first)
+    again = undo(client, back).json()
+    assert without_steps(again) == without_steps(mission)
+    assert {name: again["plan"][name] for name in ("is_proven", "gap", "method")} == {
+        name: mission["plan"][name] for name in ("is_proven", "gap", "method")
+    }
+    assert error_of(undo(client, again), 400)["details"] == {"uav": ["No change by hand of this route can be taken back."]}
+
+
+def without_steps(mission: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in mission["plan"]["routes"][0].items() if name != "hand_steps"}
+
+
+def test_a_change_is_not_taken_back_into_a_zone(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    wished = as_wished(mission)
+    wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
+    first = put(client, mission, wished).json()
+    without = [point for point in as_wished(first) if point["position"] != [10.003, 55.9935]]
+    second = put(client, first, without).json()
+    zone_around((10.003, 55.9935), 0.0005, name="Hospital")
+    faults = error_of(undo(client, second), 400)["details"]
+    assert any("Hospital" in str(fault) for fault in faults.values())
+
+
+def test_planning_again_ends_what_can_be_taken_back(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    changed = put(client, mission, as_wished(mission)).json()
+    again = client.post(f"/api/v1/missions/{mission['id']}/plan", HTTP_IF_MATCH=f'"{changed["revision"]}"').json()
+    assert again["plan"]["routes"][0]["hand_steps"] == 0
+
+
+def test_from_where_a_lost_link_goes_wrong_is_told_of_the_changed_route(here: World, client: Client) -> None:
+    """South of the start a zone, and behind it a new waypoint, which is reached round it: from there nobody returns straight."""
+    mission = planned_with(here, client, lost_link={"behaviour": "return"})
+    assert mission["plan"]["lost_link"]["failed"] == []
+    zone_around((10.001, 55.9925), 0.0002, name="Hospital")
+    wished = as_wished(mission)
+    for position in ([10.0081, 55.9925], [10.001, 55.99], [10.008, 55.9925]):
+        wished.insert(1, {"position": position, "altitude_agl_m": 70.0, "was": None})
+    changed = put(client, mission, wished).json()
+    failed = changed["plan"]["lost_link"]["failed"]
+    (behind,) = [place for place, point in enumerate(as_wished(changed)) if point["position"] == [10.001, 55.99]]
+    assert {(one["route"], one["zone"]) for one in failed} == {(0, "Hospital")}
+    assert behind in {one["waypoint"] for one in failed}
+    assert undo(client, changed).json()["plan"]["lost_link"]["failed"] == []

@@ -62,7 +62,7 @@ def moments(span: dict[str, str]) -> tuple[datetime, datetime]:
 def test_without_a_zone_every_departure_is_legal(here: World, client: Client) -> None:
     found = asked(client, planned(here))
     whole = {"from": f"{SUNDAY:%Y-%m-%dT%H:%M:%SZ}", "to": f"{TUESDAY:%Y-%m-%dT%H:%M:%SZ}"}
-    assert found == whole | {"margin_s": 300.0, "windows": [whole], "zones": []}
+    assert found == whole | {"margin_s": 300.0, "height_margin_m": 10.0, "windows": [whole], "zones": []}
 
 
 def test_a_zone_bars_the_departures_that_would_meet_it(here: World, client: Client) -> None:
@@ -157,4 +157,5 @@ def test_a_mission_without_routes_has_no_windows(here: World, client: Client) ->
 def test_the_shape_is_in_the_schema(client: Client) -> None:
     document = client.get("/api/schema", headers={"Accept": "application/vnd.oai.openapi+json"}).json()
     assert set(document["components"]["schemas"]["TimeSpan"]["properties"]) == {"from", "to"}
-    assert set(document["components"]["schemas"]["LegalWindows"]["properties"]) == {"from", "to", "margin_s", "windows", "zones"}
+    shape = document["components"]["schemas"]["LegalWindows"]["properties"]
+    assert set(shape) == {"from", "to", "margin_s", "height_margin_m", "windows", "zones"}

@@ -15,8 +15,10 @@ from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, mark_ground_changed
 from missions.services import make_plan
 from tests.inspection import ground
+from tests.missions.ground_judge import Hills
+from tests.missions.random_flights import ASSETS, HILLY, cut_out
 from tests.missions.random_missions import Region, put_random_zones
-from tests.missions.test_random_flights import HILLY, REGIONS, _cut_out, _put_hills
+from tests.missions.test_random_flights import REGIONS
 from tests.missions.wire_judge import WireJudge
 from tests.missions.worlds import power_line, rebuild, request, uav, world
 
@@ -37,9 +39,9 @@ def test_many_random_missions_pass_no_tower_and_no_wire_too_near(shared_data: An
 
 def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
     import_osm(path=path)
-    _cut_out(500)
+    cut_out(ASSETS)
     if path.name in HILLY:
-        _put_hills(folder / "hills.tif")
+        Hills().bring_in(folder / "hills.tif")
     draw = random.Random(seed)
     _give_heights(draw)
     put_random_zones(seed)

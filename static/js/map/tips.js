@@ -5,6 +5,7 @@ import { t } from "../text.js";
 import { lengthText, whenText } from "../units.js";
 import { bandDrawing, heightsText } from "../zones/heights.js";
 import { isInForce } from "../zones/in_force.js";
+import { scheduleText } from "../zones/schedule_words.js";
 import { zoneDetails, zoneDetailsKept } from "./zone_details.js";
 
 const KIND_WORDS = () => ({
@@ -73,7 +74,7 @@ function zoneContent({ properties, place }, details, problem = "") {
       "div",
       { class: "tip-band" },
       bandDrawing(limits),
-      h("div", {}, h("div", {}, heightsText(limits)), h("div", {}, details ? details.schedule_words : properties.schedule ? t("At times") : ""), quiet(place ? nowWords(properties, place) : "")),
+      h("div", {}, h("div", {}, heightsText(limits)), h("div", {}, details ? scheduleText(details.schedule, { otherwise: details.schedule_words }) : properties.schedule ? t("At times") : ""), quiet(place ? nowWords(properties, place) : "")),
     ),
     why && h("div", {}, why),
     quiet(problem || (details ? sourceWords(details) : t("Reading times and source…"))),

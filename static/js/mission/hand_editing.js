@@ -62,7 +62,8 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     if (!legs.length) return;
     isAsking = true;
     try {
-      const { data } = await post("/leg-checks", { legs, departs_at: store.state.plan?.result.departs_at ?? null });
+      const flyer = legs.some(({ speed_mps }) => speed_mps) ? { mission: store.state.mission.id, uav: state().sequence } : {};
+      const { data } = await post("/leg-checks", { legs, departs_at: store.state.plan?.result.departs_at ?? null, ...flyer });
       legs.forEach((leg, index) => verdicts.set(hand.keyOfLeg(leg), data.legs[index]));
     } catch (error) {
       legs.forEach((leg) => verdicts.set(hand.keyOfLeg(leg), { is_clear: false, zone: null, message: t("Not checked: {reason}", { reason: wordsOf(error) }), isUnknown: true }));
@@ -86,12 +87,18 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     return answer.data;
   }
 
-  /** The route as it was before it was kept; who has changed the mission since is told so. */
-  async function takeBack(mission, sequence, points) {
+  /** The route as it was before it was changed by hand last; who has changed the mission since is told so. */
+  async function takeBack(sequence) {
+    const { mission, name } = store.state;
+    if (state()) put({ isSaving: true });
     try {
-      keepOpen(await stored(mission, sequence, points), { selection: selection(), name: store.state.name });
-      say(t("Undone."));
+      const { data } = await request("POST", `/missions/${mission.id}/routes/${sequence}/waypoints/undo`, { headers: { "If-Match": `"${mission.revision}"` } });
+      end();
+      keepOpen(data, { selection: selection(), name });
+      history.startFrom(selection());
+      toast(t("The last change by hand is taken back."));
     } catch (error) {
+      if (state()) put({ isSaving: false });
       toast(t("Not undone: {reason}", { reason: wordsOf(error) }));
     }
   }
@@ -106,9 +113,8 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
       end();
       keepOpen(data, { selection: selection(), name });
       history.startFrom(selection()); // a step back from here would plan anew, and the change by hand would be gone
-      const undo = () => takeBack(data, sequence, hand.backTo(original, hand.pointsOf(data.plan.routes[sequence])));
       say(t("The route is kept as changed by hand."));
-      toast(t("The route is kept as changed by hand."), { label: t("Undo"), act: undo });
+      toast(t("The route is kept as changed by hand."), { label: t("Undo"), act: () => takeBack(sequence) });
     } catch (error) {
       if (!state()) return undefined;
       const faults = hand.faultsOf(error.details);
@@ -141,8 +147,10 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     },
     moveByHand: (index, position) => take(hand.moved(state().points, index, position), index),
     raiseByHand: (index, height_m) => take(hand.raised(state().points, index, height_m), index),
+    paceByHand: (index, speed_mps) => take(hand.paced(state().points, index, speed_mps), index),
     insertByHand: (index) => take(hand.inserted(state().points, index), index + 1),
     removeByHand: (index) => take(hand.dropped(state().points, index), null),
+    takeBackByHand: () => takeBack(state().sequence),
     undoByHand: () => step(past, future),
     redoByHand: () => step(future, past),
   };

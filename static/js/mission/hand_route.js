@@ -1,8 +1,10 @@
-/** A route that is changed by hand: waypoints moved, put in, taken out, flown higher. Values in, values out.
+/** A route that is changed by hand: waypoints moved, put in, taken out, flown higher or at another speed. Values in, values out.
  *
- * A point is { position, altitude_agl_m, was, kind, target, arrival_s, isByHand }; `was` is its place in the route as stored, null where
- * it is put in. Start, end and targets stay where they are.
+ * A point is { position, altitude_agl_m, speed_mps, was, kind, target, arrival_s, isByHand }; `was` is its place in the route as stored,
+ * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and targets stay.
  */
+
+import { distance_m } from "./span_strip.js";
 
 const DIGITS = 7; // some 0.01 m
 
@@ -11,9 +13,13 @@ export const isFree = ({ kind }) => kind === "pass";
 
 const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(DIGITS)));
 
-export function pointsOf({ waypoints, arrival_s, by_hand }) {
+/** Whether a leg leads to it that has a speed. */
+export const isFlownTo = ({ kind }) => kind !== "start" && kind !== "base";
+
+export function pointsOf({ waypoints, arrival_s, by_hand, speeds_by_hand }) {
   const byHand = new Set(by_hand ?? []);
-  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({ position, altitude_agl_m, was, kind, target, arrival_s: arrival_s?.[was] ?? null, isByHand: byHand.has(was) }));
+  const speeds = new Map((speeds_by_hand ?? []).map(({ waypoint, speed_mps }) => [waypoint, speed_mps]));
+  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({ position, altitude_agl_m, speed_mps: speeds.get(was) ?? null, was, kind, target, arrival_s: arrival_s?.[was] ?? null, isByHand: byHand.has(was) }));
 }
 
 const replaced = (points, index, values) => points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
@@ -25,12 +31,15 @@ export function moved(points, index, position) {
 
 export const raised = (points, index, altitude_agl_m) => (points[index] && points[index].altitude_agl_m !== altitude_agl_m ? replaced(points, index, { altitude_agl_m }) : points);
 
-/** A new one after `index`, as high as the higher of its neighbours; in the middle of the leg where no place is said. */
+/** speed_mps on the leg to a point; null: the UAV's own again. */
+export const paced = (points, index, speed_mps) => (points[index] && isFlownTo(points[index]) && points[index].speed_mps !== speed_mps ? replaced(points, index, { speed_mps }) : points);
+
+/** A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg where no place is said. */
 export function inserted(points, index, position = null) {
   const [before, after] = [points[index], points[index + 1]];
   if (!before || !after) return points;
   const middle = before.position.map((degrees, axis) => (degrees + after.position[axis]) / 2);
-  const point = { position: rounded(position ?? middle), altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m), was: null, kind: "pass", target: null, arrival_s: null, isByHand: true };
+  const point = { position: rounded(position ?? middle), altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m), speed_mps: after.speed_mps, was: null, kind: "pass", target: null, arrival_s: null, isByHand: true };
   return [...points.slice(0, index + 1), point, ...points.slice(index + 1)];
 }
 
@@ -38,45 +47,39 @@ export const dropped = (points, index) => (points[index] && isFree(points[index]
 
 const isAtPlace = (point, original) => point.was !== null && point.altitude_agl_m === original[point.was].altitude_agl_m && point.position.every((degrees, axis) => degrees === original[point.was].position[axis]);
 
+const isAsFast = (point, original) => point.speed_mps === original[point.was].speed_mps;
+
 /** Indices of the legs that are not flown so in the route as stored: leg i goes from point i to the next. */
 export function changedLegs(points, original) {
   return points.slice(1).flatMap((end, index) => {
     const start = points[index];
-    const isAsStored = isAtPlace(start, original) && isAtPlace(end, original) && end.was === start.was + 1;
+    const isAsStored = isAtPlace(start, original) && isAtPlace(end, original) && isAsFast(end, original) && end.was === start.was + 1;
     return isAsStored ? [] : [index];
   });
 }
 
-/** How many waypoints are another than stored: moved, higher, put in, taken out. */
+/** How many waypoints are another than stored: moved, higher, reached faster or slower, put in, taken out. */
 export function changesOf(points, original) {
   const kept = points.filter(({ was }) => was !== null);
-  return original.length - kept.length + points.filter((point) => !isAtPlace(point, original)).length;
+  return original.length - kept.length + points.filter((point) => !isAtPlace(point, original) || !isAsFast(point, original)).length;
 }
 
-/** The points of before, to be stored on top of what is stored now: each is the first one left that lies where it does and is of its kind. */
-export function backTo(before, now) {
-  let from = 0;
-  return before.map((point) => {
-    const isSame = (other) => other.kind === point.kind && other.target === point.target && other.position.every((degrees, axis) => Math.abs(degrees - point.position[axis]) < 1e-9);
-    const found = now.findIndex((other, at) => at >= from && isSame(other));
-    if (found >= 0) from = found + 1;
-    return { ...point, was: found < 0 ? null : now[found].was };
-  });
-}
-
-/** A leg as it is asked about; times are those of the stored waypoints around it. */
+/** A leg as it is asked about; times are those of the stored waypoints around it, and what its own speed takes where that is longer. */
 export function legOf(points, index) {
   const end = ({ position, altitude_agl_m }, arrival_s) => ({ position, altitude_agl_m, arrival_s });
   const before = points.slice(0, index + 1).findLast(({ arrival_s }) => arrival_s !== null)?.arrival_s ?? null;
   const after = points.slice(index + 1).find(({ arrival_s }) => arrival_s !== null)?.arrival_s ?? null;
-  return { start: end(points[index], before), end: end(points[index + 1], after) };
+  const { speed_mps } = points[index + 1];
+  if (speed_mps === null) return { start: end(points[index], before), end: end(points[index + 1], after) };
+  const slow_s = before === null ? null : before + distance_m(points[index].position, points[index + 1].position) / speed_mps;
+  return { start: end(points[index], before), end: end(points[index + 1], after === null || slow_s === null ? null : Math.max(after, slow_s)), speed_mps };
 }
 
 /** Legs that are alike are asked about once. */
 export const keyOfLeg = (leg) => JSON.stringify(leg);
 
 /** What the server takes for the whole route. */
-export const bodyOf = (points) => ({ waypoints: points.map(({ position, altitude_agl_m, was }) => ({ position, altitude_agl_m, was })) });
+export const bodyOf = (points) => ({ waypoints: points.map(({ position, altitude_agl_m, was, speed_mps }) => ({ position, altitude_agl_m, was, speed_mps })) });
 
 /** What the server says of single places: { points: Map index → words, legs: Map index → words, other: [words] }. */
 export function faultsOf(details) {

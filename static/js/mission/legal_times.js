@@ -3,17 +3,19 @@
 import { language, localeOf, t, tn } from "../text.js";
 import { clockText, durationText, typedMoment } from "../units.js";
 import { departureText } from "./flight_options.js";
+import { marginWords } from "./zones_passed.js";
 
 export const STEP_MS = 5 * 60_000;
 const HOUR_MS = 3_600_000;
 const TICK_HOURS = 6;
+const MOST_WAYS = 3; // that a row names for each UAV
 
 const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
 
-/** The server's answer with moments as ms; nameOf(index) names the UAV of a leg. */
-export function legalTimesOf({ from, to, windows, zones, margin_s = 0 }, nameOf = String) {
-  const named = (legs) => legs.map(({ uav, leg }) => ({ uav: nameOf(uav), leg }));
-  return { ...span({ from, to }), margin_s, windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
+/** The server's answer with moments as ms; routes: those that were asked about, with name, letter and waypoints. */
+export function legalTimesOf({ from, to, windows, zones, margin_s = 0, height_margin_m = 0 }, routes = []) {
+  const named = (legs) => legs.filter(({ uav }) => routes[uav]).map(({ uav, leg }) => ({ uav: routes[uav].name, way: wayOf(routes[uav], leg) }));
+  return { ...span({ from, to }), margin_s, height_margin_m, windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
 }
 
 /** How far along the bar, 0 to 1. */
@@ -58,7 +60,7 @@ export function spanText({ from_ms, to_ms }) {
 }
 
 /** Why a window ends sooner than a zone begins; empty where that is not so. */
-export const marginText = ({ zones, margin_s }) => (zones.length && margin_s > 0 ? t("Zones count {time} before and after their times.", { time: durationText(margin_s) }) : "");
+export const marginText = ({ zones, margin_s: time_s, height_margin_m: height_m }) => (zones.length ? marginWords({ time_s, height_m }) : "");
 
 /** What the bar says, and whether the chosen departure is one of the legal ones: { sentence, departure }. */
 export function wordsOf(times, departs_at) {
@@ -83,13 +85,20 @@ function departureWords(times, moment) {
   return next ? `${words} ${t("The next legal one is {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}` : words;
 }
 
-/** "Heron, legs 3 to 5; Kite, leg 2": which legs of the routes meet a zone, counted from 1; the climb before them is the take-off. */
+/** "Heron, A1 to A2, after A4; Kite, start to B1": on which ways between targets routes meet a zone; the climb at the start is the take-off.
+ * legs: [{ uav: its name, way: see wayOf }]. */
 export function legsText(legs) {
   const byUav = new Map();
-  for (const { uav, leg } of legs) byUav.set(uav, [...(byUav.get(uav) ?? []), leg]);
-  return [...byUav].map(([uav, numbers]) => {
-    const [first, last] = [Math.max(1, Math.min(...numbers) + 1), Math.max(...numbers) + 1];
-    if (last === 0) return t("{uav}, at take-off", { uav });
-    return first === last ? t("{uav}, leg {number}", { uav, number: first }) : t("{uav}, legs {first} to {last}", { uav, first, last });
-  }).join("; ");
+  for (const { uav, way } of legs) byUav.set(uav, new Set([...(byUav.get(uav) ?? []), way]));
+  return [...byUav].map(([uav, ways]) => [uav, ...[...ways].slice(0, MOST_WAYS), ...(ways.size > MOST_WAYS ? [t("and more")] : [])].join(", ")).join("; ");
+}
+
+/** Between which targets, as the map numbers them, a leg of a route lies that begins at this waypoint. */
+export function wayOf({ letter, waypoints }, leg) {
+  if (leg < 0) return t("at take-off");
+  const isTarget = ({ kind }) => kind === "target";
+  const [before, all] = [waypoints.slice(0, leg + 1).filter(isTarget).length, waypoints.filter(isTarget).length];
+  const [start, end] = [`${letter}${before}`, `${letter}${before + 1}`];
+  if (before === all) return before ? t("after {start}", { start }) : t("on its way");
+  return before ? t("{start} to {end}|way", { start, end }) : t("start to {end}|way", { end });
 }

@@ -14,7 +14,9 @@ const SENTENCES = [
   [/^(.+) and (.+) have as many targets as they may have, and no other UAV has the range for it\.$/, (names, last) => t("{names} and {last} have as many targets as they may have, and no other UAV has the range for it.", { names, last })],
   [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
   [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed, missing })],
-  [/^Over these hills the battery of (.+) does not last for it\.$/, (name) => t("Over these hills the battery of {name} does not last for it.", { name })],
+  [/^The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach\.$/, () => t("The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach.")],
+  [/^As drawn, over the ground and what stands tall, a route with it takes ([\d,.]+) Wh more than the battery of (.+) may give\.$/, (missing, name) => t("As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.", { missing, name })],
+  [/^Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it\.$/, () => t("Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.")],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 

@@ -9,6 +9,7 @@ import { timeAt } from "./flight_options.js";
 import { staysOf, stayText } from "./route_times.js";
 import { rulesOf } from "../terrain/profile_chart.js";
 import { profileOf, scaleOf } from "./span_strip.js";
+import { passedZones, zoneWords } from "./zones_passed.js";
 
 export const PROFILE_HEIGHT_PX = 96;
 const TOP_PX = 14;
@@ -47,11 +48,13 @@ export function groundOf(profile, length_m) {
   return {
     samples: profile.distance_m.map((distance, index) => ({ at_m: distance * scale, ground_m: profile.ground_amsl_m[index] })),
     zones: profile.zones.map((zone) => ({ ...zone, from_m: zone.from_m * scale, to_m: zone.to_m * scale })),
+    zone_margins: profile.zone_margins,
   };
 }
 
-/** Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat. */
-export function flightOf(route, ground, battery_wh = null) {
+/** Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat; departs_at of
+ * the plan says which zones are in force. */
+export function flightOf(route, ground, battery_wh = null, departs_at = null) {
   const { places, targets } = profileOf(route.waypoints, route.length_m);
   const isFlat = route.waypoints.some(({ altitude_amsl_m }) => altitude_amsl_m === null);
   const heightOf = (waypoint) => (isFlat ? waypoint.altitude_relative_m : waypoint.altitude_amsl_m);
@@ -64,7 +67,7 @@ export function flightOf(route, ground, battery_wh = null) {
   const under = isFlat ? [{ at_m: 0, ground_m: 0 }, { at_m: route.length_m, ground_m: 0 }] : (ground?.samples ?? []);
   const tasks = targets.map(({ target, at }) => ({ target, at_m: at, height_m: heightAt(path, at, "height_m") }));
   const waits = [...stays.values()].map((stay) => ({ ...stay, at_m: places[stay.index] }));
-  return { isFlat, path, under, tasks, waits, zones: ground?.zones ?? [], hasBattery: path.some(({ battery_percent }) => battery_percent !== null) };
+  return { isFlat, path, under, tasks, waits, zones: ground ? passedZones(ground, route, places, departs_at) : [], margins: ground?.zone_margins, hasBattery: path.some(({ battery_percent }) => battery_percent !== null) };
 }
 
 /** The same place when it goes on from there: later, and with a battery that is full after a base and fuller after charging. */
@@ -128,9 +131,12 @@ export function profileSentence(route, flight) {
   const words = flight.isFlat
     ? t("{name} flies {low} to {high} above its take-off; flat ground is assumed.", { name: route.name, low, high })
     : t("{name} flies {low} to {high} above sea level.", { name: route.name, low, high });
-  const names = [...new Set(flight.zones.map(({ name }) => name))];
-  return names.length ? `${words} ${t("It passes near {zones}.", { zones: names.join(", ") })}` : words;
+  const zones = [...new Set(flight.zones.map(zoneWords))];
+  return zones.length ? `${words} ${t("Zones: {zones}.", { zones: zones.join("; ") })}` : words;
 }
+
+/** Hatched is what a flight must not enter: zones that are only passed by, or not in force then, are outlines. */
+const isHatched = ({ kind }) => kind === "met" || kind === "apart";
 
 /** Draws it. onAlong(at_m or null), onTask(target or null); reserve_percent: of the battery, or null. Returns { element, point(at_m or null), light(target or null) }. */
 export function drawProfile({ route, flight, longest_m, width_px, reserve_percent = null, onAlong, onTask }) {
@@ -157,7 +163,7 @@ export function drawProfile({ route, flight, longest_m, width_px, reserve_percen
     const { from, to } = bandOf(zone, flight, span);
     const [left, right] = [x(zone.from_m), Math.max(x(zone.to_m), x(zone.from_m) + 3)];
     element.append(
-      svg("rect", { class: "zone-band", x: left, width: right - left, y: y(to), height: Math.max(1, y(from) - y(to)), fill: "url(#zone-hatch)" }, svg("title", {}, `${zone.name}, ${heightsText(zone)}`)),
+      svg("rect", { class: `zone-band ${zone.kind}`, x: left, width: right - left, y: y(to), height: Math.max(1, y(from) - y(to)), fill: isHatched(zone) ? "url(#zone-hatch)" : "none" }, svg("title", {}, `${zoneWords(zone)}, ${heightsText(zone)}`)),
     );
   }
   element.append(svg("polyline", { class: "flight", points: flight.path.map(({ at_m, height_m }) => `${x(at_m).toFixed(1)},${y(height_m).toFixed(1)}`).join(" ") }));

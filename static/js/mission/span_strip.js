@@ -4,6 +4,7 @@ import { h, svg } from "../dom.js";
 import { staticAddress } from "../static_address.js";
 import { t } from "../text.js";
 import { lengthText, LONG_UNIT, numberText } from "../units.js";
+import { zoneWords } from "./zones_passed.js";
 
 const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const TICK_SPACING_PX = 3.5;
@@ -122,7 +123,7 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
   return Array.from({ length: Math.floor(longest / step + 1e-9) + 1 }, (_, index) => Number((index * step).toPrecision(6)));
 }
 
-/** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name }], `waits`
+/** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name, kind }], `waits`
  * stops at bases and on towers: [{ index of the waypoint, kind, words }].
  *
  * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event, targets, label): a pill is
@@ -205,6 +206,14 @@ function drawPill({ x: at, width, label, targets, members }, { onTarget, grab })
   return { element, targets };
 }
 
+/** A block on what is in the way, a bracket under what is passed by or lies at another height; what is not in force is left out. */
+function zoneMark(zone, x) {
+  const [left, right] = [x(zone.from_m), Math.max(x(zone.to_m), x(zone.from_m) + 3)];
+  const title = svg("title", {}, zoneWords(zone));
+  if (zone.kind === "met") return svg("rect", { class: "strip-zone", x: left, y: MIDDLE_PX - 10, width: right - left, height: 20 }, title);
+  return svg("path", { class: "strip-zone-beside", d: `M${left} ${HEIGHT_PX - 5}V${HEIGHT_PX - 1}H${right}V${HEIGHT_PX - 5}` }, title);
+}
+
 function drawing({ profile, longest_m, width_px, label, zones, waits = [], onTarget, grab }) {
   const plan = layOut(profile, longest_m, width_px);
   const { x } = scaleOf(longest_m, width_px);
@@ -213,7 +222,7 @@ function drawing({ profile, longest_m, width_px, label, zones, waits = [], onTar
   const element = svg(
     "svg",
     { class: "strip", role: "img", "aria-label": label, width: width_px, height: HEIGHT_PX, viewBox: `0 0 ${width_px} ${HEIGHT_PX}` },
-    zones.map(({ from_m, to_m, name }) => svg("rect", { class: "strip-zone", x: x(from_m), y: MIDDLE_PX - 10, width: Math.max(3, x(to_m) - x(from_m)), height: 20 }, svg("title", {}, name))),
+    zones.filter(({ kind }) => kind !== "asleep").map((zone) => zoneMark(zone, x)),
     plan.ticks.map((at) => svg("line", { x1: at, x2: at, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" })),
     plan.legs.map((leg) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: leg.offNetwork ? "strip-leg off" : "strip-leg" })),
     mark(plan.start),

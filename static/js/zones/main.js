@@ -4,10 +4,11 @@ import { byId, h, icon } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
-import { coordinateText, lengthText, whenText } from "../units.js";
+import { coordinateText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
 import { zoneForm } from "./form.js";
 import { bandDrawing, heightsText } from "./heights.js";
 import { weekDrawing } from "./schedule_editor.js";
+import { scheduleText } from "./schedule_words.js";
 import { mountSetsPanel, validityText } from "./sets_panel.js";
 
 const PAGE = 60;
@@ -29,10 +30,11 @@ function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
 
 function details({ properties }) {
   const { source } = properties;
+  const isTimed = Boolean(properties.schedule?.length);
   return [
     h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || t("Restriction not stated")),
-    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, properties.schedule_words))),
-    ...(properties.schedule ?? []).slice(0, 3).filter((period) => Array.isArray(period.schedule)).map(weekDrawing),
+    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, scheduleText(properties.schedule, { otherwise: properties.schedule_words })), isTimed && h("p", { class: "caption" }, t("By the clock of {zone}.", { zone: zoneText(new Date().toISOString()) })))),
+    ...(properties.schedule ?? []).filter((period) => period.schedule?.length).slice(0, 3).map((period) => weekDrawing(period, minutesAheadOfUtc(Date.now()) / 60)),
     properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(
       "dl",

@@ -1,6 +1,7 @@
-/** When a zone applies, as data: periods in the one form that is stored. Days and times of day are UTC. */
+/** When a zone applies, as data: periods in the one form that is stored. Stored days and times of day are UTC. */
 
 import { t } from "../text.js";
+import { momentTyped, typedMoment } from "../units.js";
 
 export const DAYS = [["MON", t("Mon")], ["TUE", t("Tue")], ["WED", t("Wed")], ["THU", t("Thu")], ["FRI", t("Fri")], ["SAT", t("Sat")], ["SUN", t("Sun")]];
 export const EVENTS = [["BMCT", t("morning twilight")], ["SR", t("sunrise")], ["SS", t("sunset")], ["EECT", t("end of evening twilight")]];
@@ -12,8 +13,23 @@ export const newPeriod = () => ({ startDateTime: null, endDateTime: null, schedu
 
 const hour = (time) => Number(time.slice(0, 2)) + Number(time.slice(3, 5)) / 60;
 
-/** Stretches of one week: [{ day: 0 to 6, from_h, to_h, softStart, softEnd }]; one that goes past midnight is two. */
-export function weekOf(period) {
+/** Stretches of one week: [{ day: 0 to 6, from_h, to_h, softStart, softEnd }]; one that goes past midnight is two. ahead_h: by how much
+ * the clock that is drawn is ahead of UTC. */
+export function weekOf(period, ahead_h = 0) {
+  return ahead_h ? weekOf(period).flatMap((stretch) => movedOn(stretch, ahead_h)) : weekInUtc(period);
+}
+
+const WEEK_H = 168;
+
+function movedOn({ day, from_h, to_h, softStart, softEnd }, ahead_h) {
+  const start_h = (day * 24 + from_h + ahead_h + WEEK_H) % WEEK_H;
+  const [on, length_h] = [Math.floor(start_h / 24), to_h - from_h];
+  const end_h = start_h - on * 24 + length_h;
+  if (end_h <= 24) return [{ day: on, from_h: start_h - on * 24, to_h: end_h, softStart, softEnd }];
+  return [{ day: on, from_h: start_h - on * 24, to_h: 24, softStart, softEnd: false }, { day: (on + 1) % 7, from_h: 0, to_h: end_h - 24, softStart: false, softEnd }];
+}
+
+function weekInUtc(period) {
   const entries = period.schedule.length ? period.schedule : [{ day: ["ANY"], startTime: null, startEvent: null, endTime: null, endEvent: null }];
   return entries.flatMap((entry) => {
     const days = entry.day.includes("ANY") ? [0, 1, 2, 3, 4, 5, 6] : entry.day.map((day) => DAYS.findIndex(([key]) => key === day));
@@ -28,8 +44,8 @@ export function weekOf(period) {
   });
 }
 
-/** "2026-12-31T18:00:00Z" ↔ what <input type="datetime-local"> has, in UTC. */
-export const toField = (moment) => (moment ? moment.slice(0, 16) : "");
-export const fromField = (value) => (value ? `${value}:00Z` : null);
+/** "2026-12-31T18:00:00Z" ↔ what <input type="datetime-local"> has, by the reader's clock. */
+export const toField = (moment) => (moment ? typedMoment(moment) : "");
+export const fromField = (value) => (value ? (momentTyped(value)?.replace(/\.\d+Z$/, "Z") ?? null) : null);
 export const timeToField = (time) => (time ? (time.startsWith("24") ? "23:59" : time.slice(0, 5)) : "");
 export const timeFromField = (value) => (value ? `${value}:00Z` : null);

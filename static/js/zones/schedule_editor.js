@@ -2,10 +2,11 @@
 
 import { h, icon, svg } from "../dom.js";
 import { t } from "../text.js";
+import { minutesAheadOfUtc, zoneText } from "../units.js";
 import { DAYS, EVENTS, fromField, newEntry, newPeriod, timeFromField, timeToField, toField, weekOf } from "./schedule.js";
 
 const offsetWords = () => {
-  const minutes = -new Date().getTimezoneOffset();
+  const minutes = minutesAheadOfUtc(Date.now());
   if (!minutes) return t("Your clock shows UTC now.");
   const hours = Math.floor(Math.abs(minutes) / 60);
   return t("08:00 UTC is {time} on your clock now (UTC{offset}).", {
@@ -14,11 +15,11 @@ const offsetWords = () => {
   });
 };
 
-/** The week as seven rows of 24 hours. */
-export function weekDrawing(period) {
+/** The week as seven rows of 24 hours; ahead_h: by how much the clock that is drawn is ahead of UTC. */
+export function weekDrawing(period, ahead_h = 0) {
   const [left, row, width] = [30, 11, 290];
   const x = (hours) => left + (hours / 24) * width;
-  const stretches = weekOf(period);
+  const stretches = weekOf(period, ahead_h);
   return svg(
     "svg",
     { class: "week", viewBox: `0 0 ${left + width + 4} ${7 * row + 16}`, role: "img", "aria-label": t("The week, with the hours in which the zone applies") },
@@ -61,7 +62,7 @@ export function scheduleEditor(schedule) {
       entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
     }));
     time.addEventListener("change", change(() => (entry[`${which}Time`] = timeFromField(time.value))));
-    return h("div", { class: "field" }, h("span", { class: "field-label" }, words), h("div", { class: "time-row" }, time, event));
+    return h("div", { class: "field" }, h("span", { class: "field-label" }, t("{side}, UTC", { side: words })), h("div", { class: "time-row" }, time, event));
   }
 
   function days(entry) {
@@ -90,7 +91,7 @@ export function scheduleEditor(schedule) {
           "div",
           { class: "period" },
           h("div", { class: "period-head" }, h("strong", {}, periods.length > 1 ? t("Period {number}", { number: number + 1 }) : t("Period")), h("button", { type: "button", class: "icon-button tight", "aria-label": t("Remove the period"), onclick: change(() => periods.splice(number, 1)) }, icon("x", "small"))),
-          h("div", { class: "time-row" }, moment(period, "startDateTime", t("From, UTC"), number), moment(period, "endDateTime", t("Until, UTC"), number)),
+          h("div", { class: "time-row" }, moment(period, "startDateTime", t("From"), number), moment(period, "endDateTime", t("Until"), number)),
           weekDrawing(period),
           ...period.schedule.map((entry, index) =>
             h(
@@ -105,7 +106,7 @@ export function scheduleEditor(schedule) {
           h("button", { type: "button", class: "text-button", onclick: change(() => period.schedule.push(newEntry())) }, period.schedule.length ? t("Add hours") : t("Only at certain hours")),
         ),
       ),
-      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, t("Add a period")), h("p", { class: "caption" }, `${t("Days and hours are UTC.")} ${offsetWords()}`)] : []),
+      ...(periods.length ? [h("button", { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) }, t("Add a period")), h("p", { class: "caption" }, `${t("From and until are by the clock of {zone}. Hours of the week are UTC, as sources state them: they do not move with summer time.", { zone: zoneText(new Date().toISOString()) })} ${offsetWords()}`)] : []),
     );
   }
   draw();

@@ -227,7 +227,7 @@ def test_a_zone_is_drawn_with_a_hole_heights_and_hours_and_undone(visitor: Visit
     pictures(page, picture, "zone-schedule")
     page.get_by_role("button", name="Save").click()
     shown = page.locator("#record-show")
-    expect(shown).to_contain_text("Mon to Fri 08:00 to sunset UTC")
+    expect(shown).to_contain_text("Mon to Fri 08:00 to sunset")
     expect(shown).to_contain_text("120 m above ground")
     pictures(page, picture, "zones")
     page.get_by_role("button", name="Delete").click()

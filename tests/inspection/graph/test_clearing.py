@@ -130,7 +130,7 @@ def ways_of(graph: InspectionGraph) -> tuple[nx.Graph, dict[tuple[float, ...], i
 
 
 @given(grounds(), st.lists(st.tuples(small_zone, band), min_size=1, max_size=5), st.data())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_fewer_zones_never_lengthen_a_way(whole, drawn, data):
     """Of the links to bridges each set has its own nearest; the others are there whenever no zone is in the way."""
     polygons = [polygon for polygon, _ in drawn]
@@ -147,7 +147,7 @@ def test_fewer_zones_never_lengthen_a_way(whole, drawn, data):
 
 
 @given(grounds(), st.lists(st.tuples(small_zone, band), max_size=4))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_an_edge_is_there_unless_a_zone_is_in_its_way(whole, drawn):
     """Edge by edge, with shapely alone and without an index."""
     zones = index(*[polygon for polygon, _ in drawn], floor_m=[low for _, (low, _) in drawn], ceiling_m=[high for _, (_, high) in drawn])

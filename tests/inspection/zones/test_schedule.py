@@ -82,7 +82,10 @@ def test_people_read_it_as_a_sentence() -> None:
     ]
     assert schedule_sentence(checked_schedule(weekdays, "x")) == "Mon to Fri 08:00 to 18:00 UTC, until 31 Dec 2026"
     assert schedule_sentence(checked_schedule([{"schedule": [{"startEvent": "SS", "endEvent": "SR"}]}], "x")) == "daily sunset to sunrise"
-    assert (
-        schedule_sentence(checked_schedule([{"startDateTime": "2026-11-21T06:30:00Z"}], "x")) == "all the time, from 21 Nov 2026 06:30 UTC"
-    )
+    some_hours = {"startDateTime": "2026-11-21T14:00:00Z", "endDateTime": "2026-11-21T17:00:00Z"}
+    assert schedule_sentence(checked_schedule([some_hours], "x")) == "21 Nov 2026, 14:00 to 17:00 UTC"
+    assert schedule_sentence(checked_schedule([{"startDateTime": "2026-11-21T06:30:00Z"}], "x")) == "from 21 Nov 2026 06:30 UTC on"
+    assert schedule_sentence(checked_schedule([{"endDateTime": "2026-11-21T00:00:00Z"}], "x")) == "until 21 Nov 2026"
+    over_night = some_hours | {"endDateTime": "2026-11-22T05:00:00Z"}
+    assert schedule_sentence(checked_schedule([over_night], "x")) == "from 21 Nov 2026 14:00 UTC to 22 Nov 2026 05:00 UTC"
     assert schedule_sentence(None) == "Always"

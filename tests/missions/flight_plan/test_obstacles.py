@@ -143,7 +143,7 @@ SPANS = st.lists(st.tuples(LENGTHS, LENGTHS, HEIGHTS, LENGTHS, LENGTHS, HEIGHTS)
 PLACES = st.lists(st.tuples(LENGTHS, LENGTHS, st.floats(60.0, 120.0)), min_size=2, max_size=5)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(PLACES, SPANS)
 def test_no_leg_is_nearer_than_the_clearance_over_anything(places: list[tuple[float, float, float]], rows: list[tuple[float, ...]]) -> None:
     """Looked at every 2 m, and by the last look; and a route that has risen need not rise again."""

@@ -53,7 +53,6 @@ export default {
   "It is no longer in the data.": "Es ist nicht mehr in den Daten.",
   "It is out of range.": "Es ist außer Reichweite.",
   "It is too far from the network.": "Es ist zu weit vom Netz entfernt.",
-  "It passes near {zones}.": "Es kommt nahe an {zones} vorbei.",
   "It stands inside a no-fly zone.": "Es steht in einer Flugverbotszone.",
   "Its targets and routes are still on this page.": "Ihre Ziele und Routen sind noch auf dieser Seite.",
   "lands at the end": "landet am Ende",

@@ -2,11 +2,12 @@
 
 import { h, icon } from "../../dom.js";
 import { t, tn } from "../../text.js";
-import { SHORT_UNIT } from "../../units.js";
-import { changesOf, isFree } from "../hand_route.js";
+import { SHORT_UNIT, SPEED_UNIT, speedText } from "../../units.js";
+import { changesOf, isFlownTo, isFree } from "../hand_route.js";
 
 const MOST_SAID = 4;
 const typed = (metres) => Number((metres / SHORT_UNIT.metres).toFixed(1));
+const typedSpeed = (mps) => Number((mps / SPEED_UNIT.mps).toFixed(1));
 
 /** Returns { element, focus() }; it follows store.state.hand. */
 export function createByHand(store, actions) {
@@ -19,25 +20,42 @@ export function createByHand(store, actions) {
   const after = h("button", { type: "button", class: "icon-button tight turned", "aria-label": t("Next waypoint"), onclick: go(1) }, icon("arrow-left", "small"));
   const number = (id, how, onchange) => h("input", { class: "input", type: "number", step: "any", id, ...how, onchange });
   const height = number("hand-height", { min: 0 }, () => height.value && height.validity.valid && actions.raiseByHand(hand().chosen, height.valueAsNumber * SHORT_UNIT.metres));
+  const speed = number("hand-speed", { min: 0 }, () => speed.validity.valid && actions.paceByHand(hand().chosen, speed.value && speed.valueAsNumber > 0 ? speed.valueAsNumber * SPEED_UNIT.mps : null));
+  const speedSaid = h("p", { class: "caption", id: "hand-speed-said" });
+  speed.setAttribute("aria-describedby", speedSaid.id);
   const toPlace = () => latitude.value && longitude.value && latitude.validity.valid && longitude.validity.valid && actions.moveByHand(hand().chosen, [longitude.valueAsNumber, latitude.valueAsNumber]);
   const latitude = number("hand-latitude", { min: -90, max: 90 }, toPlace);
   const longitude = number("hand-longitude", { min: -180, max: 180 }, toPlace);
   const field = (label, input, unit) => h("div", { class: "field" }, h("label", { for: input.id }, label), h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)));
   const put = h("button", { type: "button", class: "button", onclick: () => actions.insertByHand(hand().chosen) }, icon("plus", "small"), t("Put one in after it"));
   const drop = h("button", { type: "button", class: "button", onclick: () => actions.removeByHand(hand().chosen) }, icon("trash-2", "small"), t("Remove"));
-  const one = h("div", { class: "stack hand-one" }, h("div", { class: "hand-fields" }, field(t("Height above ground"), height, SHORT_UNIT.unit), field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")), h("div", { class: "hand-acts" }, put, drop));
+  const one = h("div", { class: "stack hand-one" }, h("div", { class: "hand-fields" }, field(t("Height above ground"), height, SHORT_UNIT.unit), field(t("Speed on the way here"), speed, SPEED_UNIT.unit), speedSaid, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")), h("div", { class: "hand-acts" }, put, drop));
   const hint = h("p", { class: "quiet-text" }, t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."));
   const undo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Undo"), title: t("Undo (Ctrl+Z)"), onclick: actions.undoByHand }, icon("undo-2", "small"));
   const redo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Redo"), title: t("Redo (Ctrl+Shift+Z)"), onclick: actions.redoByHand }, icon("redo-2", "small"));
   const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Keep"));
   const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Drop the changes"));
-  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, h("div", { class: "hand-acts" }, keep, leave));
+  const takeBack = h("button", { type: "button", class: "button", onclick: actions.takeBackByHand }, icon("undo-2", "small"), t("Take back the last change"));
+  const backSaid = h("p", { class: "quiet-text" });
+  const back = h("div", { class: "stack hand-back" }, backSaid, h("div", { class: "hand-acts" }, takeBack));
+  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-acts hand-end" }, keep, leave));
+
+  const ownSpeed = () => store.state.mission?.uavs[hand().sequence]?.cruise_speed_mps ?? null;
+
+  /** Over the leg to a point: as set by hand, or the UAV's own. */
+  function speedWords(point) {
+    if (!isFlownTo(point)) return t("No leg leads here.");
+    const own = ownSpeed();
+    if (point.speed_mps !== null) return own ? t("By hand; empty: {speed} as planned.", { speed: speedText(own) }) : t("By hand.");
+    return own ? t("{speed} over ground, as planned.", { speed: speedText(own) }) : t("As planned.");
+  }
 
   function kindWords(point, plan) {
     if (point.kind === "start") return t("start");
     if (point.kind === "end") return t("end");
-    if (point.kind === "target") return plan.targets[point.target]?.label ?? t("Target");
-    return point.isByHand ? t("by hand") : t("as planned");
+    if (point.kind === "base") return t("between two flights");
+    const hand = point.isByHand ? t("by hand") : t("as planned");
+    return point.kind === "target" ? `${plan.targets[point.target]?.label ?? t("Target")}${point.isByHand ? `, ${hand}` : ""}` : hand;
   }
 
   function faultsNow({ legs, faults: told, points }) {
@@ -70,10 +88,18 @@ export function createByHand(store, actions) {
     redo.disabled = !now.canRedo;
     keep.setAttribute("aria-busy", String(now.isSaving));
     keep.disabled = changes === 0;
+    const steps = plan?.result.routes[now.sequence]?.hand_steps ?? 0;
+    back.hidden = steps === 0;
+    backSaid.textContent = changes ? t("Changes that were kept can be taken back once these are kept or dropped.") : tn(steps, "{count} change by hand is kept and can be taken back.", "{count} changes by hand are kept and can be taken back, the last one first.");
+    takeBack.disabled = changes > 0 || now.isSaving;
     if (!point) return;
     const free = isFree(point);
     height.value = typed(point.altitude_agl_m);
     [longitude.value, latitude.value] = point.position.map((degrees) => Number(degrees.toFixed(6)));
+    speed.value = point.speed_mps === null ? "" : typedSpeed(point.speed_mps);
+    speed.placeholder = ownSpeed() && isFlownTo(point) ? typedSpeed(ownSpeed()) : "";
+    speed.disabled = !isFlownTo(point);
+    speedSaid.textContent = speedWords(point);
     latitude.disabled = longitude.disabled = !free;
     drop.disabled = !free;
     put.disabled = chosen === points.length - 1;

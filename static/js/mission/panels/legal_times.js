@@ -5,6 +5,8 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { zoneText } from "../../units.js";
+import { routesOf } from "../plan_view.js";
+import { scheduleText } from "../../zones/schedule_words.js";
 import { departureText } from "../flight_options.js";
 import { STEP_MS, legalTimesOf, legsText, marginText, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
 
@@ -18,15 +20,15 @@ const waypointOf = ({ position, altitude_agl_m, altitude_amsl_m }) => ({ positio
 /** What the server says of the stored mission while its plan is the one on the page, else of the routes on the page. */
 async function ask({ plan, planIsStored, mission }, signal) {
   const from = new Date().toISOString();
-  const { routes } = plan.result;
+  const routes = routesOf(plan);
   if (mission && planIsStored) {
     const { data } = await get(`/missions/${mission.id}/legal-windows?from=${encodeURIComponent(from)}`, { signal });
-    return legalTimesOf(data, (uav) => routes[uav]?.uav ?? "");
+    return legalTimesOf(data, routes);
   }
   const flown = routes.filter(({ geometry }) => geometry);
   const asked = flown.map(({ end_action, departs_s, duration_s, arrival_s, waypoints }) => ({ end_action, departs_s: departs_s ?? 0, duration_s, arrival_s: arrival_s ?? [], waypoints: waypoints.map(waypointOf) }));
   const { data } = await post("/plans/legal-windows", { from, routes: asked }, { signal });
-  return legalTimesOf(data, (uav) => flown[uav]?.uav ?? "");
+  return legalTimesOf(data, flown);
 }
 
 export function showLegalTimes(store, actions) {
@@ -67,8 +69,8 @@ export function showLegalTimes(store, actions) {
     const slider = sliderOf(departs_at ? Date.parse(departs_at) : null);
     chart.replaceChildren(
       axis(),
-      row(h("strong", {}, t("The mission")), "", unionTrack(), "union"),
-      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [zone.schedule_in_words, legsText(zone.legs)].filter(Boolean).join(" · "), zoneTrack(zone))),
+      row(h("strong", {}, t("The mission")), [], unionTrack(), "union"),
+      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [scheduleText(zone.schedule, { now: times.from_ms, otherwise: zone.schedule_in_words }), legsText(zone.legs)].filter(Boolean), zoneTrack(zone))),
       h("div", { class: "legal-over" }, mark(Date.now(), "legal-now", t("now")), slider),
     );
     if (focused) chart.querySelector(`[data-part="${focused}"]`)?.focus();
@@ -86,7 +88,7 @@ export function showLegalTimes(store, actions) {
     return element;
   }
 
-  const row = (name, second, track, kind = "") => h("div", { class: `legal-row ${kind}`.trim() }, h("div", { class: "legal-name" }, name, second && h("small", { title: second }, second)), track);
+  const row = (name, seconds, track, kind = "") => h("div", { class: `legal-row ${kind}`.trim() }, h("div", { class: "legal-name" }, name, seconds.map((words) => h("small", { title: words }, words))), track);
 
   function axis() {
     const ticks = ticksOf(times).map(({ at_ms, words, isDay }) => {

@@ -8,6 +8,7 @@ import { timeAt } from "../flight_options.js";
 import { isPlanCurrent, lastPlanOf, shownRoute } from "../plan_view.js";
 import { drawProfile, flightOf, profileTable, readingAt } from "../profile.js";
 import { batteryOf, landing_s, stayText } from "../route_times.js";
+import { marginWords, zoneLegend, zoneWords } from "../zones_passed.js";
 import { stripRoom } from "./routes.js";
 
 const MOST_WAITS = 3;
@@ -26,6 +27,7 @@ export function mountProfile(store, { grounds }) {
     place.hidden = !route;
     if (!route) {
       drawn = null;
+      byId("zone-keys").hidden = true;
       place.replaceChildren();
       return;
     }
@@ -43,7 +45,7 @@ export function mountProfile(store, { grounds }) {
 
   function put(route, ground, fault, width_px, longest_m) {
     const { targets, uavs } = store.state.plan;
-    const flight = flightOf(route, ground, uavs[route.sequence]?.battery_wh ?? null);
+    const flight = flightOf(route, ground, uavs[route.sequence]?.battery_wh ?? null, departsAt());
     const chart = drawProfile({
       route,
       flight,
@@ -59,6 +61,7 @@ export function mountProfile(store, { grounds }) {
       h("div", { class: "profile-said" }, h("span", { class: "letter" }, route.letter), h("p", { id: "profile-words" })),
       h("div", { class: "profile-place" }, chart.element, h("div", {}, profileTable(route, flight, targets, departsAt()))),
     );
+    showZoneKeys(flight);
     follow(store.state);
     light(store.state);
   }
@@ -86,6 +89,13 @@ export function mountProfile(store, { grounds }) {
   }).observe(dock.querySelector(".dock-main"));
 }
 
+/** What the drawn zones mean, and by how much they count beyond their times and heights. */
+function showZoneKeys({ zones, margins }) {
+  const keys = zoneLegend(zones).map(({ kind, words }) => h("span", { class: "zone-key" }, h("i", { class: `zone-swatch ${kind}`, "aria-hidden": "true" }), words));
+  byId("zone-keys").hidden = keys.length === 0;
+  byId("zone-keys").replaceChildren(...keys, h("span", {}, marginWords(margins)));
+}
+
 const line = (words, isStrong = false) => h(isStrong ? "strong" : "span", {}, words);
 
 function readingWords({ at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }, { isFlat }, departs_at) {
@@ -96,7 +106,7 @@ function readingWords({ at_m, height_m, ground_m, above_m, arrival_s, battery_pe
     line(isFlat ? t("{height} above take-off", { height }) : t("{height} above sea level", { height })),
     line(isFlat ? t("flat ground assumed") : ground_m === null ? t("ground not known") : t("{height} above ground", { height: heightText(above_m) })),
     battery_percent !== null && line(t("battery {percent}", { percent: percentText(battery_percent) })),
-    zones.length > 0 && h("span", { class: "beside-zone" }, t("beside {zones}", { zones: zones.map((zone) => zone.name).join(", ") })),
+    ...[...new Set(zones.map(zoneWords))].map((words) => h("span", { class: "beside-zone" }, words)),
   ].filter(Boolean);
 }
 

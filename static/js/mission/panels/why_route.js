@@ -6,6 +6,7 @@ import { t } from "../../text.js";
 import { durationText, energyText, lengthText } from "../../units.js";
 import { longestDuration_s, otherObjective, OBJECTIVES, routesOf } from "../plan_view.js";
 import { heightsText } from "../../zones/heights.js";
+import { scheduleText } from "../../zones/schedule_words.js";
 import { basisOf } from "../selection.js";
 
 const LEAST_M = 20; // less is the rounding of positions
@@ -51,7 +52,7 @@ function zonesInTheWay({ zones }) {
     found.map(({ id, name, extra_m }) => {
       const reason = h("small", {}, t("Reading times and source…"));
       zoneDetails(id).then(
-        (details) => (reason.textContent = [heightsText(details), details.schedule_words].filter(Boolean).join(" · ")),
+        (details) => (reason.textContent = [heightsText(details), scheduleText(details.schedule, { otherwise: details.schedule_words })].filter(Boolean).join(" · ")),
         () => (reason.textContent = t("Times and source cannot be read now.")),
       );
       return h("li", {}, h("span", { class: "zone-name" }, name, reason), h("span", {}, `+${lengthText(extra_m)}`));

@@ -1,0 +1,52 @@
+"""How fast and how slow a leg can be flown over ground in its wind."""
+
+import math
+from typing import NamedTuple
+
+from inspection.geodesy.short_vector import short_vector_m
+from missions.flight_plan.conditions import Conditions, wind_in_table
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.power import LEAST_HEADWAY_MPS
+from missions.flight_plan.waypoints import Waypoints
+
+ROUNDING_MPS = 1e-6
+
+
+class SpeedRange(NamedTuple):
+    """Over ground; least_mps above most_mps where the wind is too strong for any speed."""
+
+    least_mps: float
+    most_mps: float
+
+
+def speeds_out_of_range(
+    waypoints: Waypoints, *, cruise_speed_mps: float, performance: Performance, conditions: Conditions
+) -> dict[int, SpeedRange]:
+    """Of the legs with a speed of their own those that cannot be flown at it, by the waypoint that they lead to, with what can be.
+
+    In the wind of the leg's middle height, as it is timed. Of a UAV whose top airspeed is not stated, no more is known than that it flies
+    its cruising speed.
+    """
+    found = {}
+    for place, speed_mps in waypoints.points.speed_mps.items():
+        own = _range(waypoints, place, cruise_speed_mps, performance.max_airspeed_mps, conditions)
+        if not own.least_mps - ROUNDING_MPS <= speed_mps <= own.most_mps + ROUNDING_MPS:
+            found[place] = own
+    return found
+
+
+def _range(waypoints: Waypoints, place: int, cruise_speed_mps: float, max_airspeed_mps: float | None, conditions: Conditions) -> SpeedRange:
+    if max_airspeed_mps is None:
+        return SpeedRange(LEAST_HEADWAY_MPS, cruise_speed_mps)
+    points = waypoints.points
+    start, end = points.position[max(place - 1, 0)], points.position[place]
+    east_m, north_m = short_vector_m(start[0], start[1], end[0], end[1])
+    length_m = math.hypot(east_m, north_m)
+    if length_m == 0.0:
+        return SpeedRange(LEAST_HEADWAY_MPS, max_airspeed_mps)
+    east, north = east_m / length_m, north_m / length_m
+    middle_m = 0.5 * (float(points.agl_m[max(place - 1, 0)]) + float(points.agl_m[place]))
+    east_mps, north_mps = wind_in_table(conditions.wind_table, middle_m)
+    along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
+    spare_mps = math.sqrt(max(max_airspeed_mps**2 - across_mps**2, 0.0))
+    return SpeedRange(max(LEAST_HEADWAY_MPS, along_mps - spare_mps), along_mps + spare_mps)

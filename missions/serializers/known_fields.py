@@ -1,0 +1,27 @@
+"""Requests whose fields are all known: a name that is mistyped is told instead of passed over."""
+
+from collections.abc import Collection, Mapping
+from difflib import get_close_matches
+from typing import Any
+
+from django.utils.translation import gettext as _
+from rest_framework import serializers
+
+MOST_TOLD = 10
+LONGEST_TOLD = 80
+
+
+class KnownFieldsSerializer(serializers.Serializer):
+    """Refuses a field that it does not have, and names the one that is most like it."""
+
+    def to_internal_value(self, data: Any) -> Any:
+        if isinstance(data, Mapping):
+            unknown = [str(name) for name in data if name not in self.fields][:MOST_TOLD]
+            if unknown:
+                raise serializers.ValidationError({name[:LONGEST_TOLD]: [_words(name, self.fields)] for name in unknown})
+        return super().to_internal_value(data)
+
+
+def _words(unknown: str, names: Collection[str]) -> str:
+    nearest = get_close_matches(unknown[:LONGEST_TOLD], list(names), 1)
+    return _("There is no such field; is %(name)s meant?") % {"name": nearest[0]} if nearest else _("There is no such field.")

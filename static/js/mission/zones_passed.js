@@ -1,0 +1,72 @@
+/** What the zones beside a route are to it: in its way, at another height, passed by, or not in force when the UAV comes by. */
+
+import { t } from "../text.js";
+import { durationText, heightText } from "../units.js";
+import { isInForce } from "../zones/in_force.js";
+
+const STEP_MS = 60_000;
+const NO_MARGINS = { time_s: 0, height_m: 0, terrain_m: 0 };
+
+/** Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". What is not known counts as met.
+ * route: of a plan; places: where its waypoints stand [m]; departs_at: of the plan, null for at any time. */
+export function passedZones({ zones, zone_margins = NO_MARGINS }, route, places, departs_at) {
+  return zones.map((zone) => ({ ...zone, kind: kindOf(zone, zone_margins, route, places, departs_at) }));
+}
+
+function kindOf(zone, margins, route, places, departs_at) {
+  if (isAsleep(zone, margins, route, places, departs_at)) return "asleep";
+  if (zone.is_crossed === false) return "near";
+  return isApart(zone, margins, route, places) ? "apart" : "met";
+}
+
+/** The waypoints from the last one before a stretch to the first one after it. */
+function around({ from_m, to_m }, places) {
+  const first = Math.max(0, places.findLastIndex((place) => place <= from_m));
+  const after = places.findIndex((place) => place >= to_m);
+  return [first, after < 0 ? places.length - 1 : after];
+}
+
+function isAsleep(zone, { time_s }, { arrival_s, waypoints }, places, departs_at) {
+  if (!zone.schedule || !departs_at || !arrival_s?.length) return false;
+  const [first, last] = around(zone, places);
+  const [from_s, to_s] = [arrival_s[first], arrival_s[last]];
+  if (typeof from_s !== "number" || typeof to_s !== "number") return false;
+  const begin = Date.parse(departs_at);
+  const [from, to] = [begin + (from_s - time_s) * 1000, begin + (to_s + (waypoints[last].task?.hold_s ?? 0) + time_s) * 1000];
+  for (let moment = from; moment < to + STEP_MS; moment += STEP_MS) if (isInForce(zone.schedule, Math.min(moment, to), waypoints[first].position) !== false) return false;
+  return true;
+}
+
+function isApart({ from_m, to_m, lower_limit, upper_limit }, { height_m, terrain_m }, { waypoints }, places) {
+  const [first, last] = around({ from_m, to_m }, places);
+  const heights = (reference) => {
+    const name = { AGL: "altitude_agl_m", AMSL: "altitude_amsl_m" }[reference];
+    const known = name ? waypoints.slice(first, last + 1).map((waypoint) => waypoint[name]) : [];
+    return known.length && known.every((height) => typeof height === "number") ? known : null;
+  };
+  const [lower, upper] = [lower_limit && heights(lower_limit.reference), upper_limit && heights(upper_limit.reference)];
+  const give_m = height_m + terrain_m;
+  return Boolean((lower && Math.max(...lower) + give_m < lower_limit.value_m) || (upper && Math.min(...upper) - give_m > upper_limit.value_m));
+}
+
+/** "Airport, passed by". */
+export const zoneWords = ({ name, kind }) =>
+  ({
+    met: t("{zone}, in the way", { zone: name }),
+    apart: t("{zone}, at another height", { zone: name }),
+    near: t("{zone}, passed by", { zone: name }),
+    asleep: t("{zone}, not in force then", { zone: name }),
+  })[kind];
+
+/** What each kind means where it is drawn: [{ kind, words }], of the kinds that there are. */
+export function zoneLegend(zones) {
+  const words = { met: t("zone in the way"), apart: t("zone at another height"), near: t("zone passed by, not entered"), asleep: t("zone not in force when the UAV comes by") };
+  return Object.keys(words).filter((kind) => zones.some((zone) => zone.kind === kind)).map((kind) => ({ kind, words: words[kind] }));
+}
+
+/** By how much zones count beyond their times and heights; empty where nothing is added. */
+export function marginWords({ time_s, height_m } = NO_MARGINS) {
+  if (time_s > 0 && height_m > 0) return t("Zones count {time} before and after their times and {height} below and above their limits.", { time: durationText(time_s), height: heightText(height_m) });
+  if (time_s > 0) return t("Zones count {time} before and after their times.", { time: durationText(time_s) });
+  return height_m > 0 ? t("Zones count {height} below and above their limits.", { height: heightText(height_m) }) : "";
+}

@@ -1,0 +1,63 @@
+/** When a zone applies, in words and by the clock of whoever reads. Values in, values out; what is stored is UTC. */
+
+import { t } from "../text.js";
+import { clockText, longDayText, minutesAheadOfUtc, typedMoment } from "../units.js";
+import { DAYS, EVENTS } from "./schedule.js";
+
+const DAY_MIN = 1440;
+const EVENT_WORDS = Object.fromEntries(EVENTS);
+
+/** "21 November, 14:00 to 17:00", "Mon to Fri 09:00 to 19:00 (08:00 to 18:00 UTC), until 31 December". schedule: the stored periods, null
+ * for always; now [ms]: from whose offset to UTC hours of the week are told. What cannot be read is told as it is stored, in `otherwise`. */
+export function scheduleText(schedule, { now = Date.now(), otherwise = "" } = {}) {
+  if (!schedule) return t("Always");
+  try {
+    return schedule.map((period) => periodText(period, minutesAheadOfUtc(now))).join("; ");
+  } catch {
+    return otherwise; // stored before there was one form
+  }
+}
+
+function periodText({ startDateTime: start, endDateTime: end, schedule }, ahead_min) {
+  const hours = schedule.map((entry) => entryText(entry, ahead_min)).join(", ");
+  if (start && end && !hours && dayOf(start) === dayOf(end)) return t("{day}, {from} to {to}", { day: longDayText(start), from: clockText(start), to: clockText(end) });
+  const values = { hours, from: start && momentText(start), to: end && momentText(end) };
+  if (start && end) return hours ? t("{hours}, from {from} to {to}", values) : t("from {from} to {to}", values);
+  if (start) return hours ? t("{hours}, from {from} on", values) : t("from {from} on", values);
+  if (end) return hours ? t("{hours}, until {to}", values) : t("until {to}", values);
+  return hours || t("Always");
+}
+
+const dayOf = (iso) => typedMoment(iso).slice(0, 10);
+
+/** Whole days have no clock. */
+const momentText = (iso) => (["00:00", "23:59"].includes(typedMoment(iso).slice(11)) ? longDayText(iso) : `${longDayText(iso)}, ${clockText(iso)}`);
+
+function entryText(entry, ahead_min) {
+  const { startTime, startEvent, endTime, endEvent } = entry;
+  const isAllDay = !startTime && !startEvent && !endTime && !endEvent;
+  if (isAllDay && (ahead_min === 0 || entry.day.includes("ANY"))) return t("{days} all day", { days: daysText(entry.day, 0) });
+  const start_min = startEvent ? null : minutesOf(startTime ?? "00:00");
+  const end_min = endEvent ? null : minutesOf(endTime ?? "24:00");
+  const moved = start_min === null ? 0 : Math.floor((start_min + ahead_min) / DAY_MIN);
+  const side = (minutes, event, by_min) => (minutes === null ? EVENT_WORDS[event] : timeText(minutes + by_min));
+  const words = t("{days} {from} to {to}", { days: daysText(entry.day, moved), from: side(start_min, startEvent, ahead_min), to: side(end_min, endEvent, ahead_min) });
+  if (ahead_min === 0 || (startEvent && endEvent)) return words;
+  return t("{words} ({from} to {to} UTC)", { words, from: side(start_min, startEvent, 0), to: side(end_min, endEvent, 0) });
+}
+
+const minutesOf = (time) => Number(time.slice(0, 2)) * 60 + Number(time.slice(3, 5));
+
+function timeText(minutes) {
+  const within = ((minutes % DAY_MIN) + DAY_MIN) % DAY_MIN || (minutes ? DAY_MIN : 0);
+  return `${Math.floor(within / 60)}`.padStart(2, "0") + ":" + `${within % 60}`.padStart(2, "0");
+}
+
+/** Days of the week, moved by so many where the reader's clock is on another day then. */
+function daysText(days, moved) {
+  if (days.includes("ANY")) return t("daily");
+  const numbers = days.map((day) => (DAYS.findIndex(([key]) => key === day) + moved + 7) % 7).sort((a, b) => a - b);
+  const names = numbers.map((number) => DAYS[number][1]);
+  const isRun = names.length > 2 && numbers.at(-1) - numbers[0] === numbers.length - 1;
+  return isRun ? t("{first} to {last}|days", { first: names[0], last: names.at(-1) }) : names.join(", ");
+}

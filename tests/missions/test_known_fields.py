@@ -1,0 +1,49 @@
+"""A field that is not known is refused by its name wherever a plan or a mission is asked for."""
+
+from typing import Any
+
+import pytest
+from django.test import Client
+
+from tests.missions.api import mission_body, post
+from tests.missions.worlds import world
+from tests.workspace.people import client_of, somebody
+
+pytestmark = pytest.mark.django_db
+
+
+def details(client: Client, path: str, body: dict[str, Any]) -> dict[str, Any]:
+    response = post(client, path, body)
+    assert response.status_code == 400, response.content
+    found: dict[str, Any] = response.json()["error"]["details"]
+    return found
+
+
+def test_a_mistyped_field_is_named_with_the_one_that_is_meant() -> None:
+    here, client = world(), client_of(somebody())
+    body = mission_body(here.towers[1])
+    plan = {name: value for name, value in body.items() if name != "name"}
+    assert details(client, "plans", plan | {"return_to_strat": True}) == {
+        "return_to_strat": ["There is no such field; is return_to_start meant?"]
+    }
+    assert details(client, "missions", body | {"colour": "red"}) == {"colour": ["There is no such field."]}
+    uav = plan["uavs"][0] | {"max_airspeed": 11}
+    assert "is max_airspeed_mps meant?" in str(details(client, "plans", plan | {"uavs": [uav]}))
+    wind = {"wind": [{"altitude_agl_m": 50, "speed": 4, "from_deg": 90}]}
+    assert "is speed_mps meant?" in str(details(client, "plans", plan | {"conditions": wind}))
+
+
+def test_a_patch_of_an_unknown_field_changes_nothing() -> None:
+    here, client = world(), client_of(somebody())
+    mission = post(client, "missions", mission_body(here.towers[1])).json()
+    answer = client.patch(f"/api/v1/missions/{mission['id']}", {"nmae": "North"}, content_type="application/json")
+    assert answer.status_code == 400
+    assert answer.json()["error"]["details"] == {"nmae": ["There is no such field; is name meant?"]}
+
+
+def test_of_many_unknown_fields_a_few_are_told() -> None:
+    here, client = world(), client_of(somebody())
+    many = {f"{'x' * 200}{number}": 1 for number in range(50)}
+    told = details(client, "missions", mission_body(here.towers[1]) | many)
+    assert max(map(len, told)) == 80
+    assert len(told) <= 10
