@@ -63,7 +63,7 @@ class Finished:
     has_terrain: bool
     met: frozenset[int]
     worth: Worth
-    is_whole: bool  # the search could count on all of what the batteries hold
+    is_whole: bool  # the search could count on all of what the batteries hold, and on all ways
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +193,7 @@ class _Planner:
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
             routes, separation, others = self._apart(alone, choice, may_raise=False)
             met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        is_whole = not usable_share and not kept_from
+        is_whole = not usable_share and not kept_from and not barred  # a wall bars more than what was in the way
         return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), is_whole)
 
     def _apart(
@@ -271,7 +271,8 @@ def _others_in_the_air(request: PlanRequest, window_s: float) -> OtherFlights:
 
 def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str, object]:
     """How good the plan is beside all others, those that fly through a zone while it is not in force included."""
-    share = freest.worth.value / plan.worth.value if plan.worth.value and freest.worth.left_out == plan.worth.left_out else None
+    alike = (freest.worth.left_out, freest.worth.is_by_length) == (plan.worth.left_out, plan.worth.is_by_length)
+    share = freest.worth.value / plan.worth.value if plan.worth.value and alike else None
     return quality_of(
         freest.found.solution,
         plan.found.lock_cost,

@@ -297,3 +297,32 @@ def test_from_where_a_lost_link_goes_wrong_is_told_of_the_changed_route(here: Wo
     assert {(one["route"], one["zone"]) for one in failed} == {(0, "Hospital")}
     assert behind in {one["waypoint"] for one in failed}
     assert undo(client, changed).json()["plan"]["lost_link"]["failed"] == []
+
+
+def test_a_route_of_which_points_were_only_taken_out_is_not_proven(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    kinds = [waypoint["kind"] for waypoint in mission["plan"]["routes"][0]["waypoints"]]
+    changed = put(client, mission, [point for point, kind in zip(as_wished(mission), kinds, strict=True) if kind != "pass"]).json()
+    assert changed["plan"]["total_length_m"] < mission["plan"]["total_length_m"]
+    assert (mission["plan"]["is_proven"], changed["plan"]["is_proven"]) == (True, False)
+
+
+def test_the_range_is_of_each_flight_of_a_route(here: World, client: Client) -> None:
+    body = mission_body(here.towers[0], here.towers[5], return_to_start=True) | {"plan": True}
+    body["uavs"] = [{"name": "Tern", "position": [10.010, 55.995], "max_range_m": 1_900.0, "sorties": 4, "end_action": "return"}]
+    mission = post(client, "missions", body).json()
+    assert mission["plan"]["routes"][0]["length_m"] > 1_900.0
+    assert put(client, mission, as_wished(mission)).status_code == 200
+
+
+def test_a_stretch_within_one_span_is_flown_over_its_wires_and_not_put_lower(here: World, client: Client) -> None:
+    """The towers at its ends are 90 m tall, and none of them is a vertex of it."""
+    line = power_line([ground.tower((lon, 55.998), height_m=90.0) for lon in (10.006, 10.011)], voltages_v=[110_000])
+    rebuild()
+    mission = post(
+        client, "missions", mission_body({"asset": line.pk, "stretch": [[10.008, 55.998], [10.009, 55.998]]}) | {"plan": True}
+    ).json()
+    own = [waypoint["altitude_agl_m"] for waypoint in mission["plan"]["routes"][0]["waypoints"] if waypoint["kind"] == "target"]
+    assert own and min(own) == 105.0
+    lower = [point | {"altitude_agl_m": min(point["altitude_agl_m"], 70.0)} for point in as_wished(mission)]
+    assert error_of(put(client, mission, lower), 400)
