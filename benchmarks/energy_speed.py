@@ -3,9 +3,9 @@
     python -m benchmarks.energy_speed [--write] [--near 200] [--anywhere 100]
 
 The missions are those of `benchmarks.plan_speed`: 2 UAVs, 4 targets. Plain is `plan_file`: positions to finished JSON by metres. With
-everything, the same plan has seconds and watt-hours of every way in both directions, in wind of two layers, the assignment keeps
-within the batteries, and every waypoint gets its time and what is left of the battery. With --write the table goes to
-docs/performance.md. Exits with 1 where a bar is missed.
+everything, the same plan has seconds and watt-hours of every way in both directions, in wind of two layers, and the assignment keeps
+within the batteries. Where the routes are drawn, every waypoint gets its time and what is left of the battery, too. Like is compared with
+like: plans not drawn, and plans drawn. With --write the table goes to docs/performance.md. Exits with 1 where a bar is missed.
 """
 
 import argparse
@@ -79,11 +79,20 @@ def inspection_graph(arrays: dict[str, Any]) -> InspectionGraph:
 
 @dataclass(frozen=True)
 class Parts:
-    """Milliseconds of one mission's plan: plain, drawing its routes, and what else wind and batteries ask for."""
+    """Milliseconds of one mission's plan: plain; drawing its routes; what wind and batteries add to the first, and to the second."""
 
     plain: float
     drawing: float
-    more: float
+    assigned: float
+    timed: float
+
+    @property
+    def ratio(self) -> float:
+        return (self.plain + self.assigned) / self.plain
+
+    @property
+    def drawn_ratio(self) -> float:
+        return 1.0 + (self.assigned + self.timed) / (self.plain + self.drawing)
 
 
 class Mission:
@@ -106,7 +115,7 @@ class Mission:
         routes = best_routes(Arcs.of(problem_of(self.ways, self._costs())))
         assigned = milliseconds(lambda: best_routes(Arcs.of(problem_of(self.ways, self._costs()))))
         drawn = self._drawn(routes)
-        return Parts(plain, milliseconds(lambda: self._drawn(routes)), assigned + milliseconds(lambda: self._timed(drawn)))
+        return Parts(plain, milliseconds(lambda: self._drawn(routes)), assigned, milliseconds(lambda: self._timed(drawn)))
 
     def _costs(self) -> FlightCosts:
         return flight_costs(
@@ -210,21 +219,19 @@ def main() -> None:
     for name, radius_m, count in (("within 30 km", NEAR_M, options.near), ("anywhere", None, options.anywhere)):
         asked = missions(arrays, UAVS, TARGETS, count, radius_m=radius_m)
         parts = [Mission(graph, plain, mission, wind(0)).parts() for mission in asked]
-        middle = [median(getattr(part, one) for part in parts) for one in ("plain", "drawing", "more")]
-        ratio = median((part.plain + part.drawing + part.more) / (part.plain + part.drawing) for part in parts)
-        undrawn = median((part.plain + part.more) / part.plain for part in parts)
-        rows.append([name, *(f"{one:.3f} ms" for one in middle), f"{ratio:.2f}", f"{undrawn:.2f}"])
+        middle = [median(getattr(part, one) for part in parts) for one in ("plain", "assigned", "drawing", "timed")]
+        ratios = [median(getattr(part, one) for part in parts) for one in ("ratio", "drawn_ratio")]
+        rows.append([name, *(f"{one:.3f} ms" for one in middle), *(f"{one:.2f}" for one in ratios)])
         print(*rows[-1], sep="  ", flush=True)
-        if ratio > MOST_RATIO:
-            missed.append(f"{name}: {ratio:.2f} times the plain plan")
+        missed += [f"{name}: {one:.2f} times the plain plan" for one in ratios if one > MOST_RATIO]
     if sums > MOST_SUMS_S:
         missed.append(f"sums for a new wind: {sums * 1e3:.0f} ms")
-    head = [f"2 UAVs, 4 targets, {options.nodes:,} nodes", "plain plan", "drawing it", "wind, batteries, times"]
-    head += ["times the plain plan, drawn", "times the plan not drawn"]
+    head = [f"2 UAVs, 4 targets, {options.nodes:,} nodes", "plain plan", "wind and batteries", "drawing it", "times at its waypoints"]
+    head += ["times the plain plan", "times the plain plan, both drawn"]
     text = (
-        "`python -m benchmarks.energy_speed`, medians, each the least of five: the plain plan of `plan_file`, its routes drawn with "
-        "heights, and what else is done for seconds and watt-hours of every way there and back, an assignment within the batteries, and "
-        f"time and battery at each waypoint. A new wind on the graph takes {sums * 1e3:.0f} ms of a processor once, the first one "
+        "`python -m benchmarks.energy_speed`, medians, each the least of five: the plain plan of `plan_file`; what seconds and watt-hours "
+        "of every way there and back and an assignment within the batteries add; its routes drawn with heights; and time and battery at "
+        f"each of their waypoints. A new wind on the graph takes {sums * 1e3:.0f} ms of a processor once, the first one "
         f"{steps_s * 1e3:.0f} ms more. {machine('numba', 'numpy')}\n\n{table(head, rows)}"
     )
     print(text)

@@ -6,8 +6,9 @@ from time import process_time
 import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
-from missions.routing.arcs import NO_WAY_M, Arcs
+from missions.routing.arcs import Arcs
 from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
+from missions.routing.quantities import NO_WAY_M
 
 UNITS_PER_M = 10
 UNITS_PER_S = 100

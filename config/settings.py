@@ -331,6 +331,7 @@ FLOWN_HEIGHTS = FlownHeights(
     clearance_m=FLIGHT_RULES.clearance_m,
     tolerance_m=FLIGHT_RULES.terrain_tolerance_m,
     margin_m=ZONE_RULES.height_margin_m,
+    max_agl_m=FLIGHT_RULES.max_agl_m,
 )
 SEPARATION_RULES = SeparationRules(
     lateral_m=_float("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),

@@ -1,10 +1,11 @@
 """Reads of the fleet: UAVs, their types, bases and credentials, always within one organisation."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from django.db.models import Count, Prefetch, Q, QuerySet
 
-from missions.flight_plan.performance import PERFORMANCE_KEYS, Performance, performance_from_json
+from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, PERFORMANCE_KEYS, Performance, performance_from_json
 from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
 from workspace.models import AuditEntry, Organisation
 
@@ -85,7 +86,14 @@ def facts_when_deleted(organisation: Organisation, subject_type: str, subject_id
 
 
 def performance_of(uav: Uav) -> Performance:
-    """Its type's; without a type its energy is not counted."""
-    if uav.uav_type is None:
-        return Performance()
-    return performance_from_json({name: getattr(uav.uav_type, name) for name in PERFORMANCE_KEYS})
+    """Its own figures, and for the rest its type's; without a battery its energy is not counted. Raises InvalidPerformance."""
+    return performance_with(uav.uav_type, {name: getattr(uav, name) for name in OWN_PERFORMANCE_KEYS})
+
+
+def performance_with(uav_type: UavType | None, own: Mapping[str, float | None]) -> Performance:
+    """Of a UAV of a type with figures of its own; None is the type's. Raises InvalidPerformance."""
+    figures = {} if uav_type is None else {name: getattr(uav_type, name) for name in PERFORMANCE_KEYS}
+    mass_kg = own.get("mass_kg")
+    others = {name: value for name, value in own.items() if value is not None and name != "mass_kg"}
+    found = performance_from_json(figures | others)
+    return found if mass_kg is None else found.with_mass(mass_kg)

@@ -7,6 +7,7 @@ import shutil
 import sys
 
 from config.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled
+from scripts.telling import step
 
 
 def main() -> int:
@@ -23,10 +24,15 @@ def main() -> int:
     from missions.routing import file_plans  # noqa: PLC0415
     from missions.routing import rehearsal as of_the_solvers  # noqa: PLC0415
 
-    of_the_graph.rehearse()
-    of_the_solvers.rehearse()
-    of_the_drawing.rehearse()
-    file_plans.rehearse()
+    parts = {
+        "graph": of_the_graph.rehearse,
+        "assignment": of_the_solvers.rehearse,
+        "heights, time and energy": of_the_drawing.rehearse,
+        "plans of files": file_plans.rehearse,
+    }
+    for number, (name, rehearse) in enumerate(parts.items(), start=1):
+        with step(f"The planners' core, compiled: {name} ({number} of {len(parts)})"):
+            rehearse()
     (folder / STAMP).write_text(compiled_stamp())
     return 0
 

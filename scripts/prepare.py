@@ -9,9 +9,6 @@ import json
 import os
 import secrets
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from io import StringIO
 from pathlib import Path
 
@@ -24,19 +21,7 @@ from django.db.migrations.executor import MigrationExecutor
 
 from config.private_servers import state_directory
 from scripts.places import DEMO_USER, Places
-
-
-@contextmanager
-def step(text: str) -> Iterator[None]:
-    """Say what is being done, and how long it took."""
-    began = time.monotonic()
-    print(f"{text} … ", end="", flush=True)
-    try:
-        yield
-    except BaseException:
-        print("failed", flush=True)
-        raise
-    print(f"{time.monotonic() - began:.1f} s", flush=True)
+from scripts.telling import step
 
 
 def migrate() -> None:

@@ -6,6 +6,10 @@ from pathlib import Path
 import pytest
 from django.apps import AppConfig, apps
 from django.db.models.signals import post_migrate
+from hypothesis import settings
+
+settings.register_profile("spanwise", deadline=None)  # tests do not time
+settings.load_profile("spanwise")
 
 SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 

@@ -10,8 +10,9 @@ from inspection.graph.edges import NO_ASSET, Edges, component_labels, joined
 from inspection.graph.flown_heights import FlownHeights, FlownNodes
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.links import bridge_to_tower_links, railway_to_tower_links
-from inspection.graph.network import Network, Nodes, contracted, measured
+from inspection.graph.network import Network, Nodes, put_together
 from inspection.graph.rules import LinkingRules
+from inspection.graph.walls import low_ceilings, too_tall_walls, with_walls
 from inspection.graph.zone_index import ZoneIndex
 
 NO_VERSION = 0  # until the graph is stored
@@ -32,16 +33,23 @@ def cleared(
 ) -> ClearedGraph:
     """The network without what is within the clearance of a zone at the height flown there; what zones cut off is linked anew.
 
-    Each bridge, and each railway that would be cut off, is linked to the nearest support that is left. The ends of what is cut out of a
-    line or railway are joined by the shortest ways round, and so is what no straight link reaches. The same network, zones, rules and
-    heights always give the same arrays.
+    What cannot be flown over, as it is too tall at all or under a zone, bars every leg but stays as a place. Each bridge, and each
+    railway that would be cut off, is linked to the nearest support that is left. The ends of what is cut out of a line or railway are
+    joined by the shortest ways round, and so is what no straight link reaches. The same network, zones, rules and heights always give
+    the same arrays.
     """
     nodes = Nodes(network.position, network.node_kind, network.node_asset, network.node_height_m)
     edges = Edges(network.edge.astype(np.int64), network.edge_kind, network.edge_asset)
     flown = FlownNodes.of(nodes.position, nodes.kind, nodes.height_m, heights)
     inside = flown.in_zones(zones, rules.zone_clearance_m)
-    out = _edges_out(edges, inside, flown, zones, rules)
-    wanted = gaps(edges, out, inside, nodes.position)
+    walls, ceilings = too_tall_walls(network, heights), low_ceilings(network, zones, heights, rules.zone_clearance_m)
+    barred = with_walls(zones, walls)
+    out = _edges_out(edges, inside, flown, barred, rules)
+    if len(ceilings.walls):
+        hangs_there = np.isin(edges.pair, ceilings.node).any(axis=1)
+        out |= ~hangs_there & flown.legs_in_zones(ceilings.walls, edges.pair[:, 0], edges.pair[:, 1], rules.zone_clearance_m)
+        barred = with_walls(barred, ceilings.walls)
+    wanted = gaps(edges, out, inside | walls.contains(nodes.position, rules.zone_clearance_m), nodes.position)
     index = np.cumsum(~inside) - 1
     wanted = [replace(gap, node=index[gap.node]) for gap in wanted]
     excluded_nodes, excluded_edges = int(inside.sum()), int(out.sum())
@@ -49,28 +57,14 @@ def cleared(
     nodes, flown = nodes.where(~inside), flown.where(~inside)
 
     supports = nodes.of_kind(NodeKind.SUPPORT)
-    to_tower = bridge_to_tower_links(_unlinked_bridges(nodes, edges), supports, flown, zones, rules)
+    to_tower = bridge_to_tower_links(_unlinked_bridges(nodes, edges), supports, flown, barred, rules)
     edges = joined(edges, to_tower.edges)
-    to_railway = railway_to_tower_links(nodes.of_kind(NodeKind.RAILWAY), supports, flown, edges, zones, rules)
+    to_railway = railway_to_tower_links(nodes.of_kind(NodeKind.RAILWAY), supports, flown, edges, barred, rules)
     edges = joined(edges, to_railway.edges)
-    round_zones = detours([*wanted, *to_tower.unlinked, *to_railway.unlinked], flown, zones, rules, heights)
-    edges, nodes = contracted(joined(edges, round_zones.edges()), _with_bends(nodes, round_zones.bend))
-    edges, length_m, cost = measured(edges, nodes.position, rules)
+    round_zones = detours([*wanted, *to_tower.unlinked, *to_railway.unlinked], flown, barred, rules, heights)
+    whole = put_together(joined(edges, round_zones.edges()), _with_bends(nodes, round_zones.bend), rules)
     graph = InspectionGraph(
-        version=version,
-        ground_revision=ground_revision,
-        position=nodes.position,
-        node_kind=nodes.kind,
-        node_asset=nodes.asset,
-        node_height_m=nodes.height_m,
-        edge=edges.pair.astype(np.int32),
-        length_m=length_m,
-        cost=cost,
-        edge_kind=edges.kind,
-        edge_asset=edges.asset,
-        zone_wkb=zones.wkb,
-        zone_id=zones.ids,
-        zone_name=zones.names,
+        version=version, ground_revision=ground_revision, **vars(whole), zone_wkb=zones.wkb, zone_id=zones.ids, zone_name=zones.names
     )
     components, _ = component_labels(graph.node_count, graph.edge)
     return ClearedGraph(graph, components, excluded_nodes, excluded_edges + to_tower.blocked + to_railway.blocked)

@@ -25,12 +25,17 @@ class FlownHeights:
     clearance_m: float = 15.0  # above what is passed
     tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints
     margin_m: float = 10.0  # to the limits of zones, for the UAV's own error in height
+    max_agl_m: float = 120.0  # what stands higher than that less the clearance cannot be flown over
 
     def band_m(self, heights_m: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest place, above ground, of a UAV that passes assets of these heights, margin included."""
         passed_m = np.maximum(self.transit_agl_m, heights_m + self.clearance_m)
-        give_m = self.tolerance_m + self.margin_m
-        return passed_m - give_m, passed_m + give_m
+        return passed_m - self.give_m, passed_m + self.give_m
+
+    @property
+    def give_m(self) -> float:
+        """How far a UAV may be above or below the height that it is to have, margin included."""
+        return self.tolerance_m + self.margin_m
 
     def place_band_m(self, height_m: float | None) -> tuple[float, float]:
         """The same at one place; where the height of what stands there is not known, up to any."""

@@ -71,8 +71,16 @@ def network(ground: GroundData, rules: LinkingRules) -> Network:
 
     Nodes come in the order supports, line vertices, railway points, bridges.
     """
-    edges, nodes = contracted(*_nodes_and_edges(ground, rules))
-    edges, length_m, cost = measured(edges, nodes.position, rules)
+    return put_together(*_nodes_and_edges(ground, rules), rules)
+
+
+def put_together(edges: Edges, nodes: Nodes, rules: LinkingRules) -> Network:
+    """What edges of 0 m join made one node; the edges measured and sorted by pair, the cheapest of each pair."""
+    edges, nodes = _contracted(edges, nodes)
+    length_m = lengths_m(edges, nodes.position)
+    cost = costs(edges, length_m, rules.off_network_factor)
+    kept = cheapest_per_pair(edges, cost)
+    edges, length_m, cost = edges.where(kept), length_m[kept], cost[kept]
     return Network(
         position=nodes.position,
         node_kind=nodes.kind,
@@ -86,15 +94,7 @@ def network(ground: GroundData, rules: LinkingRules) -> Network:
     )
 
 
-def measured(edges: Edges, position: FloatArray, rules: LinkingRules) -> tuple[Edges, FloatArray, FloatArray]:
-    """The edges with their lengths and costs, sorted by pair, the cheapest of each pair."""
-    length_m = lengths_m(edges, position)
-    cost = costs(edges, length_m, rules.off_network_factor)
-    kept = cheapest_per_pair(edges, cost)
-    return edges.where(kept), length_m[kept], cost[kept]
-
-
-def contracted(edges: Edges, nodes: Nodes) -> tuple[Edges, Nodes]:
+def _contracted(edges: Edges, nodes: Nodes) -> tuple[Edges, Nodes]:
     """Two nodes that an edge of 0 m joins become one, the first: whatever stands at one position is one place to fly to."""
     is_zero = (nodes.position[edges.pair[:, 0]] == nodes.position[edges.pair[:, 1]]).all(axis=1)
     if not is_zero.any():

@@ -6,6 +6,7 @@ from datetime import datetime
 from django.contrib.gis.db.models import Extent
 from django.db.models import Count, Exists, OuterRef, Q
 
+from inspection.graph.snapshot_file import LAYOUT
 from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Ground, NoFlyZone, TerrainTile, ZoneSet
 
 Extent_deg = tuple[float, float, float, float]  # west, south, east, north
@@ -25,7 +26,9 @@ class GroundSummary:
 
     @property
     def graph_is_current(self) -> bool:
-        return self.graph is not None and self.graph.ground_revision == self.revision
+        """Planners do not read one of an earlier layout."""
+        graph = self.graph
+        return graph is not None and graph.ground_revision == self.revision and graph.rules.get("layout") == LAYOUT
 
 
 def ground_revision() -> int:

@@ -248,6 +248,17 @@ def _wait_s(one: FloatArray, other: FloatArray) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _split(stack: IntArray, size: int, node: int, other_node: int, leaves: int, other_leaves: int) -> int:
+    """Of two boxes, one a node of each tree, halves the one nearer to its root: two pairs more on the stack, and how many it has then."""
+    splits_other = node >= leaves or (other_node < other_leaves and other_node < node)
+    for child in range(1, -1, -1):
+        stack[size, 0] = node if splits_other else 2 * node + child
+        stack[size, 1] = 2 * other_node + child if splits_other else other_node
+        size += 1
+    return size
+
+
+@njit(cache=True, nogil=True)
 def nearest(
     pieces: FloatArray,
     tree: FloatArray,
@@ -278,13 +289,8 @@ def nearest(
         wait_s = _wait_s(box, other_box)
         if wait_s >= below_s or wait_s > best_s or _are_apart(box, other_box, margin):
             continue
-        is_leaf, other_is_leaf = node >= leaves, other_node >= other_leaves
-        if not (is_leaf and other_is_leaf):
-            splits_other = is_leaf or (not other_is_leaf and other_node < node)
-            for child in range(1, -1, -1):
-                stack[size, 0] = node if splits_other else 2 * node + child
-                stack[size, 1] = 2 * other_node + child if splits_other else other_node
-                size += 1
+        if node < leaves or other_node < other_leaves:
+            size = _split(stack, size, node, other_node, leaves, other_leaves)
             continue
         piece, other_piece = pieces[node - leaves], other_pieces[other_node - other_leaves]
         low, low_s, low_t, high, high_s, high_t = gaps(piece, other_piece, lateral_m, vertical_m)
@@ -334,13 +340,8 @@ def shared_places(
             greatest = box[SIDES + TIME] - other_box[TIME] + time_s
             if count and found[count - 1, 0] <= least and greatest <= found[count - 1, 1]:
                 continue
-            is_leaf, other_is_leaf = node >= leaves, other_node >= other_leaves
-            if not (is_leaf and other_is_leaf):
-                splits_other = is_leaf or (not other_is_leaf and other_node < node)
-                for child in range(1, -1, -1):
-                    stack[size, 0] = node if splits_other else 2 * node + child
-                    stack[size, 1] = 2 * other_node + child if splits_other else other_node
-                    size += 1
+            if node < leaves or other_node < other_leaves:
+                size = _split(stack, size, node, other_node, leaves, other_leaves)
                 continue
             low, _, _, high, _, _ = gaps(pieces[node - leaves], other_pieces[other_node - other_leaves], lateral_m, vertical_m)
             if low == NOTHING:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -73,7 +74,7 @@ class Conditions:
     def is_calm(self) -> bool:
         return all(layer.speed_mps == 0.0 for layer in self.wind)
 
-    @property
+    @cached_property
     def wind_table(self) -> NDArray[np.float64]:
         """Layers as compiled code reads them, (layers, 3): height above ground [m], and the air's velocity to east and north [m/s]."""
         return np.array([(layer.agl_m, *layer.east_north_mps) for layer in self.wind], dtype=np.float64).reshape(-1, 3)

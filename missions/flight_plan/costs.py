@@ -193,7 +193,8 @@ def _fill(
                     end[part, visit, uav], landing = 0.0, parts[part, LANDING_THERE, visit]
                 else:
                     home = visits + (uav if ends[uav, 0] == _RETURN else uavs + nearest_base[visit])
-                    end[part, visit, uav] = parts[part, UP, visit] + taken[part, uavs + visit, home]
+                    there = taken[part, uavs + visit, home] if home < len(sink) else np.inf  # no base is free
+                    end[part, visit, uav] = parts[part, UP, visit] + there
                 if ends[uav, 1]:
                     end[part, visit, uav] += landing
 

@@ -18,7 +18,7 @@ from missions.flight_plan.leg_taken import J_PER_WH, hold_taken, leg_taken, spee
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import Waypoints
+from missions.flight_plan.waypoints import BASE, Waypoints
 
 FloatArray = NDArray[np.float64]
 
@@ -120,9 +120,12 @@ def failed_returns(
         return []
     hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
     air = _Air(performance, cruise_speed_mps, conditions, rules)
+    taken_wh = _taken_wh(clock, performance)
     tree = shapely.STRtree(np.asarray(shapely.points(obstacles.position), dtype=object).reshape(-1))
     failed = []
     for one in _returns(waypoints, plan.rally_points, ground_heights_m):
+        if waypoints.points.kind[one.waypoint] == BASE:  # it stands there, with a new battery
+            continue
         if np.isnan(one.ground_m).any():
             failed.append(FailedReturn(one.waypoint, one.haven, Trouble.UNKNOWN_GROUND))
             continue
@@ -133,8 +136,8 @@ def failed_returns(
         taken = air.taken(one, waypoints, level_m, hold_s)
         if math.isinf(taken[-1][0]):
             failed.append(FailedReturn(one.waypoint, one.haven, Trouble.WIND))
-        elif performance.usable_wh is not None and clock.used_wh is not None:
-            missing_wh = float(clock.used_wh[one.waypoint]) + taken[-1][1] / J_PER_WH - performance.usable_wh
+        elif performance.usable_wh is not None and taken_wh is not None:
+            missing_wh = float(taken_wh[one.waypoint]) + taken[-1][1] / J_PER_WH - performance.usable_wh
             if missing_wh > 0.0:
                 failed.append(FailedReturn(one.waypoint, one.haven, Trouble.BATTERY, missing_wh=missing_wh))
         start_s = None if departs_s is None else departs_s + float(clock.arrival_s[one.waypoint])
@@ -142,6 +145,14 @@ def failed_returns(
         met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
         failed += [FailedReturn(one.waypoint, one.haven, Trouble.ZONE, zone=zone) for zone in met]
     return failed
+
+
+def _taken_wh(clock: Timing, performance: Performance) -> FloatArray | None:
+    """Out of the battery at each waypoint (n,), less what it was charged with on the way; None where that is not known."""
+    if performance.battery_wh is None or clock.battery_left_percent is None:
+        return clock.used_wh
+    taken_wh: FloatArray = performance.battery_wh * (1.0 - clock.battery_left_percent / 100.0)
+    return taken_wh
 
 
 def _returns(waypoints: Waypoints, rally_points: Sequence[LonLat], ground_heights_m: GroundHeights | None) -> list[_Return]:

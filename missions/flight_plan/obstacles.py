@@ -1,72 +1,173 @@
-"""Tall things beside a route that leads to none of them: legs rise over what stands under them."""
+"""Towers, wires and catenaries beside and under a route: where a leg passes one too low, the UAV rises over it and comes down behind it."""
 
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.flyable import node_heights_m
-from inspection.graph.network import Network
+from inspection.graph.spans import Spans
+from missions.flight_plan.beside_spans import legs_beside, points_beside, stretches_too_low
+from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import FloatArray, RoutePoints
+from missions.flight_plan.waypoints import END, FloatArray, IntArray, RoutePoints, Waypoints
 
-BESIDE_M = 25.0  # arms of a tower, and what a UAV strays
-SLACK_M = 0.5
-NEAR_DEG = 0.005
+HAIR = 1e-9  # of a leg
 
 
 @dataclass(frozen=True, eq=False)
-class TallThings:
-    """position (k, 2), lon lat [deg]; least_agl_m (k,): how high each is to be flown over, all above transit height."""
+class TooLow:
+    """Stretches of legs that are to be flown higher, in their order, (k,): from and to as shares of the leg, and the level to have.
 
-    position: FloatArray
-    least_agl_m: FloatArray
+    place is that of the leg's start; or, where it is no leg, of a waypoint that is itself to stand higher. Levels count as the waypoints'
+    own: above the sea where that is known, else above flat ground. agl_m is the level above the ground there; span what stands there, by
+    its number.
+    """
 
+    place: IntArray
+    is_leg: NDArray[np.bool_]
+    begin: FloatArray
+    until: FloatArray
+    level_m: FloatArray
+    agl_m: FloatArray
+    span: IntArray
 
-_made: WeakKeyDictionary[Network, tuple[FlightRules, TallThings]] = WeakKeyDictionary()
-
-
-def tall_things(network: Network, rules: FlightRules) -> TallThings:
-    """Nodes that stick out above what is cleared at transit height and can be flown over at all; made once per network."""
-    made = _made.get(network)
-    if made is None or made[0] != rules:
-        least_m = node_heights_m(network, slice(None)) + rules.clearance_m
-        tall = (least_m > rules.transit_agl_m) & (least_m <= rules.max_agl_m)
-        made = _made[network] = rules, TallThings(network.position[tall], least_m[tall])
-    return made[1]
-
-
-def legs_too_low(points: RoutePoints, things: TallThings) -> list[tuple[int, float, float]]:
-    """Legs that pass beside a tall thing too low, in their order: leg, where on it as a share, and the height above ground to have."""
-    if not len(things.position) or len(points) < 2:
-        return []
-    low, high = points.position.min(axis=0) - NEAR_DEG, points.position.max(axis=0) + NEAR_DEG
-    near = np.flatnonzero(((things.position >= low) & (things.position <= high)).all(axis=1))
-    if not len(near):
-        return []
-    frame = LocalFrame.around(*points.position.mean(axis=0).tolist())
-    line, things_m = frame.to_metres(points.position), frame.to_metres(things.position[near])
-    start, along = line[:-1], np.diff(line, axis=0)
-    squared = (along**2).sum(axis=1)
-    found = []
-    for thing, least_m in zip(things_m, things.least_agl_m[near].tolist(), strict=True):
-        share = np.clip(((thing - start) * along).sum(axis=1) / np.where(squared > 0, squared, 1.0), 0.0, 1.0)
-        gap_m = np.hypot(*(start + share[:, None] * along - thing).T)
-        flown_m = points.agl_m[:-1] + share * np.diff(points.agl_m)
-        too_low: NDArray[np.bool_] = (gap_m <= BESIDE_M) & (flown_m < least_m - SLACK_M) & (share > 0.0) & (share < 1.0)
-        found += [(leg, float(share[leg]), least_m) for leg in np.flatnonzero(too_low).tolist()]
-    return sorted(found)
+    def __len__(self) -> int:
+        return len(self.place)
 
 
-def rising_over(points: RoutePoints, things: TallThings) -> RoutePoints:
-    """The points, and one more over each tall thing beside a leg, high enough; between two of one target it belongs to the target."""
-    low = legs_too_low(points, things)
-    if not low:
-        return points
-    legs, shares = np.array([leg for leg, _, _ in low], dtype=np.int64), np.array([share for _, share, _ in low])
-    risen = points.with_points_between(legs, shares)
-    agl_m = risen.agl_m.copy()
-    agl_m[legs + 1 + np.arange(len(legs))] = [least_m for _, _, least_m in low]
-    return RoutePoints(risen.position, agl_m, risen.kind, risen.asset, risen.target, risen.task, risen.speed_mps)
+def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules) -> TooLow | None:
+    """Where waypoints and legs come within BESIDE_M, across the ground, of something and not by the clearance over it; None for nowhere.
+
+    ground_heights_m is asked only where the waypoints have heights above the sea. What is inspected, and the wires at it, do not count
+    while it is inspected.
+    """
+    if not len(spans) or len(waypoints) < 2:
+        return None
+    points = waypoints.points
+    is_known = waypoints.amsl_m is not None and ground_heights_m is not None
+    level_m = points.agl_m if waypoints.amsl_m is None or not is_known else waypoints.amsl_m
+    own = _inspected(points)
+    on_flat_m = np.inf if is_known else rules.clearance_m
+    leg, leg_span = legs_beside(points.position, level_m, own, on_flat_m, spans)
+    point, point_span = points_beside(points.position, level_m, own, on_flat_m, spans)
+    if not len(leg) and not len(point):
+        return None
+    span = np.concatenate([leg_span, point_span])
+    place = np.concatenate([leg, point])
+    ground_m = np.zeros((len(span), 2))
+    if is_known and ground_heights_m is not None:
+        under_m = level_m - points.agl_m
+        here_m = np.maximum(under_m[place], under_m[np.minimum(place + 1, len(points) - 1)])
+        told_m = ground_heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
+        ground_m = np.where(np.isnan(told_m), here_m[:, None], told_m)
+    heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
+    least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)
+    is_leg = np.arange(len(place)) < len(leg)
+    row, begin, until, needed_m = stretches_too_low(points.position, level_m, place, is_leg, span, least_m, spans)
+    if not len(row):
+        return None
+    at = np.concatenate([_on_leg(points, place[row], begin), _on_leg(points, place[row], until)])
+    under_m = np.zeros(len(at))
+    if is_known and ground_heights_m is not None:
+        here_m = (level_m - points.agl_m)[place[row]]
+        told_m = ground_heights_m(at)
+        under_m = np.where(np.isnan(told_m), np.tile(here_m, 2), told_m)
+    agl_m = needed_m - under_m.reshape(2, -1).min(axis=0)
+    order = np.lexsort((begin, ~is_leg[row], place[row]))
+    return TooLow(place[row][order], is_leg[row][order], begin[order], until[order], needed_m[order], agl_m[order], span[row][order])
+
+
+def rising_over(
+    waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules
+) -> tuple[Waypoints, tuple[int, ...]]:
+    """The waypoints, with a climb before, a level stretch over and a descent behind whatever they would pass too low.
+
+    Also the numbers of the spans over which a UAV would have to rise above the limit: such a route is not to be flown.
+    """
+    low = too_low(waypoints, spans, ground_heights_m, rules)
+    if low is None:
+        return waypoints, ()
+    blocked = tuple(np.unique(low.span[low.agl_m > rules.max_agl_m + HAIR]).tolist())
+    return _risen(waypoints, low, ground_heights_m), blocked
+
+
+def _inspected(points: RoutePoints) -> IntArray:
+    """The target that is being done at each point, NONE for none; the end over the last target still belongs to it."""
+    own = points.target.copy()
+    if points.kind[-1] == END and (points.position[-1] == points.position[-2]).all() and points.agl_m[-1] == points.agl_m[-2]:
+        own[-1] = own[-2]
+    return own
+
+
+def _on_leg(points: RoutePoints, place: IntArray, share: FloatArray) -> FloatArray:
+    end = np.minimum(place + 1, len(points) - 1)
+    at: FloatArray = points.position[place] + share[:, None] * (points.position[end] - points.position[place])
+    return at
+
+
+def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | None) -> Waypoints:
+    points = waypoints.points
+    is_known = waypoints.amsl_m is not None
+    plain_m = points.agl_m if waypoints.amsl_m is None else waypoints.amsl_m
+    level_m = plain_m.copy()  # of the waypoints themselves: what reaches one of them lifts it
+    np.maximum.at(level_m, low.place[~low.is_leg | (low.begin <= HAIR)], low.level_m[~low.is_leg | (low.begin <= HAIR)])
+    to_end = low.is_leg & (low.until >= 1.0 - HAIR)
+    np.maximum.at(level_m, low.place[to_end] + 1, low.level_m[to_end])
+    lifted = np.flatnonzero(level_m > plain_m)
+    changed = np.unique(np.concatenate([low.place[low.is_leg], lifted, lifted - 1]))
+    legs: list[int] = []
+    shares: list[float] = []
+    levels_m: list[float] = []
+    for leg in changed[(changed >= 0) & (changed < len(points) - 1)].tolist():
+        if (points.position[leg] == points.position[leg + 1]).all():
+            continue  # straight up or down all the same
+        rows = np.flatnonzero(low.is_leg & (low.place == leg))
+        ends_m = float(level_m[leg]), float(level_m[leg + 1])
+        for share, own_m in _profile(plain_m[leg], plain_m[leg + 1], ends_m, low.begin[rows], low.until[rows], low.level_m[rows]):
+            legs.append(leg)
+            shares.append(share)
+            levels_m.append(own_m)
+    place = np.array(legs, dtype=np.int64)
+    flown = points.with_points_between(place, np.array(shares, dtype=np.float64))
+    new = place + 1 + np.arange(len(place))
+    is_end = np.array(shares) >= 1.0 - HAIR
+    flown.position[new[is_end]] = points.position[place[is_end] + 1]  # not a hair beside it
+    is_new = np.zeros(len(flown), dtype=bool)
+    is_new[new] = True
+    flown_m, ground_m = np.empty(len(flown)), np.zeros(len(flown))
+    flown_m[new], flown_m[~is_new] = levels_m, level_m
+    if is_known:
+        ground_m[~is_new] = (waypoints.amsl_m - points.agl_m) if waypoints.amsl_m is not None else 0.0
+        told_m = np.full(len(new), np.nan) if ground_heights_m is None else ground_heights_m(flown.position[new])
+        ground_m[new] = np.where(np.isnan(told_m), ground_m[~is_new][place], told_m)
+    agl_m = flown_m - ground_m
+    risen = RoutePoints(flown.position, agl_m, flown.kind, flown.asset, flown.target, flown.task, flown.speed_mps)
+    if waypoints.amsl_m is None:
+        return Waypoints(risen, None, agl_m)
+    return Waypoints(risen, flown_m, flown_m - (waypoints.amsl_m[0] - waypoints.relative_m[0]))
+
+
+def _profile(
+    start_m: float, end_m: float, lifted_m: tuple[float, float], begin: FloatArray, until: FloatArray, level_m: FloatArray
+) -> list[tuple[float, float]]:
+    """Where a leg between two levels has to bend so that it is nowhere lower than each level from its begin until its end: share, level.
+
+    It goes straight up or down where the stretches begin and end, and at its own ends where these are lifted higher than it is there.
+    """
+    marks = np.unique(np.concatenate([[0.0, 1.0], begin, until]))
+    bends: list[tuple[float, float]] = []
+    for share in marks.tolist():
+        plain_m = start_m + share * (end_m - start_m)
+        touches = (begin <= share) & (until >= share)
+        is_point = begin == until
+        before_m = float(level_m[touches & ((begin < share) | is_point)].max(initial=plain_m))
+        after_m = float(level_m[touches & ((until > share) | is_point)].max(initial=plain_m))
+        if share == 0.0:
+            bends += [(share, after_m)] if after_m < lifted_m[0] else []
+        elif share == 1.0:
+            bends += [(share, before_m)] if before_m < lifted_m[1] else []
+        elif before_m != after_m:
+            bends += [(share, before_m), (share, after_m)]
+        elif before_m > plain_m and not (touches & (begin < share) & (until > share) & (level_m == before_m)).any():
+            bends.append((share, before_m))
+    return bends

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 GRAVITY_MPS2 = 9.806_65
@@ -24,12 +24,13 @@ EFFICIENCIES = (0.1, 0.95)  # of a hover: a fault of units lies outside
 
 
 class InvalidPerformance(ValueError):
-    """Figures that no UAV has; `place` names the entry as the JSON does."""
+    """Figures that no UAV has; `place` names the entry as the JSON does, `bounds` are what it has to lie between."""
 
-    def __init__(self, place: str, message: str) -> None:
+    def __init__(self, place: str, message: str, bounds: tuple[float, float] | None = None) -> None:
         super().__init__(f"{place}: {message}")
         self.place = place
         self.message = message
+        self.bounds = bounds
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,8 @@ class Performance:
         low, high = EFFICIENCIES
         if self.hover_power_w is not None and not low <= self.hover_efficiency <= high:
             least_w, most_w = (self.avionics_w + self._ideal_hover_w / share for share in (high, low))
-            raise InvalidPerformance("hover_power_w", f"must be from {least_w:.0f} to {most_w:.0f} for this mass and these rotors")
+            words = f"must be from {least_w:.0f} to {most_w:.0f} for this mass and these rotors"
+            raise InvalidPerformance("hover_power_w", words, (least_w, most_w))
 
     @property
     def weight_n(self) -> float:
@@ -96,6 +98,13 @@ class Performance:
             return self.efficiency
         return self._ideal_hover_w / (self.hover_power_w - self.avionics_w) if self.hover_power_w > self.avionics_w else math.inf
 
+    def with_mass(self, mass_kg: float) -> "Performance":
+        """With other payload on the same rotors: a measured hover takes as much more as thrust to the power of 1.5. Raises
+        InvalidPerformance."""
+        _check(mass_kg, *MASSES_KG, "mass_kg")
+        lifting_w = None if self.hover_power_w is None else (self.hover_power_w - self.avionics_w) * (mass_kg / self.mass_kg) ** 1.5
+        return replace(self, mass_kg=mass_kg, hover_power_w=None if lifting_w is None else self.avionics_w + lifting_w)
+
     @property
     def _ideal_hover_w(self) -> float:
         """Momentum theory: T ** 1.5 / sqrt(2 rho A)."""
@@ -104,6 +113,8 @@ class Performance:
 
 # What the API and a UAV type hold; the rest is the same for all.
 PERFORMANCE_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
+# What a UAV may have of its own; its rotors are its type's.
+OWN_PERFORMANCE_KEYS = ("battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps")
 
 
 def performance_to_json(performance: Performance) -> dict[str, Any]:
@@ -133,4 +144,4 @@ def performance_from_json(value: Any) -> Performance:
 
 def _check(value: float | None, low: float, high: float, place: str) -> None:
     if value is not None and not low <= value <= high:
-        raise InvalidPerformance(place, f"must be from {low:g} to {high:g}")
+        raise InvalidPerformance(place, f"must be from {low:g} to {high:g}", (low, high))

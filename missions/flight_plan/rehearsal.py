@@ -4,13 +4,16 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.graph.rehearsal import graph_to_rehearse_on
+from inspection.graph.spans import spans_between
 from inspection.graph.zone_index import ZoneIndex
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.costs import Finish, flight_costs
+from missions.flight_plan.obstacles import rising_over
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.flight_plan.separation import TimedRoute, keep_apart
+from missions.flight_plan.tall_clearance import spans_too_near
 from missions.flight_plan.timing import timing
 from missions.flight_plan.waypoints import RoutePoints, Waypoints
 from missions.flight_plan.ways_taken import FlightClass
@@ -19,15 +22,24 @@ from missions.routing.terminals import AccessRules, Terminal, ways_between
 
 
 def rehearse() -> None:
-    """Draw a route over one node to one target, with a leg that has to be divided; keep two that hover over one place apart."""
+    """Draw a route over a node to a target, with a leg that has to be divided and to rise; keep two that hover over one place apart."""
     ways = PassedNodes(np.array([[9.0, 47.0]]), np.array([60.0]), np.array([7]), np.array([0, 1]))
     target = TargetPoints(0, (LonLat(9.1, 47.0),), 60.0, Task(TaskKind.LOOK, 5.0), 8)
     points = route_points(start=LonLat(9.0, 47.001), transit_agl_m=60.0, targets=[target], ways=ways, home=None)
     points = with_short_legs(points, 900.0)[0]
     line_of(points)
+    _rehearse_rising(points)
     _rehearse_time_and_energy(points)
     hovering = TimedRoute("", np.array([[9.0, 47.0], [9.1, 47.0]]), np.full(2, 60.0), np.array([0.0, 600.0]), np.zeros(2), take_off_m=60.0)
     keep_apart([hovering, hovering], rules=SeparationRules())
+
+
+def _rehearse_rising(points: RoutePoints) -> None:
+    """Over a wire across the last leg."""
+    across = spans_between(np.array([[9.05, 46.999]]), np.array([[9.05, 47.001]]), np.array([80.0]), np.array([90.0]))
+    waypoints = Waypoints(points, None, points.agl_m)
+    rising_over(waypoints, across, None, FlightRules())
+    spans_too_near(waypoints, across, None, FlightRules())
 
 
 def _rehearse_time_and_energy(points: RoutePoints) -> None:

@@ -246,9 +246,7 @@ def taken_on_ways(
             if taken[0, start, end] >= NO_HEADWAY / 2.0 or taken[1, start, end] >= NO_HEADWAY / 2.0:
                 taken[0, start, end] = taken[1, start, end] = np.inf
             else:
-                # Steps are never below 0, but the difference of two sums, large where wind closes a step, can round to less.
-                taken[0, start, end] = max(taken[0, start, end], 0.0)
-                taken[1, start, end] = max(taken[1, start, end], 0.0) / J_PER_WH
+                taken[1, start, end] /= J_PER_WH
     return taken
 
 

@@ -81,7 +81,8 @@ class UavState(models.TextChoices):
 class Uav(models.Model):
     """An uncrewed aircraft of an organisation.
 
-    `location` is where it stands or was last reported. Without a range or speed of its own it has its type's.
+    `location` is where it stands or was last reported. Without a range, speed, battery, mass, reserve or airspeed of its own it has its
+    type's.
     """
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uavs")
@@ -96,6 +97,10 @@ class Uav(models.Model):
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
     max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")
     cruise_speed_mps = models.FloatField(null=True, blank=True, help_text="empty = its type's, else the usual speed")
+    battery_wh = models.FloatField(null=True, blank=True, help_text="watt-hours of a full battery; empty = its type's")
+    mass_kg = models.FloatField(null=True, blank=True, help_text="kilograms at take-off; empty = its type's")
+    reserve_percent = models.FloatField(null=True, blank=True, help_text="of the battery, that no plan uses; empty = its type's, else 20")
+    max_airspeed_mps = models.FloatField(null=True, blank=True, help_text="through the air; empty = its type's, else not limited")
     heading_deg = models.FloatField(null=True, blank=True, help_text="degrees from true north, clockwise; empty = not known")
     battery_percent = models.FloatField(null=True, blank=True)
     sensor = models.CharField(max_length=100, blank=True)
@@ -112,6 +117,12 @@ class Uav(models.Model):
             models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
             models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
             models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
+            models.CheckConstraint(condition=Q(battery_wh=None) | Q(battery_wh__gt=0), name="uav_battery_positive"),
+            models.CheckConstraint(condition=Q(mass_kg=None) | Q(mass_kg__gt=0), name="uav_mass_positive"),
+            models.CheckConstraint(
+                condition=Q(reserve_percent=None) | Q(reserve_percent__gte=0, reserve_percent__lt=100), name="uav_reserve_percent"
+            ),
+            models.CheckConstraint(condition=Q(max_airspeed_mps=None) | Q(max_airspeed_mps__gt=0), name="uav_airspeed_positive"),
             models.CheckConstraint(condition=Q(heading_deg=None) | Q(heading_deg__gte=0, heading_deg__lt=360), name="uav_heading_degrees"),
             models.CheckConstraint(condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="uav_battery_percent"),
             models.CheckConstraint(condition=Q(state__in=UavState.values), name="uav_state_known"),

@@ -9,8 +9,9 @@ import numpy as np
 from numba import njit
 
 from missions.routing import exact
-from missions.routing.arcs import NO_WAY_M, Arcs, no_burden
+from missions.routing.arcs import Arcs, no_burden
 from missions.routing.problem import BoolArray, FloatArray, IntArray, Objective, Problem, Routes
+from missions.routing.quantities import NO_WAY_M
 from missions.routing.reach import least_ways
 
 SUBSET_TARGETS = 9

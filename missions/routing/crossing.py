@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from numba import njit
 
-from missions.routing.arcs import NO_WAY_M
 from missions.routing.plan_state import Ground, Plan, RandomState, draw, draw_below
 from missions.routing.problem import IntArray
+from missions.routing.quantities import NO_WAY_M
 
 NEIGHBOURS = 12
 LONGEST_SEGMENT = 40

@@ -4,9 +4,9 @@ import numpy as np
 from numba import njit
 
 from missions.routing.arcs import Arcs
-from missions.routing.limited_tours import Tours, limited_tours
+from missions.routing.limited_tours import Tours, limited_tours, settled_tours
 from missions.routing.problem import BoolArray, FloatArray, IntArray, Problem, Routes
-from missions.routing.tours import shortest_tours, walk_back
+from missions.routing.tours import walk_back
 
 MAX_TARGETS = 12  # 4,096 sets and 531,441 pairs of a set and a part of it: about a millisecond per UAV
 
@@ -31,9 +31,9 @@ def proven_routes(arcs: Arcs) -> tuple[Routes, bool]:
     uavs = len(arcs.first_m)
     if not uavs or not len(arcs.target):
         return ((),) * uavs, True
-    if len(arcs.burden) or arcs.has_sorties:
+    if arcs.has_sorties:
         return _best_of_limited(arcs)
-    length, order = _best(
+    is_settled, length, order = _best(
         arcs.first_m,
         arcs.onward_m,
         arcs.end_m,
@@ -48,7 +48,13 @@ def proven_routes(arcs: Arcs) -> tuple[Routes, bool]:
         arcs.weight,
         arcs.is_makespan,
         arcs.class_of,
+        arcs.burden.first,
+        arcs.burden.onward,
+        arcs.burden.end,
+        arcs.burden.limit,
     )
+    if not is_settled:
+        return _best_of_limited(arcs)
     return tuple(tuple(route[:count]) for route, count in zip(order.tolist(), length.tolist(), strict=True)), True
 
 
@@ -145,39 +151,57 @@ def _best(
     weight: FloatArray,
     is_makespan: bool,
     class_of: IntArray,
-) -> tuple[IntArray, IntArray]:
-    """Visits in order of each UAV (u, t), and how many they are (u,)."""
+    burden: FloatArray,
+    burden_onward: FloatArray,
+    burden_end: FloatArray,
+    burden_limit: FloatArray,
+) -> tuple[bool, IntArray, IntArray]:
+    """Visits in order of each UAV (u, t), and how many they are (u,); False first if a set of targets is contested."""
     uavs, targets = len(first_m), len(weight)
     sets = 1 << targets
-    back_m = np.empty(onward_m.shape)  # the arcs that lead to a visit lie in a row
-    for number in range(len(onward_m)):
-        back_m[number] = onward_m[number].T
-    kind = _kinds(first_m, end_m, limit_m, speed_mps, ready_s, most, allowed, class_of)
+    back_m = _turned(onward_m)
+    back = np.empty((len(onward_m), len(burden), len(target), len(target)))
+    for at in range(len(burden)):
+        back[:, at] = _turned(burden_onward[at])
+    kind = _kinds(first_m, end_m, limit_m, speed_mps, ready_s, most, allowed, class_of, burden, burden_end, burden_limit)
     kinds = kind.max() + 1
     reach_m = np.empty((kinds, sets, len(target)))
     length_m = np.empty((kinds, 1, sets))
     duration_s = np.empty((kinds, 1, sets))
+    is_contested = np.zeros(sets, dtype=np.bool_)
+    order = np.empty((uavs, targets), dtype=np.int64)
+    length = np.zeros(uavs, dtype=np.int64)
     counts = _sums(done, target, targets)
     services_s = _sums_s(service_s, target, targets)
     for uav in range(uavs):
-        number = kind[uav]
+        number, flying = kind[uav], class_of[uav]
         if uav > 0 and number <= kind[:uav].max():
             continue
         own_m, own_s = length_m[number, 0], duration_s[number, 0]
-        shortest_tours(first_m[uav], back_m[class_of[uav]], end_m[uav], target, allowed[uav], reach_m[number], own_m)
+        if settled_tours(
+            first_m[uav], back_m[flying], end_m[uav], target, allowed[uav], limit_m[uav], most[uav], counts,
+            burden[:, uav].copy(), back[flying], burden_end[:, uav].copy(), burden_limit[:, uav].copy(),
+            reach_m[number], own_m, is_contested,
+        ):  # fmt: skip
+            return False, length, order
         for members in range(sets):
-            if own_m[members] > limit_m[uav] or counts[members] > most[uav]:
-                own_m[members] = np.inf
             own_s[members] = own_m[members] / speed_mps[uav] + services_s[members] + ready_s[uav]
         own_s[0] = 0.0
 
     share, _ = _shared_out(kind, length_m, duration_s, _sums_s(weight, np.arange(targets), targets), targets, is_makespan)
-    order = np.empty((uavs, targets), dtype=np.int64)
-    length = np.zeros(uavs, dtype=np.int64)
     for uav in range(uavs):
-        back = back_m[class_of[uav]]
-        length[uav] = walk_back(share[uav], reach_m[kind[uav]], first_m[uav], back, end_m[uav], target, allowed[uav], order[uav])
-    return length, order
+        own_back_m = back_m[class_of[uav]]
+        length[uav] = walk_back(share[uav], reach_m[kind[uav]], first_m[uav], own_back_m, end_m[uav], target, allowed[uav], order[uav])
+    return True, length, order
+
+
+@njit(cache=True, nogil=True)
+def _turned(onward_m: FloatArray) -> FloatArray:
+    """The arcs that lead to a visit lie in a row."""
+    back_m = np.empty(onward_m.shape)
+    for number in range(len(onward_m)):
+        back_m[number] = onward_m[number].T
+    return back_m
 
 
 @njit(cache=True, nogil=True)
@@ -241,6 +265,9 @@ def _kinds(
     most: IntArray,
     allowed: BoolArray,
     class_of: IntArray,
+    burden: FloatArray,
+    burden_end: FloatArray,
+    burden_limit: FloatArray,
 ) -> IntArray:
     """UAVs that are alike in everything have the same number."""
     kind = np.empty(len(first_m), dtype=np.int64)
@@ -257,6 +284,9 @@ def _kinds(
                 and np.array_equal(first_m[uav], first_m[other])
                 and np.array_equal(end_m[uav], end_m[other])
                 and np.array_equal(allowed[uav], allowed[other])
+                and np.array_equal(burden[:, uav], burden[:, other])
+                and np.array_equal(burden_end[:, uav], burden_end[:, other])
+                and np.array_equal(burden_limit[:, uav], burden_limit[:, other])
             ):
                 kind[uav] = kind[other]
                 break

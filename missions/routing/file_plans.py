@@ -24,9 +24,10 @@ from inspection.graph.nearness import EARTH_RADIUS_M
 from inspection.graph.node_tree import NodeTree, tree_of
 from inspection.graph.route_index import RouteIndex
 from inspection.graph.ways import travel_of_legs
-from missions.routing.arcs import NO_WAY_M, Arcs, no_burden
+from missions.routing.arcs import Arcs, no_burden
 from missions.routing.exact import MAX_TARGETS, best_routes
 from missions.routing.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
+from missions.routing.quantities import NO_WAY_M
 from missions.routing.solver import solve
 
 PHASES = ("nearest", "matrix", "assign", "expand")

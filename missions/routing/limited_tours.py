@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from missions.routing.arcs import NO_WAY_M, Arcs
+from missions.routing.arcs import Arcs
 from missions.routing.problem import BoolArray, FloatArray, IntArray
+from missions.routing.quantities import NO_WAY_M
 from missions.routing.reach import least_ways
 from missions.routing.tours import shortest_tours, walk_back
 
@@ -68,6 +69,54 @@ def limited_tours(arcs: Arcs, uav: int, counts: IntArray, most_labels: int = MOS
 
 
 @njit(cache=True, nogil=True)
+def settled_tours(
+    first_m: FloatArray,
+    back_m: FloatArray,
+    end_m: FloatArray,
+    target: IntArray,
+    allowed: BoolArray,
+    limit_m: float,
+    most: int,
+    counts: IntArray,
+    first: FloatArray,
+    back: FloatArray,
+    end: FloatArray,
+    limit: FloatArray,
+    reach_m: FloatArray,
+    length_m: FloatArray,
+    is_contested: BoolArray,
+) -> bool:
+    """Fill in reach and lengths as `shortest_tours`, inf for the sets of which no tour keeps every limit. Whether any set is contested.
+
+    Of a contested one the shortest tour breaks a limit that another of its tours keeps.
+    """
+    sets, visits, more = len(counts), len(target), len(limit)
+    shortest_tours(first_m, back_m, end_m, target, allowed, reach_m, length_m)
+    can_be = np.ones(sets, dtype=np.bool_)
+    reach, least = np.empty((sets, visits)), np.empty(sets)
+    for at in range(more):
+        shortest_tours(first[at], back[at], end[at], target, allowed, reach, least)
+        for members in range(sets):
+            can_be[members] &= least[members] <= limit[at]
+    order = np.empty(visits, dtype=np.int64)
+    any_contested = False
+    for members in range(1, sets):
+        if not can_be[members] or length_m[members] > limit_m or counts[members] > most:
+            length_m[members] = np.inf
+            continue
+        if not more:
+            continue
+        count = walk_back(members, reach_m, first_m, back_m, end_m, target, allowed, order)
+        for at in range(more):
+            taken = first[at, order[0]] + end[at, order[count - 1]]
+            for place in range(1, count):
+                taken += back[at, order[place], order[place - 1]]
+            if taken > limit[at]:
+                is_contested[members] = any_contested = True
+    return any_contested
+
+
+@njit(cache=True, nogil=True)
 def _limited(
     first_m: FloatArray,
     back_m: FloatArray,
@@ -85,34 +134,16 @@ def _limited(
     most_labels: int,
 ) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, bool]:
     """Lengths (sets,), reach as of `shortest_tours`, each set's label or -1, parents and visits of labels, whether all are there."""
-    sets, visits, more = len(counts), len(target), len(limit)
+    sets, visits = len(counts), len(target)
     reach_m, length_m = np.empty((sets, visits)), np.empty(sets)
-    shortest_tours(first_m, back_m, end_m, target, allowed, reach_m, length_m)
     label_of = np.full(sets, -1, dtype=np.int64)
-    can_be = np.ones(sets, dtype=np.bool_)
-    reach, least = np.empty((sets, visits)), np.empty(sets)
-    for at in range(more):
-        shortest_tours(first[at], back[at], end[at], target, allowed, reach, least)
-        for members in range(sets):
-            can_be[members] &= least[members] <= limit[at]
-    order = np.empty(visits, dtype=np.int64)
-    is_wanted = np.zeros(sets, dtype=np.bool_)
     is_contested = np.zeros(sets, dtype=np.bool_)
-    any_contested = False
-    for members in range(1, sets):
-        if not can_be[members] or length_m[members] > limit_m or counts[members] > most:
-            length_m[members] = np.inf
-            continue
-        count = walk_back(members, reach_m, first_m, back_m, end_m, target, allowed, order)
-        for at in range(more):
-            taken = first[at, order[0]] + end[at, order[count - 1]]
-            for place in range(1, count):
-                taken += back[at, order[place], order[place - 1]]
-            if taken > limit[at]:
-                is_contested[members] = is_wanted[members] = any_contested = True
-    if not any_contested:
+    if not settled_tours(
+        first_m, back_m, end_m, target, allowed, limit_m, most, counts, first, back, end, limit, reach_m, length_m, is_contested
+    ):
         nothing = np.empty(0, dtype=np.int64)
         return length_m, reach_m, label_of, nothing, nothing, True
+    is_wanted = is_contested.copy()
     for members in range(sets - 1, 0, -1):
         if is_wanted[members]:
             rest = members

@@ -6,8 +6,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from missions.routing.arcs import NO_WAY_M, Arcs
+from missions.routing.arcs import Arcs
 from missions.routing.problem import BoolArray, FloatArray, IntArray, Problem, Routes
+from missions.routing.quantities import NO_WAY_M
 
 RandomState = NDArray[np.uint64]  # one number
 

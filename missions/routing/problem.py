@@ -241,7 +241,7 @@ class Problem:
             ):
                 raise InvalidProblem("seconds or Wh do not fit the UAVs and visits")
             parts = (amounts.first, amounts.onward, amounts.end, amounts.at_visit, *(() if amounts.ready is None else (amounts.ready,)))
-            if any((np.asarray(part) < 0).any() for part in parts):
+            if any(np.count_nonzero(np.asarray(part) < 0) for part in parts):
                 raise InvalidProblem("seconds or Wh are below 0")
 
     def visits_of_target(self) -> list[list[int]]:

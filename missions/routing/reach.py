@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from missions.routing.arcs import NO_WAY_M, Quantity, classes_of, quantities
 from missions.routing.problem import BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
+from missions.routing.quantities import NO_WAY_M, Kind, classes_of, quantities_of
 
 _THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
 
@@ -22,7 +22,7 @@ def needed_range_m(problem: Problem) -> FloatArray:
     if not visits or not uavs:
         return needed_m
     if problem.seconds is not None or problem.wh is not None:
-        return _needed(problem, quantities(problem)[0])
+        return _needed(problem, Kind.METRES)
     along_m = np.array([visit.length_m for visit in problem.visits])
     first_m, end_m = problem.from_start_m + along_m, problem.end_m
     allowed = np.ones((uavs, visits), dtype=bool) if problem.allowed is None else problem.allowed
@@ -36,23 +36,24 @@ def needed_range_m(problem: Problem) -> FloatArray:
 
 def needed_wh(problem: Problem) -> FloatArray | None:
     """The least Wh (u, v) with which a UAV can fly a visit, and on to where it ends; as `needed_range_m`. None if none is limited."""
-    _, used = quantities(problem)
-    if used is None or not any(uav.limit_wh < math.inf for uav in problem.uavs):
+    if problem.wh is None or not any(uav.limit_wh < math.inf for uav in problem.uavs):
         return None
-    return _needed(problem, used)
+    return _needed(problem, Kind.WH)
 
 
-def _needed(problem: Problem, quantity: Quantity) -> FloatArray:
-    class_of = classes_of(problem)
-    needed = np.full(quantity.first.shape, np.inf)
+def _needed(problem: Problem, kind: Kind) -> FloatArray:
+    classes = classes_of(problem)
+    found = quantities_of(problem, classes, [kind])
+    first, end = found.first[0], found.end[0]
+    needed = np.full(first.shape, np.inf)
     allowed = np.ones(needed.shape, dtype=bool) if problem.allowed is None else problem.allowed
-    for number in range(len(quantity.onward)):
-        of_class = np.flatnonzero(class_of == number)
+    for number, onward_of_class in enumerate(found.onward[0]):
+        of_class = np.flatnonzero(classes.of_uav == number)
         for flown, alike in _by_allowed_visits(allowed[of_class]):
-            onward = np.minimum(least_ways(quantity.onward[number][np.ix_(flown, flown)]), NO_WAY_M)
+            onward = np.minimum(least_ways(onward_of_class[np.ix_(flown, flown)]), NO_WAY_M)
             for uav in of_class[alike].tolist():
-                out = (quantity.first[uav, flown][:, None] + onward).min(axis=0)
-                needed[uav, flown] = out + (onward + quantity.end[uav, flown]).min(axis=1)
+                out = (first[uav, flown][:, None] + onward).min(axis=0)
+                needed[uav, flown] = out + (onward + end[uav, flown]).min(axis=1)
     needed[needed >= NO_WAY_M] = np.inf
     return needed
 

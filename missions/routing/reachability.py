@@ -59,6 +59,11 @@ class Flight:
     flying: FlightClass | None = None
 
     @property
+    def lands_there(self) -> bool:
+        """At its target."""
+        return self.lands and self.end is End.OPEN
+
+    @property
     def usable_wh(self) -> float:
         usable_wh = None if self.flying is None else self.flying.performance.usable_wh
         return np.inf if usable_wh is None else usable_wh
@@ -76,15 +81,17 @@ def reach(
     *,
     conditions: Conditions = CALM,
     flight_rules: FlightRules = USUAL,
+    no_landing: BoolArray | None = None,
 ) -> Reach:
     """whole_graph is the network cleared of the zones, graph the part of it that can be flown over; bases are outside zones.
 
     leg_zones are those of the zones that reach the heights between targets. At a tower or bridge a photo is taken, elsewhere a look.
+    no_landing (n,): nodes of the graph where a flight that lands at its target cannot come down to the ground.
     """
     on_whole = _nodes_of(network.position, network.node_asset, whole_graph.position, whole_graph.node_asset)
     on_graph = _nodes_of(network.position, network.node_asset, graph.position, graph.node_asset)
     verdict, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
-    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules, conditions, flight_rules)
+    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules, conditions, flight_rules, no_landing)
     is_on = on_graph >= 0
     count, at = network.node_count, on_graph[is_on]
     flight, missing_m, missing_wh = np.full(count, -1, dtype=np.int16), np.zeros(count), np.zeros(count)
@@ -159,8 +166,11 @@ def _reach_of_nodes(
     rules: AccessRules,
     conditions: Conditions,
     flight_rules: FlightRules,
+    no_landing: BoolArray | None,
 ) -> NodeReach:
     count = graph.node_count
+    barred = np.zeros(count, dtype=bool) if no_landing is None else no_landing
+    lands_nowhere = np.zeros(count, dtype=bool)
     able_m, flight = np.full(count, np.inf), np.full(count, -1, dtype=np.int16)
     missing_m, missing_wh, has_way = np.full(count, np.inf), np.full(count, np.inf), np.zeros(count, dtype=bool)
     places = list(dict.fromkeys(flight.position for flight in flights))
@@ -179,7 +189,11 @@ def _reach_of_nodes(
             back = there if one.end is End.RETURN else to_base[flying] if one.end is End.ANY_BASE else None
             needed_m = there.length_m if back is None else there.length_m + back.length_m
             needed_wh = scene.needed_wh(there, back, one)
-            can = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh) & (needed_m < able_m)
+            is_able = (needed_m <= one.limit_m) & (needed_wh <= one.usable_wh) & np.isfinite(needed_wh)
+            if one.lands_there:
+                lands_nowhere |= is_able & barred
+                is_able &= ~barred
+            can = is_able & (needed_m < able_m)
             able_m[can], flight[can] = needed_m[can], number
             has_way |= np.isfinite(needed_m)
             against = np.isfinite(needed_m) & np.isfinite(needed_wh)
@@ -190,6 +204,7 @@ def _reach_of_nodes(
     verdict[has_way] = Verdict.WIND
     verdict[np.isfinite(missing_m)] = Verdict.BEYOND_RANGE
     verdict[np.isfinite(missing_wh)] = Verdict.BEYOND_ENERGY
+    verdict[lands_nowhere] = Verdict.NO_LANDING
     verdict[flight >= 0] = Verdict.REACHABLE
     return NodeReach(
         verdict,

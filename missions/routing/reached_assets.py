@@ -25,6 +25,7 @@ class Verdict(IntEnum):
     CUT_OFF = 5  # no way keeps clear of zones, or there is none
     ABOVE_HEIGHT_LIMIT = 6
     INSIDE_ZONE = 7
+    NO_LANDING = 8  # it could be inspected, but every flight that gets there would have to come down to the ground through a zone
 
 
 @dataclass(frozen=True, eq=False)

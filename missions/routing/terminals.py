@@ -17,6 +17,7 @@ from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.graph.nearness import chord
+from inspection.graph.network import Network
 from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.round_zones import Errand, ways_round
 from inspection.graph.route_index import asset_places, node_tree
@@ -116,12 +117,12 @@ def _along_own_line(
     return Attachments(nodes[clear], length_m[clear], length_m[clear])
 
 
-def tallest_support_m(graph: InspectionGraph, asset: int, course: Sequence[LonLat]) -> float:
+def tallest_support_m(network: Network, asset: int, course: Sequence[LonLat]) -> float:
     """The greatest tagged height among the supports at the vertices of a line's stretch; 0 if none is tagged."""
-    nodes = np.unique(graph.edge[asset_places(graph).edges_of(asset)])
-    tagged = nodes[graph.node_height_m[nodes] > 0]
+    nodes = np.unique(network.edge[network.edge_asset == asset])
+    tagged = nodes[network.node_height_m[nodes] > 0]
     vertices = {tuple(position) for position in course}
-    heights_m = [float(graph.node_height_m[node]) for node in tagged if tuple(graph.position[node].tolist()) in vertices]
+    heights_m = [float(network.node_height_m[node]) for node in tagged if tuple(network.position[node].tolist()) in vertices]
     return max(heights_m, default=0.0)
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numba import njit
 
-from missions.routing.arcs import NO_WAY_M
 from missions.routing.problem import BoolArray, FloatArray, IntArray
+from missions.routing.quantities import NO_WAY_M
 
 
 @njit(cache=True, nogil=True)

@@ -9,6 +9,7 @@ from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformanc
 from missions.models import Base, CredentialKind, UavCredential, UavType
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, LARGEST_DISK_M2, LARGEST_POWER_W, MOST_RESERVE_PERCENT
+from missions.serializers.performance import fault_words
 
 MOST_SENSORS = 12
 
@@ -41,7 +42,7 @@ class UavTypeSerializer(serializers.Serializer):
         try:
             performance_from_json(stored | {key: attrs[key] for key in PERFORMANCE_KEYS if key in attrs})
         except InvalidPerformance as error:
-            raise serializers.ValidationError({error.place: error.message}) from error
+            raise serializers.ValidationError({error.place: fault_words(error)}) from error
         return attrs
 
     def validate_sensors(self, value: list[str]) -> list[str]:

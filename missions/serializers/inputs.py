@@ -39,6 +39,7 @@ from missions.serializers.limits import (
     MOST_WIND_LAYERS,
     STRONGEST_WIND_MPS,
 )
+from missions.serializers.performance import fault_words
 from missions.services import (
     CALM,
     InvalidRequest,
@@ -278,7 +279,7 @@ def _checked_uav(index: int, uav: dict[str, Any], stored: Uav | None) -> UavRequ
     try:
         return _uav_request(uav, stored)
     except InvalidPerformance as error:
-        raise serializers.ValidationError({"uavs": {str(index): {error.place: [error.message]}}}) from error
+        raise serializers.ValidationError({"uavs": {str(index): {error.place: [fault_words(error)]}}}) from error
 
 
 def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:

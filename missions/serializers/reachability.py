@@ -75,7 +75,7 @@ class GroundedFlightSerializer(ReachableFlightSerializer):
 
 
 class ReachabilityReasonSerializer(serializers.Serializer):
-    code = serializers.ChoiceField(choices=[*CODES.values(), NO_UAV])
+    code = serializers.ChoiceField(choices=[*dict.fromkeys(CODES.values()), NO_UAV])
     message = serializers.CharField()
     count = serializers.IntegerField(help_text="assets")
 
@@ -98,6 +98,9 @@ class ReachabilitySerializer(serializers.Serializer):
     flights = ReachableFlightSerializer(many=True)
     grounded = GroundedFlightSerializer(many=True)
     reasons = ReachabilityReasonSerializer(many=True)
+    not_counted = serializers.ListField(
+        child=serializers.CharField(), help_text="what was asked for but no asset is said to be in reach by: `charging` on the way"
+    )
     assets = ReachableAssetsSerializer()
     graph_version = serializers.IntegerField()
     ground_revision = serializers.IntegerField()

@@ -85,8 +85,8 @@ class UnassignedSerializer(serializers.Serializer):
 
 
 class WarningSerializer(serializers.Serializer):
-    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated"])
-    uav = serializers.IntegerField(help_text="index of the UAV")
+    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated", "shortest_ways"])
+    uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV; null: of the whole plan")
     message = serializers.CharField()
 
 
@@ -165,6 +165,7 @@ class FailedReturnSerializer(serializers.Serializer):
     trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
     missing_wh = serializers.FloatField(allow_null=True)
     zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")
+    zone_id = serializers.IntegerField(allow_null=True, required=False, help_text="its id; not there in checks of before")
     over_m = serializers.FloatField(allow_null=True, help_text="by how much it would fly above the limit")
 
 

@@ -5,16 +5,20 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
-from missions.fleet_selectors import bases_of_organisation, types_of_organisation
+from missions.fleet_selectors import bases_of_organisation, performance_with, types_of_organisation
+from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerformance
 from missions.models import CredentialKind, EndAction, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
+from missions.serializers.performance import fault_words
 
 OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "heading_deg", "battery_percent", "sensor", "end_action")
-FROM_TYPE = ("max_range_m", "cruise_speed_mps")
+FROM_TYPE = ("max_range_m", "cruise_speed_mps", *OWN_PERFORMANCE_KEYS)
 
 
 class UavPropertiesSerializer(serializers.Serializer):
-    """Range and speed are the UAV's own; where it has none (`null`), what comes back is its type's, and `from_type` names it."""
+    """Range, speed, battery, mass, reserve and airspeed are the UAV's own; where it has none (`null`), what comes back is its type's, and
+    `from_type` names it."""
 
     name = serializers.CharField(max_length=100)
     type = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=2**63 - 1)
@@ -29,6 +33,16 @@ class UavPropertiesSerializer(serializers.Serializer):
         allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
     )
     cruise_speed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual")
+    battery_wh = AboveZeroField(
+        allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery; null: the type's"
+    )
+    mass_kg = AboveZeroField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off; null: the type's")
+    reserve_percent = FiniteFloatField(
+        allow_null=True, required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses; null: the type's"
+    )
+    max_airspeed_mps = AboveZeroField(
+        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="through the air; null: the type's, else not limited"
+    )
     heading_deg = FiniteFloatField(
         allow_null=True, required=False, min_value=0, max_value=359.999999, help_text="degrees from true north, clockwise; null: not known"
     )
@@ -64,9 +78,21 @@ class UavFlatSerializer(UavPropertiesSerializer):
                     faults[field] = f"There is no {field} {key}."
         if not self.partial and "position" not in attrs and attrs.get("base") is None and not faults:
             faults["position"] = "A UAV needs a position, or a base to stand at."
+        faults = faults or self._performance_faults(attrs)
         if faults:
             raise serializers.ValidationError(faults)
         return attrs
+
+    def _performance_faults(self, attrs: dict[str, Any]) -> dict[str, str]:
+        """Figures that no UAV of its type has."""
+        stored = self.instance
+        uav_type = attrs["uav_type"] if "uav_type" in attrs else getattr(stored, "uav_type", None)
+        own = {name: attrs[name] if name in attrs else getattr(stored, name, None) for name in OWN_PERFORMANCE_KEYS}
+        try:
+            performance_with(uav_type, own)
+        except InvalidPerformance as error:
+            return {error.place: fault_words(error)}
+        return {}
 
 
 class PointSerializer(serializers.Serializer):
@@ -98,6 +124,7 @@ def uav_feature(uav: Uav) -> dict[str, Any]:
     """uav: a row with its use, see fleet_selectors.with_use."""
     properties = {field: getattr(uav, field) for field in OWN}
     properties |= {"max_range_m": uav.range_m, "cruise_speed_mps": uav.speed_mps, "type": uav.uav_type_id, "base": uav.base_id}
+    properties |= {name: _own_or_of_type(uav, name) for name in OWN_PERFORMANCE_KEYS}
     properties |= {
         "type_name": uav.uav_type.name if uav.uav_type else "",
         "sensors": uav.sensors,
@@ -116,6 +143,11 @@ def uav_feature(uav: Uav) -> dict[str, Any]:
         "geometry": {"type": "Point", "coordinates": list(uav.location.coords)},
         "properties": properties,
     }
+
+
+def _own_or_of_type(uav: Uav, name: str) -> float | None:
+    own: float | None = getattr(uav, name)
+    return getattr(uav.uav_type, name) if own is None and uav.uav_type else own
 
 
 def flat_uav(data: Any) -> Any:

@@ -24,6 +24,7 @@ from missions.services.wishes import may_do
 CHARGED_WH = 1e6
 COUNTED_CLOSE = 1e-4  # by less of the battery do what is counted and what is drawn differ over ground that is known
 NOTHING_TAKEN_OFF: Mapping[int, float] = {}
+NOTHING_KEPT: Mapping[int, Collection[int]] = {}
 # What a finished route takes beyond what the search counted, in the objective's unit, and still is rounding.
 UNCOUNTED = {Objective.TOTAL: math.inf, Objective.MAKESPAN: 0.1, Objective.TIME: 0.1, Objective.ENERGY: 0.01}
 _ENDS = {EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
@@ -63,12 +64,13 @@ def assignment(
     usable_share: Mapping[int, float] = NOTHING_TAKEN_OFF,
     no_landing: Collection[int] = (),
     turnaround_s: float = 0.0,
+    kept_from: Mapping[int, Collection[int]] = NOTHING_KEPT,
 ) -> Assignment:
     """uavs: those that fly, by their places in the request; visits: of the places, by their numbers; ready [s]: of each UAV's route.
 
     costs: seconds and Wh where they do not follow from the metres; ready, and what the visits take, are then among them. usable_share:
     of a UAV's usable battery, by its place in the request, what the search may count on. no_landing: places, by their numbers, where a
-    UAV must not go down to the ground.
+    UAV must not go down to the ground. kept_from: of a UAV, by its place in the request, the targets that it is not to fly to.
     """
     if not uavs:
         costs = None  # nothing flies: there is nothing to count
@@ -95,7 +97,9 @@ def assignment(
         to_start_m=ways.to_start_m,
         objective=request.objective if uavs else Objective.TOTAL,
         to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(uavs))) if EndAction.BASE in ends else None,
-        allowed=_allowed(request, uavs, places, visits) if any(target.uav or target.sensor for target in targets) else None,
+        allowed=_allowed(request, uavs, places, visits, kept_from)
+        if kept_from or any(target.uav or target.sensor for target in targets)
+        else None,
         priorities=tuple(target.priority for target in targets) if any(target.priority != Priority.NORMAL for target in targets) else (),
         seconds=None if costs is None else Amounts(**vars(costs.seconds)),
         wh=None if costs is None else Amounts(**vars(costs.wh)),
@@ -122,9 +126,14 @@ def _usable_wh(asked: UavRequest, share: float | None, charging_w: float | None)
     return None if usable_wh is None else usable_wh * (1.0 if share is None else share) * (1.0 - COUNTED_CLOSE)
 
 
-def _allowed(request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit]) -> BoolArray:
+def _allowed(
+    request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit], kept_from: Mapping[int, Collection[int]]
+) -> BoolArray:
     """Which visits each UAV may fly, (u, v)."""
-    of_place = [[may_do(request.uavs[uav], request.targets[place.target]) for place in places] for uav in uavs]
+    of_place = [
+        [may_do(request.uavs[uav], request.targets[place.target]) and place.target not in kept_from.get(uav, ()) for place in places]
+        for uav in uavs
+    ]
     allowed = np.array(of_place, dtype=bool).reshape(len(uavs), len(places))
     return allowed[:, [visit.target for visit in visits]]
 

@@ -1,6 +1,6 @@
 """One answer to a request on one set of zones: what can be flown there, who does what, and how it is drawn."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from missions.flight_plan.duration import target_s
@@ -65,8 +65,12 @@ def attempt(
     seed: int,
     search_s: float,
     usable_share: Mapping[int, float],
+    kept_from: Mapping[int, Collection[int]],
 ) -> Attempt:
-    """every_place: the request's targets on the ground, `gone` those that are no longer there; usable_share as in `assignment`."""
+    """every_place: the request's targets on the ground, `gone` those that are no longer there.
+
+    usable_share and kept_from as in `assignment`.
+    """
     refusals = {place.target: refused_place(place, scene) for place in every_place}
     left_out = [asset_gone(target) for target in gone] + [refusal for refusal in refusals.values() if refusal is not None]
     places = [place for place in every_place if refusals[place.target] is None]
@@ -93,12 +97,14 @@ def attempt(
     costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
     ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
     no_landing = _no_landing(request, uavs, places, scene)
-    asked = assignment(request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s)
+    asked = assignment(
+        request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s, kept_from
+    )
     sketch = Sketch(
         asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
-    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing)
+    left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing, kept_from)
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
 

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.sorties import wh_of_sorties
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
@@ -11,6 +12,7 @@ from missions.services.requests import PlanRequest
 from missions.services.unreached import LOCKED
 
 JUST_BELOW = 1e-3
+MOST_TRIED = 40  # targets of a route that are left out of it one by one
 BEYOND_ENERGY = "beyond_energy"
 
 
@@ -67,6 +69,44 @@ def with_drawn_reasons(left_out: Sequence[LeftOut], lacks: Mapping[int, DrawnLac
         return replace(one, message=message + (LOCKED if one.message.endswith(LOCKED) else ""))
 
     return [told(one) for one in left_out]
+
+
+def not_charged_for(
+    request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute], ground: GroundHeights | None
+) -> dict[int, frozenset[int]]:
+    """Of UAVs for whose route no charging suffices, by their numbers: targets to be kept from them, by their places in the request.
+
+    These are the targets that could not even be flown to alone. Where each could, it is the one without which charging suffices for the
+    others: of several the least wanted, then the one that saves most. A UAV with locked targets is not in the answer.
+    """
+    barred = {}
+    locked = {lock.uav for lock in request.locks}
+    for number, route in enumerate(routes):
+        if route.lacks_wh > 0.0 and request.uavs[number].name not in locked and len(route.targets) <= MOST_TRIED:
+            barred[number] = _too_much_for(number, request, found, ground)
+    return barred
+
+
+def _too_much_for(uav: int, request: PlanRequest, found: Attempt, ground: GroundHeights | None) -> frozenset[int]:
+    start = found.uavs.index(uav)
+    (order,) = found.solution.sorties[start]
+
+    def drawn(visits: Sequence[int]) -> PlannedRoute:
+        alone = [[] if other != start else [visits] for other in range(len(found.uavs))]
+        return found.drawing.routes(found.uavs, alone, ground)[uav]
+
+    target_of = {visit: found.drawing.places[found.problem.visits[visit].target].target for visit in order}
+    hopeless = frozenset(target_of[visit] for visit in order if drawn([visit]).lacks_wh > 0.0)
+    if hopeless:
+        return hopeless
+    without = [(visit, drawn([other for other in order if other != visit])) for visit in order]
+
+    def merit(one: tuple[int, PlannedRoute]) -> tuple[bool, int, float]:
+        visit, rest = one
+        rest_wh = 0.0 if rest.timing is None or rest.timing.total_wh is None else rest.timing.total_wh
+        return rest.lacks_wh > 0.0, request.targets[target_of[visit]].priority, rest_wh
+
+    return frozenset([target_of[min(without, key=merit)[0]]])
 
 
 def without_overruns(

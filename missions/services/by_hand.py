@@ -12,24 +12,24 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.graph.spans import spans_of
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
-from inspection.selectors.zone_table import zone_table
 from missions.flight_plan.clearance import TAKE_OFF
 from missions.flight_plan.heights import asset_height_m, with_heights
 from missions.flight_plan.leg_speeds import speeds_out_of_range
-from missions.flight_plan.obstacles import legs_too_low, tall_things
+from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
 from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
+from missions.flight_plan.tall_clearance import spans_too_near
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.leg_selectors import LegFlyer, speed_words
 from missions.models import EndAction, Mission, Route, Waypoint
 from missions.services.last_look import flown_route
-from missions.services.lost_link import lost_link_check
-from missions.services.missions import lock_mission, note, request_of_mission
+from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
 from missions.services.still_apart import separation_of_stored
@@ -106,6 +106,7 @@ def _fly(locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: 
     assert flown.waypoints is not None  # noqa: S101 - just drawn
     leads_to = _leads_to(wished, flown.waypoints.points)
     _refuse(_speed_faults(flown, leads_to, request, uav))
+    _refuse(_wire_faults(flown))
     _refuse(_zone_faults(flown, leads_to, locked))
     _refuse(_reach_faults(flown, request, uav))
     _store(locked, route, flown, by_hand)
@@ -114,7 +115,7 @@ def _fly(locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: 
     counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
     locked.total_energy_wh = round(sum(counted), 2) if counted else None
     locked.separation = separation_of_stored(locked)
-    locked.lost_link_check = _lost_link(locked, request, uav, flown)
+    check_lost_link(mission=locked)
     locked.plan_quality = _quality(locked)
     locked.revision += 1
     locked.save()
@@ -127,18 +128,6 @@ def _quality(mission: Mission) -> dict[str, Any]:
     if not Waypoint.objects.filter(route__mission=mission, is_by_hand=True).exists():
         return dict(planned)
     return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
-
-
-def _lost_link(mission: Mission, request: PlanRequest, uav: int, flown: PlannedRoute) -> dict[str, Any] | None:
-    """From where a lost link goes wrong: of this route anew, of the others as it was."""
-    until_now = mission.lost_link_check
-    if until_now is None:
-        return None
-    routes = [flown if number == uav else PlannedRoute() for number in range(len(request.uavs))]
-    network = planning_read().ground().network()
-    found = lost_link_check(request, routes, zone_table(), network, has_terrain=has_terrain())
-    others = [one for one in until_now["failed"] if one["route"] != uav]
-    return found | {"failed": sorted([*others, *found["failed"]], key=lambda one: (one["route"], one["waypoint"]))}
 
 
 def _step_row(waypoint: Waypoint) -> dict[str, Any]:
@@ -204,9 +193,32 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
 
 
 def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
-    low = legs_too_low(points, tall_things(planning_read().ground().network(), settings.FLIGHT_RULES))
-    words = _("Something tall stands here: fly at %(height)s m above ground over it.")
-    return {f"legs.{leg}": words % {"height": f"{least_m:.0f}"} for leg, _share, least_m in reversed(low)}
+    """Where waypoints and legs as they are wished, straight from one to the next, pass something tall too low."""
+    flight, ground = settings.FLIGHT_RULES, ground_heights_m if has_terrain() else None
+    under_m = np.full(len(points), np.nan) if ground is None else ground(points.position)
+    amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
+    waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network())
+    low = too_low(waypoints, spans, ground, flight)
+    if low is None:
+        return {}
+    near = spans_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
+    faults: dict[str, str] = {}
+    for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
+        if span not in near:
+            continue
+        words = _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
+        if agl_m > flight.max_agl_m:
+            words = _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{flight.max_agl_m:.0f}"}
+        faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", words)
+    return faults
+
+
+def _wire_faults(flown: PlannedRoute) -> dict[str, str]:
+    """The last look at the route as it is drawn over the ground."""
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    ground = None if flown.is_flat else ground_heights_m
+    near = spans_too_near(flown.waypoints, spans_of(planning_read().ground().network()), ground, settings.FLIGHT_RULES)
+    return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
 
 
 def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import accumulate, chain, pairwise
 
 import numpy as np
@@ -11,9 +12,10 @@ from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.inspection_graph import NodeKind
 from inspection.graph.passed import BEND, passed_on
+from inspection.graph.spans import spans_of
 from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
-from missions.flight_plan.obstacles import rising_over, tall_things
+from missions.flight_plan.obstacles import rising_over
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
 from missions.flight_plan.sorties import joined_sorties, timing_of_route
@@ -27,6 +29,16 @@ from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import Scene, zone_at
 from missions.services.requests import BaseRequest, InvalidRequest, PlanRequest
+
+
+@dataclass(frozen=True, eq=False)
+class _Flown:
+    """One flight. is_flat: flat ground had to be assumed; blocked_by: spans, by their numbers, that it would have to rise over too high."""
+
+    waypoints: Waypoints
+    length_m: float
+    is_flat: bool
+    blocked_by: tuple[int, ...]
 
 
 class Drawing:
@@ -76,7 +88,7 @@ class Drawing:
         flight, asked = self.scene.flight, self.request.uavs[uav]
         action = self.request.end_action(uav)
         drawn = [self._flight(uav, order, passed, ground) for order, passed in flights]
-        waypoints = drawn[0][0] if len(drawn) == 1 else joined_sorties([own for own, _length_m, _is_flat in drawn], flight.turnaround_s)
+        waypoints = drawn[0].waypoints if len(drawn) == 1 else joined_sorties([own.waypoints for own in drawn], flight.turnaround_s)
         base = self._base(action, flights[-1][0])
         try:
             clock = timing_of_route(
@@ -101,14 +113,15 @@ class Drawing:
             targets=tuple(self.places[self.visits[visit].target].target for order, _passed in flights for visit in order),
             waypoints=waypoints,
             line=line_of(waypoints.points),
-            length_m=sum(length_m for _waypoints, length_m, _is_flat in drawn),
+            length_m=sum(own.length_m for own in drawn),
             duration_s=clock.total_s,
             end_action=action,
             base=None if base is None else base.name,
-            is_flat=any(is_flat for _waypoints, _length_m, is_flat in drawn),
+            is_flat=any(own.is_flat for own in drawn),
             timing=clock,
             charging=stops,
             lacks_wh=lacks_wh,
+            blocked_by=tuple(sorted({span for own in drawn for span in own.blocked_by})),
         )
 
     def _charging(self, uav: int, waypoints: Waypoints, clock: Timing) -> tuple[ChargingStop, ...]:
@@ -137,8 +150,7 @@ class Drawing:
             if zone_at(LonLat(*network.position[node].tolist()), self.scene, top_m) is None
         }
 
-    def _flight(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> tuple[Waypoints, float, bool]:
-        """Waypoints and metres of one flight, and whether flat ground had to be assumed."""
+    def _flight(self, uav: int, order: Sequence[int], passed: PassedNodes, ground: GroundHeights | None) -> "_Flown":
         flight, at = self.scene.flight, self.request.uavs[uav].position
         action = self.request.end_action(uav)
         base = self._base(action, order)
@@ -149,10 +161,10 @@ class Drawing:
             ways=passed,
             home=at if action is EndAction.RETURN else None if base is None else base.position,
         )
-        points = rising_over(points, tall_things(self.scene.network, flight))
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
-        return waypoints, length_m, is_flat
+        waypoints, blocked = rising_over(waypoints, spans_of(self.scene.network), ground, flight)
+        return _Flown(waypoints, length_m, is_flat, blocked)
 
     def _base(self, action: EndAction, order: Sequence[int]) -> BaseRequest | None:
         return self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None

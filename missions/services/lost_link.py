@@ -9,12 +9,15 @@ from django.conf import settings
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.network import Network
 from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import has_terrain_at, planning_read
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.heights import FloatArray
 from missions.flight_plan.lost_link import LostLink, LostLinkPlan, Obstacles, failed_returns
 from missions.flight_plan.zone_facts import zones_near
+from missions.models import Mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest, lost_link_to_json
+from missions.services.stored_routes import stored_routes
 from missions.zone_selectors import zone_margins
 
 BESIDE_DEG = 0.01
@@ -33,6 +36,18 @@ def lost_link_check(
         for number, route in enumerate(routes):
             failed += _failed(request, number, route, table, network, has_terrain=has_terrain)
     return {**lost_link_to_json(wished), "failed": failed}
+
+
+def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any] | None:
+    """The same for the stored routes of a mission, with the zones of now; None where there are none, or their times are not known.
+
+    request: what the mission holds. Raises NoGraph.
+    """
+    routes = stored_routes(mission)
+    if routes is None:
+        return None
+    ground = planning_read().ground()
+    return lost_link_check(request, routes, ground.table, ground.network(), has_terrain=has_terrain_at(ground.edition))
 
 
 def _failed(
@@ -67,6 +82,7 @@ def _failed(
             "trouble": one.trouble.value,
             "missing_wh": None if one.missing_wh is None else round(one.missing_wh, 2),
             "zone": None if one.zone is None else near.names[one.zone],
+            "zone_id": None if one.zone is None else int(near.ids[one.zone]),
             "over_m": None if one.over_m is None else round(one.over_m, 1),
         }
         for one in found

@@ -8,6 +8,7 @@ from django.db.models import Model
 
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
 from missions.services.missions import note
+from missions.services.still_apart import separation_of_stored
 from workspace.models import User
 
 LONGEST_NAME = Mission._meta.get_field("name").max_length
@@ -20,7 +21,10 @@ COPIED = (
 
 
 def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Mission:
-    """A copy of its own: targets are pending again, and a mission that was on its way is merely planned."""
+    """A copy of its own: targets are pending again, and a mission that was on its way is merely planned.
+
+    It is compared with what is approved by now, the mission itself among it.
+    """
     with transaction.atomic():
         mission = Mission.objects.select_for_update().get(pk=mission.pk)  # as it is now: never half of one plan and half of the next
         values = {field: getattr(mission, field) for field in COPIED}
@@ -38,6 +42,9 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Miss
             for waypoint in old.waypoints.all()
         ]
         Waypoint.objects.bulk_create(waypoints, batch_size=1_000)
+        if mission.separation is not None:
+            copy.separation = separation_of_stored(copy)
+            copy.save(update_fields=["separation"])
         note(copy, author, "duplicate", before=None, after={"name": copy.name, "of": mission.name, "of_id": str(mission.pk)})
     return copy
 

@@ -12,9 +12,9 @@ from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.routing.solver import Stop
 from missions.services.best_so_far import OnPlanProgress
-from missions.services.missions import drop_plan, lock_mission, request_of_mission
+from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission
 from missions.services.planning import make_plan
-from missions.services.requests import PlanRequest, request_from_json
+from missions.services.requests import GO_ON, PlanRequest, request_from_json
 from missions.services.wishes import has_sensor, with_bases
 from workspace.models import Job, User
 from workspace.services import JobCancelled, finish_job, record_change
@@ -60,15 +60,22 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
     )
     if _that_counts(replace(asked, targets=targets)) != _that_counts(wanted):
         return False
-    store_plan(mission=mission, actor=actor, revision=revision, plan=job.result)
+    with transaction.atomic():
+        planned = store_plan(mission=mission, actor=actor, revision=revision, plan=job.result)
+        if asked.lost_link != wanted.lost_link:
+            check_lost_link(mission=planned)
+            planned.save(update_fields=["lost_link_check"])
     return True
 
 
 def _that_counts(request: PlanRequest) -> PlanRequest:
-    """The request with those sensors alone that a target needs, as a UAV may have got others since, and without whose it is."""
+    """The request with those sensors alone that a target needs, as a UAV may have got others since, and without whose it is.
+
+    What is done without a link does not decide over the routes.
+    """
     needed = [target.sensor for target in request.targets if target.sensor]
     uavs = (replace(uav, sensors=tuple(sensor for sensor in needed if has_sensor(uav, sensor))) for uav in request.uavs)
-    return replace(request, uavs=tuple(uavs), organisation=None, mission=None)
+    return replace(request, uavs=tuple(uavs), lost_link=GO_ON, organisation=None, mission=None)
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:

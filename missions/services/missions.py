@@ -17,6 +17,7 @@ from missions.flight_plan.performance import InvalidPerformance, Performance, pe
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
+from missions.services.lost_link import lost_link_of_stored
 from missions.services.places import places_of
 from missions.services.requests import (
     InvalidRequest,
@@ -39,6 +40,7 @@ from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
+BESIDE_ROUTES = ("name", "lost_link")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
@@ -82,7 +84,7 @@ class MissionChange:
 
     @property
     def drops_plan(self) -> bool:
-        return any(getattr(self, part.name) is not None for part in fields(self) if part.name != "name")
+        return any(getattr(self, part.name) is not None for part in fields(self) if part.name not in BESIDE_ROUTES)
 
 
 def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
@@ -111,7 +113,8 @@ def create_mission(*, organisation: Organisation, author: User, name: str, reque
 def change_mission(*, mission: Mission, actor: User, change: MissionChange, expected_revision: int | None = None) -> Mission:
     """Change a mission; new targets, UAVs or options drop its plan, and new targets its locks, where no new ones come with them.
 
-    Raises MissionChanged, MissionFrozen or InvalidRequest.
+    What is done without a link leaves the routes: it is checked anew on them. Raises MissionChanged, MissionFrozen, InvalidRequest or
+    NoGraph.
     """
     targets = None if change.targets is None else _target_rows(change.targets)
     with transaction.atomic():
@@ -146,8 +149,10 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             _store_targets(locked, targets)
         if change.drops_plan:
             refuse_contradictions(request_of_mission(mission=locked))
+        elif change.lost_link is not None:
+            check_lost_link(mission=locked)
         _save(locked)
-        action = "change" if change.drops_plan else "rename"
+        action = "rename" if change.lost_link is None and not change.drops_plan else "change"
         note(locked, actor, action, before=before, after=_summary(locked) | _differences(picked, _what_is_picked(locked)))
     return locked
 
@@ -211,6 +216,11 @@ def drop_plan(*, mission: Mission) -> None:
     mission.separation = mission.lost_link_check = None
     mission.plan_quality = None
     mission.plan_warnings = []
+
+
+def check_lost_link(*, mission: Mission) -> None:
+    """On the routes as they are stored; the caller holds the row and saves it. Raises NoGraph or InvalidRequest."""
+    mission.lost_link_check = lost_link_of_stored(mission, request_of_mission(mission=mission))
 
 
 def request_of_mission(*, mission: Mission) -> PlanRequest:

@@ -41,6 +41,7 @@ class PlannedRoute:
     timing: Timing | None = None
     charging: tuple[ChargingStop, ...] = ()
     lacks_wh: float = 0.0  # however it charges on the way
+    blocked_by: tuple[int, ...] = ()  # spans of the network over which it would have to fly above the limit
 
 
 def plan_to_json(

@@ -5,22 +5,27 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
 from django.conf import settings
 
 from inspection.geodesy import LonLat
+from inspection.graph.walls import at_all_heights, with_walls
+from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation
 from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
+from missions.routing.problem import Reason
 from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
-from missions.services.battery import DrawnLack, battery_overruns, drawn_lacks, with_drawn_reasons, without_overruns
+from missions.services.battery import DrawnLack, battery_overruns, drawn_lacks, not_charged_for, with_drawn_reasons, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
+from missions.services.over_wires import spans_in_the_way, walls_of_spans, without_routes_barred
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -32,6 +37,7 @@ from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
 MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
 MOST_TRIES = 6  # with more zones each time
+OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
 
 
 class GraphOutdated(Exception):
@@ -100,38 +106,80 @@ class _Planner:
         return [*ends, *(at for place in self.places for at in place.course)]
 
     def _clean(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with."""
+        """Raises GraphOutdated where that cannot be had: zones come into force after the longest flight that is reckoned with.
+
+        What rises over wires in a valley may come into a zone under which its way was to lead: that is kept clear of at all heights then.
+        """
+        closed = np.zeros_like(chosen)
         for _ in range(MOST_TRIES):
-            tried = self._finished(ground, choice, chosen, share)
+            tried = self._finished(ground, choice, chosen, share, closed)
             if not tried.met:
                 return tried
             more = choice.with_zones(chosen, tried.met)
             if (more == chosen).all():
-                raise ZoneNotAvoided(sorted(tried.met))
+                more_closed = choice.with_zones(closed, tried.met)
+                if (more_closed == closed).all():
+                    raise ZoneNotAvoided(sorted(tried.met))
+                closed = more_closed
             chosen = more
         raise GraphOutdated
 
-    def _finished(self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float) -> Finished:
-        """An attempt, drawn. Where a route takes more of its battery than the search had counted, it counts on so much less that this
-        route is out of the question, and tries again; in the end the UAV stays on the ground."""
-        scene = scene_on(ground, chosen)
+    def _finished(
+        self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float, closed: BoolArray | None = None
+    ) -> Finished:
+        """An attempt, drawn. Ways near infrastructure are preferred; what is out of reach on them may not be so on the shortest ones.
+
+        closed: zones to be kept clear of at all heights.
+        """
+        walls = None if closed is None or not closed.any() else at_all_heights(ground.zones(closed))
+        preferred = self._drawn(ground, choice, chosen, share, walls, is_by_length=False)
+        if settings.GRAPH_RULES.off_network_factor == 1.0 or not self._is_out_of_reach(preferred):
+            return preferred
+        shortest = self._drawn(ground, choice, chosen, share / 2, walls, is_by_length=True)
+        return shortest if shortest.worth.left_out < preferred.worth.left_out else preferred
+
+    def _is_out_of_reach(self, plan: Finished) -> bool:
+        """Whether a target is left out for which another way might do."""
+        reasons = {item.reason for item in plan.found.left_out}
+        return not reasons.isdisjoint(OUT_OF_REACH) or (Reason.NO_PATH in reasons and not self.request.conditions.is_calm)
+
+    def _drawn(
+        self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float, walls: ZoneIndex | None, *, is_by_length: bool
+    ) -> Finished:
+        """An attempt on preferred or on shortest ways. Where a route takes more of its battery than the search had counted, it counts on so
+        much less that this route is out of the question, and tries again; and what cannot be flown over is gone round from then on. In
+        the end the UAV stays on the ground."""
+        scene = scene_on(ground, chosen, walls, is_by_length=is_by_length)
         has_terrain = has_terrain_at(ground.edition)
+        terrain = ground_heights_m if has_terrain else None
         usable_share: dict[int, float] = {}
         lacks: dict[int, DrawnLack] = {}
+        kept_from: dict[int, frozenset[int]] = {}
+        barred: frozenset[int] = frozenset()
         for number in range(MOST_TRIES):
             found = attempt(
                 self.request, self.places, self.gone, scene,
                 stop=self.stop, on_progress=self.on_progress, seed=self.seed,
-                search_s=self.search_s * share / 2**number, usable_share=usable_share,
+                search_s=self.search_s * share / 2**number, usable_share=usable_share, kept_from=kept_from,
             )  # fmt: skip
             self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
-            alone = found.routes(self.request, ground_heights_m if has_terrain else None)
+            alone = found.routes(self.request, terrain)
             over = battery_overruns(self.request, found, alone)
-            if not over:
+            in_the_way = spans_in_the_way(alone, scene.network, terrain)
+            if not over and not in_the_way:
                 break
             lacks |= drawn_lacks(self.request, alone, over)
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
+                found, alone = without_routes_barred(self.request, found, alone, in_the_way)
+            if in_the_way:
+                barred |= frozenset().union(*in_the_way.values())
+                wires = walls_of_spans(scene.network, barred)
+                scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires), is_by_length=is_by_length)
+            if number < MOST_TRIES - 2:
+                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
+                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
+                    over.pop(uav)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         if lacks:
@@ -141,7 +189,8 @@ class _Planner:
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
             routes, separation, others = self._apart(alone, choice, may_raise=False)
             met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), not usable_share)
+        is_whole = not usable_share and not kept_from
+        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), is_whole)
 
     def _apart(
         self, alone: Sequence[PlannedRoute], choice: ZoneChoice, *, may_raise: bool = True
@@ -191,7 +240,7 @@ def make_plan(
         request,
         plan.routes,
         plan.found.left_out,
-        warnings_of(request, plan.found.grounded),
+        warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,

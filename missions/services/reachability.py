@@ -8,14 +8,13 @@ import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 
-from inspection.graph.inspection_graph import InspectionGraph
 from inspection.selectors.planning import planning_read
 from missions.flight_plan.ways_taken import FlightClass
 from missions.models import EndAction
 from missions.routing.problem import End, UavStart
 from missions.routing.reachability import Flight, reach
 from missions.routing.reached_assets import Reach, Verdict
-from missions.services.refusals import Scene, groundings, zone_at
+from missions.services.refusals import Scene, column_m, groundings, zone_at
 from missions.services.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.scenes import scene_on
 from missions.services.zone_choice import zone_choice
@@ -30,6 +29,7 @@ CODES = {
     Verdict.CUT_OFF: "no_path",
     Verdict.ABOVE_HEIGHT_LIMIT: "above_height_limit",
     Verdict.INSIDE_ZONE: "inside_zone",
+    Verdict.NO_LANDING: "inside_zone",
 }
 NO_UAV = "no_uav"
 
@@ -54,16 +54,18 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
     bases = [base.position for base in request.bases if zone_at(base.position, scene) is None]
     found = reach(
         ground.network(), scene.whole_graph, scene.graph, scene.zones, scene.leg_zones, flights, bases, scene.access,
-        conditions=request.conditions, flight_rules=scene.flight,
+        conditions=request.conditions, flight_rules=scene.flight, no_landing=_no_landing(scene, flights),
     )  # fmt: skip
     chosen = np.ones(len(found.asset), dtype=bool) if box is None else _in_box(found, box)
-    code, reasons = _reasons(found, chosen, scene.graph, has_flights=bool(flights))
+    may_charge = _may_charge(request, starting)
+    code, reasons = _reasons(found, chosen, scene.zones.names, has_flights=bool(flights), may_charge=may_charge)
     return {
         "reachable": int((code == 0).sum()),
         "of": len(code),
         "flights": [{"uav": start.uav, "base": start.base} for start in starting],
         "grounded": grounded,
         "reasons": reasons,
+        "not_counted": ["charging"] if may_charge else [],
         "assets": {
             "ids": found.asset[chosen].tolist(),
             "code": code.tolist(),
@@ -103,6 +105,22 @@ def _class_of(uav: UavRequest, request: PlanRequest) -> FlightClass | None:
     return FlightClass(uav.performance, uav.cruise_speed_mps)
 
 
+def _no_landing(scene: Scene, flights: Sequence[Flight]) -> np.ndarray | None:
+    """Nodes of the graph over zones that end below the flight there; None where no flight lands at its target."""
+    if not any(one.lands_there for one in flights):
+        return None
+    low = scene.zones.where(np.isfinite(scene.zones.ceiling_agl_m))  # nothing is flown where the others are
+    return low.contains(scene.graph.position, scene.access.zone_clearance_m, *column_m(0.0, scene))
+
+
+def _may_charge(request: PlanRequest, starting: Sequence[_Start]) -> bool:
+    """Whether a flight may charge at towers on its way; with a charger that gives more than the UAV takes while it stands."""
+    uavs = [request.uavs[start.uav] for start in starting]
+    return request.charging_w is not None and any(
+        uav.sorties == 1 and uav.performance.battery_wh is not None and request.charging_w > uav.performance.avionics_w for uav in uavs
+    )
+
+
 def _in_box(found: Reach, box: Box) -> np.ndarray:
     west, south, east, north = box
     in_lat = (found.box[:, 1] <= north) & (found.box[:, 3] >= south)
@@ -111,7 +129,9 @@ def _in_box(found: Reach, box: Box) -> np.ndarray:
     return in_lat & (found.box[:, 0] <= east) & (found.box[:, 2] >= west)
 
 
-def _reasons(found: Reach, chosen: np.ndarray, graph: InspectionGraph, *, has_flights: bool) -> tuple[np.ndarray, list[dict[str, Any]]]:
+def _reasons(
+    found: Reach, chosen: np.ndarray, zone_names: Sequence[str], *, has_flights: bool, may_charge: bool
+) -> tuple[np.ndarray, list[dict[str, Any]]]:
     """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
     verdict, zone = found.verdict[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
     missing = found.missing_m[chosen] + found.missing_wh[chosen]  # of the one or the other
@@ -126,13 +146,13 @@ def _reasons(found: Reach, chosen: np.ndarray, graph: InspectionGraph, *, has_fl
         if why is Verdict.CUT_OFF and not has_flights:
             reasons.append({"code": NO_UAV, "message": _("No UAV can take off."), "count": assets})
         else:
-            message = _message(why, one // kinds - 1, missing[number == place], graph)
+            message = _message(why, one // kinds - 1, missing[number == place], zone_names, may_charge=may_charge)
             reasons.append({"code": CODES[why], "message": message, "count": assets})
         code_of[place] = len(reasons)
     return code_of[number], reasons
 
 
-def _message(why: Verdict, zone: int, missing: np.ndarray, graph: InspectionGraph) -> str:
+def _message(why: Verdict, zone: int, missing: np.ndarray, zone_names: Sequence[str], *, may_charge: bool) -> str:
     flight, access = settings.FLIGHT_RULES, settings.ROUTING_RULES
     if why is Verdict.PARTLY:
         return _("Some spans of the line or railway can be inspected, others cannot.")
@@ -140,7 +160,10 @@ def _message(why: Verdict, zone: int, missing: np.ndarray, graph: InspectionGrap
         words = _("The range of every UAV is too short: by %(least)s at the nearest, by %(most)s at the farthest.")
         return words % {"least": _km(float(missing.min())), "most": _km(float(missing.max()))}
     if why is Verdict.BEYOND_ENERGY:
-        words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
+        if may_charge:
+            words = _("One battery gives %(least)s to %(most)s Wh too little: whether charging on the way suffices, a plan tells.")
+        else:
+            words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
         return words % {"least": f"{np.ceil(missing.min()):,.0f}", "most": f"{np.ceil(missing.max()):,.0f}"}
     if why is Verdict.WIND:
         return _("The wind is too strong on every way to it, or back.")
@@ -150,9 +173,11 @@ def _message(why: Verdict, zone: int, missing: np.ndarray, graph: InspectionGrap
     if why is Verdict.ABOVE_HEIGHT_LIMIT:
         words = _("Too tall: it cannot be flown over with a clearance of %(clearance)s m below %(limit)s m.")
         return words % {"clearance": f"{flight.clearance_m:.0f}", "limit": f"{flight.max_agl_m:.0f}"}
+    if why is Verdict.NO_LANDING:
+        return _("Landing there leads through a no-fly zone.")
     if zone >= 0:
-        return _("Inside %(zone)s.") % {"zone": graph.zone_name[zone]}
-    return _("A no-fly zone lies on it.")
+        return _("Inside %(zone)s.") % {"zone": zone_names[zone]}
+    return _("A no-fly zone, or wires that cannot be flown over, lie on it.")
 
 
 def _km(length_m: float) -> str:

@@ -24,7 +24,8 @@ from missions.services.requests import UavRequest
 class Scene:
     """What every step of one plan looks at. `graph` is the part of `whole_graph` that can be flown over.
 
-    `zones` are all that are kept clear of, `leg_zones` those of them that reach the heights between targets.
+    `zones` are all that are kept clear of, `leg_zones` those of them that reach the heights between targets; both with what is too tall
+    to be flown over.
     """
 
     whole_graph: InspectionGraph
@@ -35,6 +36,7 @@ class Scene:
     access: AccessRules
     flight: FlightRules
     edition: Edition  # of the ground, when the plan was begun
+    is_by_length: bool = False  # whether the shortest ways are the best on it, near infrastructure or not
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,11 @@ def refused_place(place: Place, scene: Scene) -> LeftOut | None:
     """Why a place can be on no route at all, or None. Zones count at the heights between its inspection and the flight to it."""
     height_m = place_height_m(place, scene)
     agl_m = inspection_agl_m(height_m, scene.flight)
+    if is_above_limit(height_m, scene.flight):
+        needed_m = height_m + scene.flight.clearance_m
+        limit_m = scene.flight.max_agl_m
+        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
+        return LeftOut(place.target, "above_height_limit", message)
     if place.is_stretch:
         zone = _zone_along(place.course, agl_m, scene)
         if zone is not None:
@@ -62,18 +69,13 @@ def refused_place(place: Place, scene: Scene) -> LeftOut | None:
         zone = zone_at(place.course[0], scene, agl_m)
         if zone is not None:
             return LeftOut(place.target, "inside_zone", f"It stands inside {zone}.")
-    if is_above_limit(height_m, scene.flight):
-        needed_m = height_m + scene.flight.clearance_m
-        limit_m = scene.flight.max_agl_m
-        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
-        return LeftOut(place.target, "above_height_limit", message)
     return None
 
 
 def place_height_m(place: Place, scene: Scene) -> float:
     """The asset's height; over a stretch of a line not less than its tallest support."""
     if place.is_stretch and place.asset is not None:
-        return max(place.height_m, tallest_support_m(scene.whole_graph, place.asset, place.course))
+        return max(place.height_m, tallest_support_m(scene.network, place.asset, place.course))
     return place.height_m
 
 
@@ -109,7 +111,7 @@ def zone_at(position: LonLat, scene: Scene, agl_m: float = 0.0) -> str | None:
     """
     if not len(scene.zones):
         return None
-    low_m, high_m = _column_m(agl_m, scene)
+    low_m, high_m = column_m(agl_m, scene)
     if not scene.zones.contains([position], scene.access.zone_clearance_m, low_m, high_m)[0]:
         return None
     found = scene.zones.zone_at(position, low_m, high_m)
@@ -118,7 +120,7 @@ def zone_at(position: LonLat, scene: Scene, agl_m: float = 0.0) -> str | None:
 
 def _zone_along(course: tuple[LonLat, ...], agl_m: float, scene: Scene) -> str | None:
     line = np.array(course)
-    low_m, high_m = _column_m(agl_m, scene)
+    low_m, high_m = column_m(agl_m, scene)
     met = np.flatnonzero(scene.zones.meets(line[:-1], line[1:], scene.access.zone_clearance_m, low_m, high_m))
     if not len(met):
         return None
@@ -129,7 +131,7 @@ def _zone_along(course: tuple[LonLat, ...], agl_m: float, scene: Scene) -> str |
     return f"the {scene.access.zone_clearance_m:g} m around a no-fly zone"
 
 
-def _column_m(agl_m: float, scene: Scene) -> tuple[float, float]:
+def column_m(agl_m: float, scene: Scene) -> tuple[float, float]:
     """From this height to that of the flight to it, with all that a height may stray and that is kept from a zone's limits."""
     give_m = scene.flight.terrain_tolerance_m + settings.ZONE_RULES.height_margin_m
     return min(agl_m, scene.flight.transit_agl_m) - give_m, max(agl_m, scene.flight.transit_agl_m) + give_m

@@ -3,6 +3,9 @@
 import numpy as np
 from django.conf import settings
 
+from inspection.graph.by_length import by_length
+from inspection.graph.walls import too_tall_walls, with_walls
+from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import PlanningGround, planning_read
 from inspection.zones.reach import BoolArray
 from missions.flight_plan.flyable_graph import flyable_graph
@@ -12,21 +15,30 @@ from missions.services.requests import PlanRequest
 from missions.services.zone_choice import zone_choice
 
 
-def scene_on(ground: PlanningGround, chosen: BoolArray | None) -> Scene:
-    """With all zones of the ground, or with those where the mask (z,) is true. Raises NoGraph."""
+def scene_on(ground: PlanningGround, chosen: BoolArray | None, more_walls: ZoneIndex | None = None, *, is_by_length: bool = False) -> Scene:
+    """With all zones of the ground, or with those where the mask (z,) is true. Raises NoGraph.
+
+    What cannot be flown over is kept clear of like a zone; more_walls is what has shown itself to be so. With
+    is_by_length the shortest ways are the best, near infrastructure or not.
+    """
     linking, routing, flight = settings.GRAPH_RULES, settings.ROUTING_RULES, settings.FLIGHT_RULES
     access = AccessRules(
         access_leg_m=routing.access_leg_m,
         direct_leg_m=routing.direct_leg_m,
         on_asset_m=linking.railway_spacing_m,
-        off_network_factor=linking.off_network_factor,
+        off_network_factor=1.0 if is_by_length else linking.off_network_factor,
         zone_clearance_m=linking.zone_clearance_m,
     )
-    zones = ground.zones(chosen)
-    graph = ground.graph(zones)
+    network, zones = ground.network(), ground.zones(chosen)
+    walls = too_tall_walls(network, settings.FLOWN_HEIGHTS)
+    graph = ground.graph(zones if more_walls is None else with_walls(zones, more_walls))
+    graph = by_length(graph) if is_by_length else graph
+    walls = walls if more_walls is None else with_walls(walls, more_walls)
     in_transit = ground.table.reaching(flight.transit_agl_m - flight.terrain_tolerance_m, flight.max_agl_m + flight.terrain_tolerance_m)
-    leg_zones = ground.zones(in_transit if chosen is None else chosen & in_transit)
-    return Scene(graph, ground.network(), flyable_graph(graph, flight), zones, leg_zones, access, flight, ground.edition)
+    leg_zones = with_walls(ground.zones(in_transit if chosen is None else chosen & in_transit), walls)
+    return Scene(
+        graph, network, flyable_graph(graph, flight), with_walls(zones, walls), leg_zones, access, flight, ground.edition, is_by_length
+    )
 
 
 def current_scene(request: PlanRequest | None = None) -> Scene:

@@ -1,6 +1,6 @@
 """Why a target is left out after the routes are found: the solver's reason, and the wish, the distance or the zones behind it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +26,10 @@ def unreached_places(
     ways: Ways,
     scene: Scene,
     no_landing: Mapping[int, str],
+    kept_from: Mapping[int, Collection[int]],
 ) -> list[LeftOut]:
-    """The solver's reasons in full; ways and visits as it had them. no_landing: zones in which UAVs would land at places, by number."""
+    """The solver's reasons in full; ways and visits as it had them. no_landing: zones in which UAVs would land at places, by number;
+    kept_from: of UAVs the targets for which they cannot charge in time."""
     visits_of = asked.problem.visits_of_target()
     crew: _Crew | None = None
     in_runs = {target for lock in asked.problem.locks if len(lock.targets) > 1 for target in lock.targets}
@@ -37,6 +39,11 @@ def unreached_places(
         if item.target in no_landing and item.reason is Reason.NO_PATH:
             message = f"To land there is to fly through {no_landing[item.target]}."
             found.append(LeftOut(place.target, "inside_zone", message))
+            continue
+        not_charged = [request.uavs[uav].name for uav, targets in kept_from.items() if place.target in targets]
+        if not_charged and item.reason is Reason.NOT_ALLOWED:
+            message = f"However {' or '.join(not_charged)} charges on the way, the battery does not last for it."
+            found.append(LeftOut(place.target, Reason.BEYOND_ENERGY.value, message))
             continue
         if item.target in asked.held_back:
             found.append(LeftOut(place.target, Reason.NOT_ALLOWED.value, asked.held_back[item.target]))

@@ -6,6 +6,7 @@ from django.db import Error, connections
 
 from inspection.graph.rehearsal import rehearse as rehearse_ways
 from inspection.graph.route_index import asset_places, node_tree, route_index
+from inspection.graph.spans import spans_of
 from inspection.selectors import NoGraph
 from missions.flight_plan.rehearsal import rehearse as rehearse_drawing
 from missions.routing.rehearsal import rehearse as rehearse_solvers
@@ -31,3 +32,4 @@ def warm_up() -> None:
     for part in (route_index, node_tree, asset_places):
         part(scene.graph)
     asset_places(scene.whole_graph)
+    spans_of(scene.network)

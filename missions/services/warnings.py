@@ -1,4 +1,4 @@
-"""What a plan says of UAVs that cannot start, or of which too little is known."""
+"""What a plan says of UAVs that cannot start, or of which too little is known, and of ways that are not the preferred ones."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,9 +6,13 @@ from typing import Any
 from missions.services.refusals import Grounding
 from missions.services.requests import PlanRequest
 
+SHORTEST_WAYS = "The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach."
 
-def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding]) -> list[dict[str, Any]]:
-    found = [{"code": why.code, "uav": number, "message": why.message} for number, why in grounded.items()]
+
+def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_by_length: bool) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = [{"code": why.code, "uav": number, "message": why.message} for number, why in grounded.items()]
+    if is_by_length:
+        found.append({"code": "shortest_ways", "uav": None, "message": SHORTEST_WAYS})
     if request.conditions.is_calm:
         return found
     unknown = "%s states no top airspeed: it is taken to keep its speed over ground in any wind."

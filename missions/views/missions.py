@@ -161,7 +161,7 @@ class MissionDetail(_PlansWhenAsked):
     @extend_schema(
         operation_id="change_mission",
         summary="Change a mission",
-        description="New targets, UAVs or options drop the plan; `plan: true` makes a new one.",
+        description="New targets, UAVs or options drop the plan; `plan: true` makes a new one. `lost_link` is checked on it.",
         parameters=[IF_MATCH],
         request=inputs.MissionPatchSerializer,
         responses={200: shapes.MissionSerializer, **PLANNED_LATER, **CHANGED},

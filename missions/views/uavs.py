@@ -48,9 +48,10 @@ def _answer(user: User, uav_id: int, *, status: int = 200) -> Response:
     return Response(uav_feature(uav), status=status, headers=headers)
 
 
-def _values(request: Request, *, partial: bool) -> dict[str, Any]:
+def _values(request: Request, uav: Uav | None = None) -> dict[str, Any]:
+    """Of a new one, or what is to be changed of one that is stored."""
     context = {"organisation": request.user.organisation}
-    serializer = UavFlatSerializer(data=flat_uav(request.data), partial=partial, context=context)
+    serializer = UavFlatSerializer(uav, data=flat_uav(request.data), partial=uav is not None, context=context)
     serializer.is_valid(raise_exception=True)
     return dict(serializer.validated_data)
 
@@ -107,7 +108,7 @@ class UavList(APIView):
     @extend_schema(operation_id="create_uav", summary="Register a UAV", request=INPUT, responses={201: UavFeatureSerializer, **TAKEN})
     @idempotent
     def post(self, request: Request) -> Response:
-        values = _values(request, partial=False)
+        values = _values(request)
         position = values.pop("position", None)
         with fleet_problems():
             uav = services.create_uav(organisation=request.user.organisation, actor=request.user, position=position, values=values)
@@ -129,7 +130,7 @@ class UavDetail(APIView):
     )
     def patch(self, request: Request, uav_id: int) -> Response:
         uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
-        values = _values(request, partial=True)
+        values = _values(request, uav)
         position = values.pop("position", None)
         with fleet_problems(lambda: _feature_now(request.user, uav_id)):
             services.change_uav(uav=uav, actor=request.user, position=position, values=values, expected_revision=revision)

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks
+from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
@@ -73,7 +73,12 @@ def place_on_map(page: Page, position: list[float]) -> dict[str, float]:
 def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor: Visitor, picture: Picture) -> None:
     page = fleet(visitor.signs_in("opal"))
     tab(page, "Types")
-    adds(page, "New type", {"Name": "Harrier", "Range": "55", "Speed": "16", "Sensors": "RGB camera, Lidar"})
+    page.get_by_role("button", name="New type", exact=True).first.click()
+    expect(page.get_by_label("Rotor area")).to_have_attribute("placeholder", "0.2059")  # an Iris's
+    page.get_by_role("button", name="Cancel", exact=True).click()
+    power = {"Battery": "400", "Mass": "6", "Rotor area": "0.6", "Power in a hover": "750"}
+    adds(page, "New type", {"Name": "Harrier", "Range": "55", "Speed": "16", "Sensors": "RGB camera, Lidar"} | power)
+    expect(details(page).get_by_text("0.600\u00a0m²")).to_be_visible()
     tab(page, "Bases")
     adds(page, "New base", {"Name": "East yard", "Latitude": f"{YARD[1]}", "Longitude": f"{YARD[0]}", "Note": "Gate code at the office"})
     tab(page, "UAVs")
@@ -82,14 +87,41 @@ def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor
     page.get_by_label("Type", exact=True).last.select_option("Harrier")
     page.get_by_label("Base", exact=True).last.select_option("East yard")
     expect(page.get_by_text("Empty: 55.0 km and 16 m/s, as its type.")).to_be_visible()
+    for field, of_type in (("Own battery", "400"), ("Own mass", "6"), ("Own reserve", "20"), ("Own highest airspeed", "")):
+        expect(page.get_by_label(field)).to_have_attribute("placeholder", of_type)
+    page.get_by_label("Own battery").fill("480")
+    page.get_by_label("Own reserve").fill("120")
     page.get_by_role("button", name="Save", exact=True).click()
-    for words in ("55.0 km, as its type", "16 m/s, as its type", "RGB camera, Lidar", "No mission uses it yet."):
+    expect(page.get_by_label("Own reserve")).to_be_focused()
+    expect(page.get_by_label("Own reserve")).to_have_accessible_description(re.compile("At most 90."))
+    page.get_by_label("Own reserve").fill("30")
+    page.get_by_role("button", name="Save", exact=True).click()
+    figures = ("480\u00a0Wh", "6\u00a0kg, as its type", "30\u00a0%")
+    for words in ("55.0 km, as its type", "16 m/s, as its type", *figures, "RGB camera, Lidar", "No mission uses it yet."):
         expect(details(page).get_by_text(words)).to_be_visible()
     expect(page.get_by_role("row", name="Harrier 1").get_by_text("East yard")).to_be_visible()
     uav = asks(page, "/uavs?text=Harrier 1")["features"][0]
     assert uav["geometry"]["coordinates"] == YARD
-    assert uav["properties"]["from_type"] == ["max_range_m", "cruise_speed_mps"]
+    assert uav["properties"]["from_type"] == ["max_range_m", "cruise_speed_mps", "mass_kg"]
+    assert (uav["properties"]["battery_wh"], uav["properties"]["reserve_percent"]) == (480.0, 30.0)
     picture(page, "uavs-light")
+
+    page.goto("/missions/new")
+    wait_for_map(page)
+    page.get_by_role("button", name="Add a UAV").click()
+    page.keyboard.press("Enter")  # the middle of the map
+    dialog = page.get_by_role("dialog", name="Add a UAV")
+    dialog.get_by_label("Name").fill("Harrier 2")
+    dialog.get_by_label("Type").select_option("Harrier")
+    expect(dialog.get_by_label("Battery", exact=True)).to_have_attribute("placeholder", "400")
+    dialog.get_by_label("Mass at take-off").fill("7.5")
+    assert faults(page) == []
+    dialog.get_by_role("button", name="Add").click()
+    expect(page.get_by_role("checkbox", name="Harrier 2")).to_be_checked()
+    (added,) = asks(page, "/uavs?text=Harrier 2")["features"]
+    assert {name: added["properties"][name] for name in ("battery_wh", "mass_kg", "type_name")} == {
+        "battery_wh": 400.0, "mass_kg": 7.5, "type_name": "Harrier",
+    }  # fmt: skip
 
 
 def test_a_place_is_set_by_clicking_and_dragging_on_the_map(visitor: Visitor) -> None:

@@ -17,7 +17,7 @@ from tests.browser.test_planning import EAST, WEST, sends
 pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
-# Tomorrow: within the two days of the bar of legal times.
+# Within the two days of the bar of legal times.
 DAY = datetime.now(UTC).replace(hour=0, minute=0, second=0, microsecond=0) + timedelta(days=1)
 CLOSE = 13.2
 HAS_PICTURES = os.environ.get("SPANWISE_SCREENSHOTS") == "1"
@@ -66,10 +66,8 @@ def test_a_route_goes_round_a_timed_zone_at_its_times_alone_and_the_page_says_so
     visitor: Visitor, picture: Picture, timed_zone: dict[str, Any]
 ) -> None:
     page = visitor.signs_in("opal")
-    awake, asleep = (
-        planned(page, name, departs_at=(DAY + timedelta(hours=hour)).isoformat())
-        for name, hour in (("Round it", 15), ("While it sleeps", 20))
-    )
+    hours = {"Round it": 15, "While it sleeps": 20}
+    awake, asleep = (planned(page, name, departs_at=(DAY + timedelta(hours=hour)).isoformat()) for name, hour in hours.items())
     lengths_m = [mission["plan"]["total_length_m"] for mission in (awake, asleep)]
     assert lengths_m[0] > lengths_m[1]
     opens(page, awake)

@@ -341,8 +341,10 @@ def test_a_snapshot_of_an_earlier_layout_is_no_graph_until_it_is_made_anew(line,
         selectors.graph_of_version(snapshot.version)
     with pytest.raises(selectors.NoGraph):
         graph_of_plans()
+    assert not selectors.ground_summary().graph_is_current
     tasks.refresh_graph()
     assert selectors.current_graph().node_count == graph_of_plans().node_count == 3
+    assert selectors.ground_summary().graph_is_current
 
 
 def test_of_threads_that_want_the_same_graph_one_makes_it():

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import { BOUNDS, boundsIn, usualOf } from "../../static/js/uav_figures.js";
 import { bodies, BLANK } from "../../static/js/fleet/forms.js";
 import { KINDS } from "../../static/js/fleet/kinds.js";
 import { ageText, flat, fromType, rangeText } from "../../static/js/fleet/words.js";
@@ -47,4 +48,16 @@ test("figures say where they come from and what is not known", () => {
 
 test("each kind counts itself in words", () => {
   assert.deepEqual(Object.values(KINDS).map((kind) => [kind.count(1), kind.count(2)]), [["1 UAV", "2 UAVs"], ["1 type", "2 types"], ["1 base", "2 bases"]]);
+});
+
+test("what a UAV has no figure of its own for is its type's, else an Iris's, else not known", () => {
+  assert.deepEqual(usualOf({ battery_wh: 400, mass_kg: null, reserve_percent: 25, max_airspeed_mps: 14 }), { battery_wh: 400, mass_kg: 1.545, reserve_percent: 25, max_airspeed_mps: 14 });
+  assert.deepEqual(usualOf(null), { battery_wh: null, mass_kg: 1.545, reserve_percent: 20, max_airspeed_mps: null });
+});
+
+test("bounds in miles per hour lie within those in metres a second", () => {
+  const { min, max } = boundsIn("max_airspeed_mps", 0.44704);
+  assert.ok(min * 0.44704 >= BOUNDS.max_airspeed_mps.min && max * 0.44704 <= BOUNDS.max_airspeed_mps.max);
+  assert.deepEqual([min, max], [2.3, 223.6]);
+  assert.deepEqual(boundsIn("mass_kg", 1), BOUNDS.mass_kg);
 });

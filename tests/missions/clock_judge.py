@@ -1,169 +1,198 @@
-"""Judges times, energy and separation of finished plans by arithmetic of its own, from the figures that the request states.
+"""Judges times and energy of finished plans by arithmetic of its own, leg by leg, flight by flight, from the figures of the request.
 
-Rotors are one disk of momentum theory with Glauert's inflow, as the planner says that it counts them; the equations are solved here by
-SciPy, leg by leg. Routes are kept apart if no two samples of them, a second apart, are near in space and time.
+Between two flights a UAV stands on the ground with its turnaround, and gets a full battery; at a stop to charge it comes down to the tower,
+charges, and rises again.
 """
 
 import math
 from collections.abc import Iterator
-from functools import lru_cache
-from itertools import combinations, pairwise
+from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
-import numpy as np
-from scipy.optimize import brentq
-from scipy.spatial import cKDTree
-
-from missions.flight_plan.performance import Performance
+from inspection.models import Asset
 from missions.services import PlanRequest
+from tests.missions.air import CLIMB_MPS, density, speeds_mps, watts, wind_mps
 from tests.missions.plane import apart_m, east_north
 
-CLIMB_MPS = 2.5
 CLOCK_SHARE, CLOCK_S = 0.005, 2.0  # what times may differ by: another Earth, rounding to tenths
 ENERGY_SHARE, ENERGY_WH = 0.01, 0.05
-LATERAL_M, VERTICAL_M, TIME_S = 28.0, 13.5, 57.0  # of 30 m, 15 m and 60 s, less what lies between samples
+TURNAROUND_S = 600.0
+UNTAGGED_TOWER_M = 45.0
+
+
+@dataclass
+class Clock:
+    """What a route takes as the judge counts it. `left_wh` tells of all moments at which the battery may be lowest, `full_wh` fullest."""
+
+    arrival_s: list[float] = field(default_factory=list)
+    used_wh: list[float] = field(default_factory=list)
+    charged_wh: list[float] = field(default_factory=list)  # by each waypoint, in this flight
+    flights_wh: list[float] = field(default_factory=list)
+    left_wh: list[float] = field(default_factory=list)
+    full_wh: list[float] = field(default_factory=list)
+    total_s: float = 0.0
+    hover_w: float = 0.0  # at the end
 
 
 def wrong_clocks(request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
-    """Times or watt-hours that are not the route's, and batteries that do not last."""
+    """Times or watt-hours that are not the route's, batteries that do not last, flights and stops to charge that are none."""
     for uav, route in zip(request.uavs, plan["routes"], strict=True):
         if not route["waypoints"]:
             continue
-        seconds, watt_hours = _flown(request, uav, route)
+        yield from (f"{uav.name} {fault}" for fault in (*_wrong_flights(uav, route), *_wrong_stops(request, uav, route)))
+        clock = clock_of(request, uav, route)
         told = [arrival_s - route["departs_s"] for arrival_s in route["arrival_s"]] + [route["duration_s"]]
-        if any(abs(own - other) > CLOCK_SHARE * own + CLOCK_S for own, other in zip(seconds, told, strict=True)):
-            yield f"{uav.name} takes {seconds[-1]:.0f} s, not {told[-1]:.0f} s"
-        usable_wh = uav.performance.usable_wh
-        if usable_wh is None:
+        own = [*clock.arrival_s, clock.total_s]
+        if len(told) != len(own) or any(abs(mine - other) > CLOCK_SHARE * mine + CLOCK_S for mine, other in zip(own, told, strict=True)):
+            yield f"{uav.name} takes {own[-1]:.0f} s, not {told[-1]:.0f} s"
+        yield from (f"{uav.name} {fault}" for fault in _wrong_energy(uav, route, clock))
+
+
+def _wrong_energy(uav: Any, route: dict[str, Any], clock: Clock) -> Iterator[str]:
+    battery_wh, usable_wh = uav.performance.battery_wh, uav.performance.usable_wh
+    if battery_wh is None:
+        return
+    watt_hours = sum(clock.flights_wh)
+    if abs(watt_hours - route["energy_wh"]) > ENERGY_SHARE * watt_hours + ENERGY_WH:
+        yield f"takes {watt_hours:.2f} Wh, not {route['energy_wh']:.2f} Wh"
+    if any(abs(own - told) > ENERGY_SHARE * own + ENERGY_WH for own, told in zip(clock.used_wh, route["used_wh"], strict=True)):
+        yield "has not used what is told at a waypoint"
+    reserve_wh = battery_wh - usable_wh
+    give_wh = ENERGY_SHARE * max(clock.flights_wh) + ENERGY_WH
+    if min(clock.left_wh) < reserve_wh - give_wh:
+        yield f"has {min(clock.left_wh):.2f} Wh left, below its reserve of {reserve_wh:.2f} Wh"
+    if max(clock.full_wh) > battery_wh + give_wh:
+        yield f"has {max(clock.full_wh):.2f} Wh in a battery of {battery_wh:.2f} Wh"
+    percents = [*route["battery_left_percent"], route["battery_percent"]]
+    if min(percents) < uav.performance.reserve_percent - 0.06 or max(percents) > 100.0:
+        yield f"is said to have {min(percents)} to {max(percents)} % left"
+    for used_wh, charged_wh, percent in zip(route["used_wh"], clock.charged_wh, route["battery_left_percent"], strict=True):
+        if abs(100.0 - 100.0 * (used_wh - charged_wh) / battery_wh - percent) > 0.06 + (1.0 + 0.6 * len(route["charging"])) / battery_wh:
+            yield f"is said to have {percent} % left after {used_wh} Wh"
+            return
+
+
+def _wrong_flights(uav: Any, route: dict[str, Any]) -> Iterator[str]:
+    """Flights that do not begin and end at home, on the ground, for the turnaround."""
+    points = route["waypoints"]
+    stops = [place for place, point in enumerate(points) if point["kind"] == "base"]
+    if len(stops) + 1 > uav.sorties:
+        yield f"makes {len(stops) + 1} flights of {uav.sorties}"
+    for stop in stops:
+        if any(apart_m(points[place]["position"], uav.position) > 1.0 for place in (stop - 1, stop, stop + 1)):
+            yield "lands between its flights elsewhere than at home"
+        if points[stop]["altitude_agl_m"] != 0.0 or abs((points[stop]["task"] or {}).get("hold_s", 0.0) - TURNAROUND_S) > 0.1:
+            yield "does not stand on the ground for its turnaround"
+        if route["arrival_s"][stop + 1] - route["arrival_s"][stop] < TURNAROUND_S:
+            yield f"takes off {route['arrival_s'][stop + 1] - route['arrival_s'][stop]:.0f} s after it has landed"
+
+
+def _wrong_stops(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Iterator[str]:
+    """Stops that are not at towers, or do not give what they say in the time that they take."""
+    if route["charging"] and request.charging_w is None:
+        yield "charges, though that is not wished"
+        return
+    for stop in route["charging"]:
+        point = route["waypoints"][stop["waypoint"]]
+        tower = Asset.objects.filter(pk=point["asset"], kind="tower").first()
+        if tower is None or apart_m(point["position"], tower.centre.coords) > 3.0:
+            yield f"charges where no tower is, at waypoint {stop['waypoint']}"
             continue
-        if abs(watt_hours - route["energy_wh"]) > ENERGY_SHARE * watt_hours + ENERGY_WH:
-            yield f"{uav.name} takes {watt_hours:.2f} Wh, not {route['energy_wh']:.2f} Wh"
-        if watt_hours > usable_wh * (1 + ENERGY_SHARE) + ENERGY_WH or route["energy_wh"] > usable_wh + 0.006:
-            yield f"{uav.name} takes {watt_hours:.2f} Wh of {usable_wh:.2f} Wh"
+        given_wh = stop["charging_s"] * (request.charging_w - uav.performance.avionics_w) / 3_600.0
+        if abs(given_wh - stop["charged_wh"]) > 0.01 * given_wh + 0.02:
+            yield f"gets {given_wh:.2f} Wh at a tower, not {stop['charged_wh']:.2f} Wh"
+        way_s = 2.0 * (point["altitude_agl_m"] - tower_top_m(point)) / CLIMB_MPS
+        if abs(stop["charging_s"] + way_s - stop["stopped_s"]) > 0.3:
+            yield f"stops for {stop['stopped_s']:.0f} s at a tower, not {stop['charging_s'] + way_s:.0f} s"
 
 
-def _flown(request: PlanRequest, uav: Any, route: dict[str, Any]) -> tuple[list[float], float]:
+def tower_top_m(point: dict[str, Any]) -> float:
+    """How high above ground a UAV stands that charges under this waypoint."""
+    height_m = Asset.objects.filter(pk=point["asset"]).values_list("height_m", flat=True).first()
+    return float(min(UNTAGGED_TOWER_M if height_m is None else height_m, point["altitude_agl_m"]))
+
+
+def clock_of(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Clock:
     """Seconds after take-off at each waypoint and in all, and watt-hours: each leg level first, then straight up or down."""
     points = route["waypoints"]
-    lands = route["end_action"] != "hover"
-    first, last = points[0], points[-1]
+    stops = [place for place, point in enumerate(points) if point["kind"] == "base"]
+    charging = {stop["waypoint"]: stop for stop in route["charging"]}
+    clock = Clock()
+    for number, (begin, end) in enumerate(zip([0, *(stop + 1 for stop in stops)], [*stops, len(points)], strict=True)):
+        _fly(request, uav, points, range(begin, end), charging, clock, lands=number < len(stops) or route["end_action"] != "hover")
+        if number < len(stops):
+            clock.arrival_s.append(clock.total_s)
+            clock.used_wh.append(clock.flights_wh[-1])
+            clock.charged_wh.append(0.0)
+            clock.total_s += TURNAROUND_S
+    return clock
+
+
+def _fly(
+    request: PlanRequest, uav: Any, points: list[dict[str, Any]], places: range, charging: dict[int, Any], clock: Clock, *, lands: bool
+) -> None:
+    """One flight, on a full battery."""
+    performance = uav.performance
+    battery_wh = performance.battery_wh or math.inf
+    first, last = points[places[0]], points[places[-1]]
     steps = [(0.0, (0.0, 0.0), first["altitude_agl_m"] / 2, first["altitude_agl_m"], first)]
-    for before, after in pairwise(points):
+    for before, after in pairwise([points[place] for place in places]):
         way = east_north(before["position"], after["position"])
         middle_m = (before["altitude_agl_m"] + after["altitude_agl_m"]) / 2
         rise_m = after["altitude_relative_m"] - before["altitude_relative_m"]
         steps.append((apart_m(before["position"], after["position"]), way, middle_m, rise_m, after))
     if lands:
         steps.append((0.0, (0.0, 0.0), last["altitude_agl_m"] / 2, -last["altitude_agl_m"], last))
-    now_s = joules = 0.0
-    moments = []
+    now_s, joules, charged_wh = clock.total_s, 0.0, 0.0
+
+    def spend(seconds: float, air_mps: float, climb_mps: float, air_density: float) -> None:
+        nonlocal now_s, joules
+        now_s += seconds
+        joules += seconds * watts(performance, air_mps, climb_mps, air_density)
+
     for number, (length_m, way, middle_m, rise_m, point) in enumerate(steps):
-        wind = _wind(request, middle_m)
-        density = _density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
+        wind = wind_mps(request, middle_m)
+        air = density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
         if length_m > 0.01:
-            ground_mps, air_mps = _speeds(uav, way, wind)
-            now_s += length_m / ground_mps
-            joules += length_m / ground_mps * _watts(uav.performance, air_mps, 0.0, density)
-        climb_s = abs(rise_m) / CLIMB_MPS
-        now_s += climb_s
-        joules += climb_s * _watts(uav.performance, math.hypot(*wind), CLIMB_MPS if rise_m > 0 else 0.0, density)
-        if number < len(points):
-            moments.append(now_s)
-            hold_s = (point["task"] or {}).get("hold_s", 0.0)
-            now_s += hold_s
-            joules += hold_s * _watts(uav.performance, math.hypot(*_wind(request, point["altitude_agl_m"])), 0.0, density)
-    return [*moments, now_s], joules / 3_600.0
+            flown = speeds_mps(uav, way, wind)
+            ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
+            spend(length_m / ground_mps, air_mps, 0.0, air)
+        spend(abs(rise_m) / CLIMB_MPS, math.hypot(*wind), CLIMB_MPS if rise_m > 0 else 0.0, air)
+        clock.left_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
+        if number < len(places):
+            clock.arrival_s.append(now_s)
+            clock.used_wh.append(joules / 3_600.0)
+            clock.charged_wh.append(charged_wh)
+            stop = charging.get(places[number])
+            if stop is not None:
+                agl_m, top_m = point["altitude_agl_m"], tower_top_m(point)
+                column = math.hypot(*wind_mps(request, (agl_m + top_m) / 2))
+                spend((agl_m - top_m) / CLIMB_MPS, column, 0.0, air)
+                clock.left_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
+                now_s += stop["charging_s"]
+                charged_wh += stop["charged_wh"]
+                clock.full_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
+                spend((agl_m - top_m) / CLIMB_MPS, column, CLIMB_MPS, air)
+            spend((point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"])), 0.0, air)
+    clock.left_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
+    clock.full_wh.append(battery_wh)
+    clock.flights_wh.append(joules / 3_600.0)
+    clock.total_s = now_s
+    clock.hover_w = watts(
+        performance,
+        math.hypot(*wind_mps(request, last["altitude_agl_m"])),
+        0.0,
+        density(last["altitude_amsl_m"] or 0.0, request.conditions.temperature_c),
+    )
 
 
-def _wind(request: PlanRequest, agl_m: float) -> tuple[float, float]:
-    """To east and north, interpolated between the layers."""
-    layers = request.conditions.wind
-    if not layers:
-        return 0.0, 0.0
-    heights = [layer.agl_m for layer in layers]
-    turned = [math.radians(layer.from_deg + 180.0) for layer in layers]
-    east = [layer.speed_mps * math.sin(angle) for layer, angle in zip(layers, turned, strict=True)]
-    north = [layer.speed_mps * math.cos(angle) for layer, angle in zip(layers, turned, strict=True)]
-    return float(np.interp(agl_m, heights, east)), float(np.interp(agl_m, heights, north))
-
-
-def _density(amsl_m: float, temperature_c: float) -> float:
-    """ISO 2533's pressure, and the temperature on the ground."""
-    return 101_325.0 * (1.0 - 0.0065 * amsl_m / 288.15) ** 5.25588 / (287.05287 * (temperature_c + 273.15))
-
-
-def _speeds(uav: Any, way: tuple[float, float], wind: tuple[float, float]) -> tuple[float, float]:
-    """Over ground and through the air: the wanted speed over ground, or what the airspeed's limit leaves of it."""
-    length = math.hypot(*way)
-    along = (way[0] * wind[0] + way[1] * wind[1]) / length
-    across = (way[0] * wind[1] - way[1] * wind[0]) / length
-    wanted, limit = uav.cruise_speed_mps, uav.performance.max_airspeed_mps
-    air_mps = math.hypot(wanted - along, across)
-    if limit is None or air_mps <= limit:
-        return wanted, air_mps
-    spare = math.sqrt(limit**2 - across**2)
-    return (along + spare if wanted > along else along - spare), limit
-
-
-def _watts(performance: Performance, air_mps: float, climb_mps: float, density: float) -> float:
-    """To the nearest 0.1 m/s and 0.01 kg/m3."""
-    return 0.0 if performance.battery_wh is None else _power_w(performance, round(air_mps, 1), climb_mps, round(density, 2))
-
-
-@lru_cache(maxsize=50_000)
-def _power_w(performance: Performance, air_mps: float, climb_mps: float, density: float) -> float:
-    weight_n, drag_n_per_mps = performance.mass_kg * 9.80665, 0.5 * density * performance.drag_area_m2 * math.hypot(air_mps, climb_mps)
-
-    def flow(tilt: float) -> tuple[float, float, float]:
-        along_axis = air_mps * math.sin(tilt) + climb_mps * math.cos(tilt)
-        in_plane = air_mps * math.cos(tilt) - climb_mps * math.sin(tilt)
-        return along_axis, in_plane, weight_n * math.cos(tilt) + 2.0 * drag_n_per_mps * along_axis
-
-    def pull(tilt: float) -> float:
-        _axis, in_plane, thrust_n = flow(tilt)
-        return weight_n * math.sin(tilt) - (performance.rotor_drag * thrust_n + drag_n_per_mps) * in_plane
-
-    along_axis, in_plane, thrust_n = flow(brentq(pull, -1.5, 1.5))
-    hover_mps = math.sqrt(thrust_n / (2.0 * density * performance.rotor_disk_m2))
-    inflow_mps = brentq(lambda speed: speed * math.hypot(in_plane, along_axis + speed) - hover_mps**2, 0.0, hover_mps * 1.0001)
-    efficiency = performance.hover_efficiency
-    share = min(1.0, 1.15 * efficiency / 0.85)
-    return performance.avionics_w + thrust_n * ((hover_mps * (1 - share) + inflow_mps * share) / efficiency + along_axis / 0.85)
-
-
-def too_near(plan: dict[str, Any]) -> Iterator[str]:
-    """UAVs that pass the same place at nearly the same time, though the plan says that all are kept apart."""
-    if plan["separation"]["unresolved"]:
-        return
-    routes = [route for route in plan["routes"] if route["waypoints"]]
-    for one, other in combinations(routes, 2):
-        until_s = max(route["departs_s"] + route["duration_s"] for route in (one, other)) + TIME_S
-        (first, first_s), (second, second_s) = (_samples(route, one["waypoints"][0]["position"], until_s) for route in (one, other))
-        near = cKDTree(first[:, :2]).sparse_distance_matrix(cKDTree(second[:, :2]), LATERAL_M, output_type="coo_matrix")
-        heights_m = np.abs(first[near.row, 2] - second[near.col, 2])
-        apart_s = np.abs(first_s[near.row] - second_s[near.col])
-        bad = (heights_m < VERTICAL_M) & (apart_s < TIME_S)
-        if bad.any():
-            place = int(np.flatnonzero(bad)[apart_s[bad].argmin()])
-            yield f"{one['uav']} and {other['uav']} pass one place {apart_s[place]:.0f} s apart at {first_s[near.row[place]]:.0f} s"
-
-
-def _samples(route: dict[str, Any], origin: Any, until_s: float) -> tuple[Any, Any]:
-    """East, north, height [m] each second in the air, and the seconds; a UAV that hovers at its end stays. Unknown ground is flat."""
-    points = route["waypoints"]
-    is_known = all(point["altitude_amsl_m"] is not None for point in points)
-    heights = [point["altitude_amsl_m"] if is_known else 0.0 for point in points]
-    grounds = [heights[end] - points[end]["altitude_agl_m"] if is_known else 0.0 for end in (0, -1)]
-    places = [east_north(origin, point["position"]) for point in points]
-    leaves = [arrival_s + (point["task"] or {}).get("hold_s", 0.0) for arrival_s, point in zip(route["arrival_s"], points, strict=True)]
-    ends_s = route["departs_s"] + route["duration_s"]
-    knots = [(route["departs_s"], *places[0], grounds[0])]
-    for place, height, arrival_s, leaves_s in zip(places, heights, route["arrival_s"], leaves, strict=True):
-        knots += [(arrival_s, *place, height), (leaves_s, *place, height)]
-    lands = route["end_action"] != "hover"
-    knots.append((ends_s, *places[-1], grounds[1] if lands else heights[-1]))
-    if not lands:
-        knots.append((max(until_s, ends_s), *places[-1], heights[-1]))
-    table = np.array(knots)
-    moments = np.arange(table[0, 0], table[-1, 0] + 1.0)
-    return np.column_stack([np.interp(moments, table[:, 0], table[:, column]) for column in (1, 2, 3)]), moments
+def stays_s(request: PlanRequest, uav: Any, route: dict[str, Any]) -> float:
+    """How long after its take-off a UAV is in the air: who hovers at the end does so as long as the battery lasts, at most 4 h in all."""
+    if route["end_action"] != "hover":
+        return float(route["duration_s"])
+    longest_s = 4 * 3_600.0
+    if uav.performance.battery_wh is not None:
+        clock = clock_of(request, uav, route)
+        longest_s = min(longest_s, clock.total_s + 3_600.0 * max(clock.left_wh[-1], 0.0) / clock.hover_w)
+    return float(max(route["duration_s"], longest_s))

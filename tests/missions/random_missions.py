@@ -73,7 +73,7 @@ class Region:
         )
         targets = tuple(self._target(draw, near, nearby) for _ in range(draw.randint(1, 4)))
         bases = tuple(BaseRequest(f"Base {number}", _moved(draw, draw.choice(near), 0.02)) for number in range(2))
-        return PlanRequest(uavs, targets, draw.choice([Objective.TOTAL, Objective.MAKESPAN]), draw.random() < 0.3, bases=bases)
+        return PlanRequest(uavs, targets, draw.choice(list(Objective)), draw.random() < 0.3, bases=bases)
 
     def _target(self, draw: random.Random, near: list[tuple[float, float]], nearby: list[tuple[int, str]]) -> TargetRequest:
         if not nearby or draw.random() < 0.15:

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
 
+from inspection.geodesy import LonLat
 from inspection.services import import_terrain
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
 from missions.models import EndAction
 from missions.routing.problem import Objective
-from missions.services import make_plan
+from missions.services import TargetRequest, make_plan
 from missions.services.requests import UavRequest
 from tests.missions.worlds import request, uav, world
 
@@ -147,6 +148,22 @@ def test_a_uav_that_charges_at_towers_flies_farther_than_its_battery() -> None:
     assert route["waypoints"][stop["waypoint"]]["asset"] in {tower.pk for tower in here.towers}
     assert route["duration_s"] > whole["routes"][0]["duration_s"] + stop["charging_s"]
     assert min(route["battery_left_percent"]) >= 19.9
+
+
+def test_what_cannot_be_charged_for_is_left_out_and_nothing_else() -> None:
+    """Six places far from every tower, and all the towers, for which one battery does not last."""
+    here = world()
+    home = {"end_action": EndAction.RETURN}
+    there = [TargetRequest(None, LonLat(10.001 + 0.001 * number, 55.975)) for number in range(6)]
+    far = make_plan(request=request(there[0], uavs=(iris(**home),)))["total_energy_wh"]
+    towers = make_plan(request=request(*here.towers, uavs=(iris(**home),)))["total_energy_wh"]
+    small = iris(battery_wh=0.7 * min(far, towers) / 0.8, **home)
+    plan = make_plan(request=request(*there, *here.towers, uavs=(small,), charging_w=300.0))
+    assert reasons(plan) == dict.fromkeys(range(6), "beyond_energy")
+    assert "However Tern charges" in plan["unassigned"][0]["message"]
+    assert sorted(plan["routes"][0]["targets"]) == [6, 7, 8, 9, 10, 11]
+    assert plan["routes"][0]["charging"]
+    assert plan["gap"] is None
 
 
 def test_without_towers_on_the_way_charging_helps_nobody() -> None:

@@ -7,8 +7,9 @@ from django.test import Client
 
 from inspection.models import NoFlyZone
 from missions.models import Waypoint
+from tests.inspection import ground
 from tests.missions.api import mission_body, post
-from tests.missions.worlds import World, world, zone_around
+from tests.missions.worlds import World, power_line, rebuild, world, zone_around
 from tests.workspace.people import client_of, somebody
 
 pytestmark = pytest.mark.django_db
@@ -82,6 +83,28 @@ def test_a_leg_into_a_zone_is_refused_and_nothing_is_kept(here: World, client: C
     faults = error_of(put(client, mission, wished), 400)["details"]
     assert any(place.startswith("legs.") and "Hospital" in str(fault) for place, fault in faults.items())
     assert Waypoint.objects.filter(is_by_hand=True).count() == 0
+
+
+@pytest.mark.parametrize(("height_m", "words"), [(90.0, "fly at 105 m above ground"), (110.0, "cannot be flown over below 120 m")])
+def test_a_leg_over_wires_is_refused_below_their_height(here: World, client: Client, height_m: float, words: str) -> None:
+    """Wires between two towers 190 m to the left and right of the leg."""
+    power_line([ground.tower((lon, 55.9942), height_m=height_m) for lon in (9.999, 10.005)])
+    rebuild()
+    mission = planned(here, client)
+    wished = as_wished(mission)
+    wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
+    faults = error_of(put(client, mission, wished), 400)["details"]
+    assert set(faults) == {"legs.0", "legs.1"}
+    assert words in str(faults["legs.0"])
+
+
+def test_a_route_that_rises_over_wires_can_be_kept_as_it_is(here: World, client: Client) -> None:
+    power_line([ground.tower((lon, 55.997), height_m=90.0) for lon in (9.995, 10.02)])
+    rebuild()
+    mission = planned(here, client)
+    assert max(waypoint["altitude_agl_m"] for waypoint in mission["plan"]["routes"][0]["waypoints"]) == 105.0
+    changed = put(client, mission, as_wished(mission)).json()
+    assert changed["plan"]["routes"][0]["waypoints"] == mission["plan"]["routes"][0]["waypoints"]
 
 
 @pytest.mark.parametrize("altitude_m", [20.0, 130.0])

@@ -53,12 +53,58 @@ def test_a_uav_has_range_speed_and_sensors_of_its_type_until_it_has_its_own(clie
     uav = uav_of(client, type=kestrel["id"], sensor="Gas sniffer")
     facts = uav["properties"]
     assert (facts["max_range_m"], facts["cruise_speed_mps"]) == (60_000.0, 14.0)
-    assert facts["from_type"] == ["max_range_m", "cruise_speed_mps"]
+    assert facts["from_type"] == ["max_range_m", "cruise_speed_mps", "reserve_percent"]
     assert facts["sensors"] == ["Gas sniffer", "RGB camera", "Lidar"]
     facts = patch(client, f"uavs/{uav['id']}", {"max_range_m": 40_000}, **ANY).json()["properties"]
-    assert (facts["max_range_m"], facts["from_type"]) == (40_000.0, ["cruise_speed_mps"])
+    assert (facts["max_range_m"], facts["from_type"]) == (40_000.0, ["cruise_speed_mps", "reserve_percent"])
     patch(client, f"uav-types/{kestrel['id']}", {"cruise_speed_mps": 20}, **ANY)
     assert client.get(f"/api/v1/uavs/{uav['id']}").json()["properties"]["cruise_speed_mps"] == 20.0
+
+
+def test_a_uav_has_battery_mass_reserve_and_airspeed_of_its_type_until_it_has_its_own(client: Client) -> None:
+    iris = made(client, "uav-types", KESTREL | {"name": "Iris", "battery_wh": 56.6, "mass_kg": 1.545, "max_airspeed_mps": 11})
+    uav = uav_of(client, type=iris["id"], battery_wh=70, reserve_percent=30)
+    facts = uav["properties"]
+    assert (facts["battery_wh"], facts["reserve_percent"], facts["mass_kg"], facts["max_airspeed_mps"]) == (70.0, 30.0, 1.545, 11.0)
+    assert facts["from_type"] == ["max_range_m", "cruise_speed_mps", "mass_kg", "max_airspeed_mps"]
+    (flown,) = made(client, "missions", mission_body() | {"uavs": [{"id": uav["id"]}]})["uavs"]
+    assert {name: flown[name] for name in ("battery_wh", "reserve_percent", "mass_kg")} == {
+        "battery_wh": 70.0,
+        "reserve_percent": 30.0,
+        "mass_kg": 1.545,
+    }
+    facts = patch(client, f"uavs/{uav['id']}", {"battery_wh": None, "mass_kg": 2}, **ANY).json()["properties"]
+    assert (facts["battery_wh"], facts["mass_kg"]) == (56.6, 2.0)
+
+
+def test_a_uav_that_is_heavier_than_its_type_hovers_as_well_with_more_power(client: Client) -> None:
+    """A hover was measured with 1.545 kg: of four times that, 8 times what lifts, and the same 8 W for the avionics."""
+    iris = made(client, "uav-types", KESTREL | {"name": "Iris", "battery_wh": 56.6, "mass_kg": 1.545, "hover_power_w": 158.0})
+    uav = uav_of(client, type=iris["id"], mass_kg=6.18)
+    (flown,) = made(client, "missions", mission_body() | {"uavs": [{"id": uav["id"]}]})["uavs"]
+    assert flown["hover_power_w"] == pytest.approx(8.0 + 8.0 * 150.0)
+
+
+def test_a_hover_that_no_rotors_manage_is_told_with_its_bounds(client: Client) -> None:
+    """15.15 N on 0.206 m2 in air of 1.225 kg/m3 take 83.04 W at best: with 8 W beside, 95.4 W at 95 % and 838.4 W at 10 %."""
+    answer = post(client, "uav-types", KESTREL | {"hover_power_w": 50})
+    assert answer.json()["error"]["details"] == {"hover_power_w": ["From 96 to 838 W for this mass and these rotors."]}
+
+
+def test_a_uav_without_a_type_has_a_battery_of_its_own(client: Client) -> None:
+    uav = uav_of(client, battery_wh=56.6)
+    (flown,) = made(client, "missions", mission_body() | {"uavs": [{"id": uav["id"]}]})["uavs"]
+    assert (flown["battery_wh"], flown["reserve_percent"]) == (56.6, 20.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"), [("battery_wh", 0), ("mass_kg", -1), ("mass_kg", 5_000), ("reserve_percent", 93), ("max_airspeed_mps", 0.2)]
+)
+def test_figures_that_no_uav_has_are_told_at_their_field(client: Client, field: str, value: float) -> None:
+    uav = uav_of(client)
+    answer = patch(client, f"uavs/{uav['id']}", {field: value}, **ANY)
+    assert answer.status_code == 400
+    assert list(answer.json()["error"]["details"]) == [field]
 
 
 def test_a_mission_flies_a_stored_uav_with_the_values_of_its_type(client: Client) -> None:
@@ -185,7 +231,7 @@ def test_what_is_in_use_is_not_deleted(client: Client) -> None:
 
 def test_what_was_deleted_comes_back_as_it_was(client: Client) -> None:
     kestrel, depot = made(client, "uav-types", KESTREL)["id"], made(client, "bases", DEPOT)["id"]
-    uav = uav_of(client, type=kestrel, mavlink_system_id=9, serial_number="SN-7")["id"]
+    uav = uav_of(client, type=kestrel, mavlink_system_id=9, serial_number="SN-7", battery_wh=70, mass_kg=2)["id"]
     for address in (f"uavs/{uav}", f"uav-types/{kestrel}", f"bases/{depot}"):
         before = client.get(f"/api/v1/{address}").json()
         assert client.delete(f"/api/v1/{address}", headers=ANY).status_code == 204

@@ -5,9 +5,14 @@ from typing import Any
 import pytest
 from django.test import Client
 
-from tests.missions.api import TERN, mission_body, plan_body, post
+from inspection.models import NoFlyZone
+from missions.models import Mission
+from missions.services import make_plan, request_of_mission, request_to_json
+from missions.services.mission_plans import PLANNING_TASK
+from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import World, world, zone_around
 from tests.workspace.people import client_of, somebody
+from workspace.models import Job, JobState
 
 pytestmark = pytest.mark.django_db
 IRIS = TERN | {"position": [10.0, 55.9999], "cruise_speed_mps": 8.0, "battery_wh": 56.6, "max_airspeed_mps": 11.0}
@@ -52,3 +57,67 @@ def test_the_wish_is_stored_with_the_mission_and_checked_with_its_plan(here: Wor
     assert mission["plan"]["lost_link"] == wish | {"failed": []}
     again = post(client, f"missions/{mission['id']}/plan").json()
     assert again["plan"]["lost_link"] == mission["plan"]["lost_link"]
+
+
+def planned(client: Client, here: World, **extra: Any) -> dict[str, Any]:
+    mission: dict[str, Any] = post(client, "missions", mission_body(here.towers[5], uavs=[IRIS], **extra) | {"plan": True}).json()
+    return mission
+
+
+def test_another_wish_leaves_the_routes_and_is_checked_on_them_as_a_new_plan_would(here: World, client: Client) -> None:
+    zone_around((10.010, 55.9998), 0.0012, name="Fire brigade")
+    wish = {"behaviour": "return", "rally_points": [], "hold_s": 0.0}
+    mission = planned(client, here)
+    assert mission["plan"]["lost_link"]["failed"] == []  # it goes on
+    changed = patch(client, f"missions/{mission['id']}", {"lost_link": wish}).json()
+    assert changed["revision"] == mission["revision"] + 1
+    assert changed["plan"]["routes"] == mission["plan"]["routes"]
+    check = changed["plan"]["lost_link"]
+    assert check["behaviour"] == "return"
+    assert {one["zone"] for one in check["failed"]} == {"Fire brigade"}
+    assert {one["zone_id"] for one in check["failed"]} == {NoFlyZone.objects.get(name="Fire brigade").pk}
+    assert post(client, f"missions/{mission['id']}/plan").json()["plan"]["lost_link"] == check
+    history = client.get(f"/api/v1/missions/{mission['id']}/history").json()["results"]
+    assert [entry["action"] for entry in history] == ["plan", "change", "plan", "create"]
+
+
+def test_a_small_battery_is_missed_by_the_same_wh_on_stored_routes(here: World, client: Client) -> None:
+    wish = {"behaviour": "hold", "hold_s": 1200.0}
+    mission = planned(client, here)
+    failed = patch(client, f"missions/{mission['id']}", {"lost_link": wish}).json()["plan"]["lost_link"]["failed"]
+    assert {one["trouble"] for one in failed} == {"battery"}
+    fresh = post(client, f"missions/{mission['id']}/plan").json()["plan"]["lost_link"]["failed"]
+    assert [one["missing_wh"] for one in failed] == pytest.approx([one["missing_wh"] for one in fresh], abs=0.02)
+
+
+def test_a_draft_keeps_the_wish_without_a_check(here: World, client: Client) -> None:
+    mission = post(client, "missions", mission_body(here.towers[5], uavs=[IRIS])).json()
+    changed = patch(client, f"missions/{mission['id']}", {"lost_link": {"behaviour": "return"}}).json()
+    assert (changed["lost_link"]["behaviour"], changed["plan"], changed["state"]) == ("return", None, "draft")
+
+
+def test_a_route_changed_by_hand_is_checked_anew(here: World, client: Client) -> None:
+    """A waypoint more before those that fail: their places move up by one."""
+    zone_around((10.010, 55.9998), 0.0012, name="Fire brigade")
+    mission = planned(client, here, lost_link={"behaviour": "return"})
+    route, failed = mission["plan"]["routes"][0], mission["plan"]["lost_link"]["failed"]
+    points = [{"position": at["position"], "altitude_agl_m": at["altitude_agl_m"], "was": was} for was, at in enumerate(route["waypoints"])]
+    first, second = points[0]["position"], points[1]["position"]
+    between = {"position": [(a + b) / 2 for a, b in zip(first, second, strict=True)], "altitude_agl_m": 60.0, "was": None}
+    address = f"/api/v1/missions/{mission['id']}/routes/0/waypoints"
+    answer = client.put(address, {"waypoints": [points[0], between, *points[1:]]}, content_type="application/json")
+    assert answer.status_code == 200, answer.content
+    now = answer.json()["plan"]["lost_link"]["failed"]
+    assert {one["waypoint"] for one in now} == {one["waypoint"] + 1 for one in failed}
+
+
+def test_the_plan_of_a_job_is_taken_though_the_wish_came_after_it(here: World, client: Client) -> None:
+    request = request_of_mission(mission=Mission.objects.get(pk=planned(client, here)["id"]))
+    job = Job.objects.create(
+        task=PLANNING_TASK, state=JobState.DONE, parameters={"request": request_to_json(request)}, result=make_plan(request=request)
+    )
+    wish = {"behaviour": "hold", "hold_s": 1200.0}
+    draft = post(client, "missions", mission_body(here.towers[5], uavs=[IRIS], lost_link=wish)).json()
+    taken = patch(client, f"missions/{draft['id']}", {"plan": True, "plan_of": str(job.pk)}).json()
+    assert taken["plan"]["lost_link"]["behaviour"] == "hold"
+    assert {one["trouble"] for one in taken["plan"]["lost_link"]["failed"]} == {"battery"}

@@ -9,7 +9,7 @@ from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import conflicts
 from missions.flight_selectors import flights_at_the_same_time
 from missions.models import EndAction, Mission, MissionState, Waypoint
-from missions.services import create_mission, plan_mission
+from missions.services import create_mission, duplicate_mission, plan_mission
 from tests.missions import worlds
 from tests.workspace.people import somebody
 from workspace.models import Organisation, Role
@@ -115,3 +115,17 @@ def test_a_mission_without_a_departure_is_named_and_never_taken_as_away():
     mission = approved(worlds.world(), departs_at=DEPARTURE)
     Mission.objects.filter(pk=mission.pk).update(departs_at=None)
     assert flights_at_the_same_time(mission.organisation_id, FROM_S, FROM_S + 10.0).untimed == ((str(mission.pk), "Tern"),)
+
+
+def test_a_copy_of_an_approved_mission_is_told_that_it_flies_through_it():
+    mission = approved(worlds.world())
+    assert mission.separation["unresolved"] == []
+    [found] = duplicate_mission(mission=mission, author=mission.author).separation["unresolved"]
+    assert (found["code"], found["metres"], set(found["missions"])) == ("too_near", 0.0, {None, str(mission.pk)})
+
+
+def test_a_copy_keeps_the_times_and_layers_that_keep_its_own_routes_apart():
+    ground = worlds.world()
+    mission = approved(ground, state=MissionState.PLANNED)
+    copy = duplicate_mission(mission=mission, author=mission.author)
+    assert copy.separation == mission.separation

@@ -400,3 +400,16 @@ def test_the_plan_names_the_graph_and_the_ground_that_it_was_made_on() -> None:
     second = make_plan(request=request(here.towers[0]))
     assert second["graph_version"] > first["graph_version"]
     assert second["ground_revision"] == first["ground_revision"] + 1
+
+
+def test_what_is_out_of_range_along_the_line_is_flown_straight_and_the_plan_says_so() -> None:
+    """1.3 km straight; 1.5 km by the preferred way, most of it along the line."""
+    here = world()
+    far = here.towers[-1]
+    along = make_plan(request=request(far, uavs=(uav(max_range_m=2_500.0),)))
+    straight = make_plan(request=request(far, uavs=(uav(max_range_m=1_400.0),)))
+    assert along["total_length_m"] > 1_400.0 > straight["total_length_m"]
+    assert (along["unassigned"], along["warnings"], straight["unassigned"]) == ([], [], [])
+    assert [(warning["code"], warning["uav"]) for warning in straight["warnings"]] == [("shortest_ways", None)]
+    [left_out] = make_plan(request=request(far, uavs=(uav(max_range_m=1_200.0),)))["unassigned"]
+    assert left_out["reason"] == "beyond_range"

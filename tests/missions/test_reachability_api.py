@@ -6,6 +6,8 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.test import Client
 
+from inspection.models import NoFlyZone
+from inspection.services import mark_ground_changed
 from missions.models import Base, Uav, UavState
 from tests.missions.api import TERN, post
 from tests.missions.worlds import UAV_AT, World, island, world, zone_around
@@ -81,6 +83,28 @@ def test_a_small_battery_tells_what_is_missing_and_a_storm_that_it_is_one(here: 
     assert missing_wh[here.towers[0].pk] == 0 < missing_wh[here.towers[5].pk]
     storm = {"wind": [{"altitude_agl_m": 60.0, "speed_mps": 20.0, "from_deg": 270.0}], "temperature_c": 15.0}
     assert set(codes(asked(client, uavs=[small], conditions=storm)).values()) == {"wind"}
+
+
+def test_with_charging_on_the_way_it_is_said_that_this_is_not_counted(here: World, client: Client) -> None:
+    small = TERN | {"battery_wh": 8.0}
+    assert asked(client, uavs=[small])["not_counted"] == []
+    said = asked(client, uavs=[small], charging_w=400.0)
+    assert said["not_counted"] == ["charging"]
+    assert any("a plan tells" in reason["message"] for reason in said["reasons"])
+    assert codes(said)[here.towers[5].pk] == "beyond_energy"
+
+
+def test_who_lands_at_the_target_reaches_nothing_over_a_low_zone(here: World, client: Client) -> None:
+    zone = zone_around((10.008, 56.0), name="Yard", with_graph=False)
+    NoFlyZone.objects.filter(pk=zone.pk).update(upper_limit_m=10.0, upper_reference="AGL")
+    mark_ground_changed()
+    for end_action, code in (("hover", "reachable"), ("land", "inside_zone"), ("return", "reachable")):
+        said = asked(client, uavs=[TERN | {"end_action": end_action}])
+        assert codes(said)[here.towers[2].pk] == code
+        assert codes(said)[here.towers[3].pk] == "reachable"
+    assert "Landing there leads through a no-fly zone." in [
+        reason["message"] for reason in asked(client, uavs=[TERN | {"end_action": "land"}])["reasons"]
+    ]
 
 
 def test_inside_a_zone_names_it(here: World, client: Client) -> None:

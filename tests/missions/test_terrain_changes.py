@@ -90,6 +90,6 @@ def test_heights_are_worked_out_again_where_the_terrain_changes_meanwhile(here: 
 
     with mock.patch.object(planning, "ground_heights_m", changing):
         plan = make_plan(request=request(here.towers[5]))
-    assert len(looked) == 2
+    assert len(looked) > 1
     assert TerrainTile.objects.exists()
     assert {round(point["altitude_amsl_m"] - point["altitude_agl_m"]) for route in plan["routes"] for point in route["waypoints"]} == {300}

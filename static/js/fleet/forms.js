@@ -3,6 +3,7 @@
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { coordinateText, lengthText, LONG_UNIT, SPEED_UNIT, speedText } from "../units.js";
+import { BOUNDS, boundsIn, IRIS, USUAL_RESERVE_PERCENT, usualOf } from "../uav_figures.js";
 import { choiceField, numberField, textField } from "./fields.js";
 import { ENDS } from "./words.js";
 
@@ -14,17 +15,19 @@ const words = (text) => text.split(",").map((part) => part.trim()).filter(Boolea
 export const bodies = {
   uavs: (uav) => ({
     name: uav.name, type: uav.type, base: uav.base, position: uav.position, serial_number: uav.serial_number, mavlink_system_id: uav.mavlink_system_id,
-    max_range_m: own(uav, "max_range_m"), cruise_speed_mps: own(uav, "cruise_speed_mps"), battery_percent: uav.battery_percent, sensor: uav.sensor, end_action: uav.end_action,
+    max_range_m: own(uav, "max_range_m"), cruise_speed_mps: own(uav, "cruise_speed_mps"), battery_wh: own(uav, "battery_wh"), mass_kg: own(uav, "mass_kg"),
+    reserve_percent: own(uav, "reserve_percent"), max_airspeed_mps: own(uav, "max_airspeed_mps"), battery_percent: uav.battery_percent, sensor: uav.sensor, end_action: uav.end_action,
   }),
-  types: ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, sensors }) => ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, sensors }),
+  types: ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, rotor_disk_m2, hover_power_w, sensors }) =>
+    ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, rotor_disk_m2, hover_power_w, sensors }),
   bases: ({ name, position, note }) => ({ name, position, note }),
 };
 
-const USUAL_RESERVE_PERCENT = 20;
+const AIRSPEED_BOUNDS = boundsIn("max_airspeed_mps", SPEED_UNIT.mps);
 
 export const BLANK = {
-  uavs: { name: "", type: null, base: null, position: null, serial_number: "", mavlink_system_id: null, max_range_m: null, cruise_speed_mps: null, battery_percent: null, sensor: "", end_action: "hover", from_type: [] },
-  types: { name: "", max_range_m: null, cruise_speed_mps: 12, battery_wh: null, mass_kg: null, reserve_percent: USUAL_RESERVE_PERCENT, max_airspeed_mps: null, sensors: [] },
+  uavs: { name: "", type: null, base: null, position: null, serial_number: "", mavlink_system_id: null, max_range_m: null, cruise_speed_mps: null, battery_wh: null, mass_kg: null, reserve_percent: null, max_airspeed_mps: null, battery_percent: null, sensor: "", end_action: "hover", from_type: [] },
+  types: { name: "", max_range_m: null, cruise_speed_mps: 12, battery_wh: null, mass_kg: null, reserve_percent: USUAL_RESERVE_PERCENT, max_airspeed_mps: null, rotor_disk_m2: null, hover_power_w: null, sensors: [] },
   bases: { name: "", position: null, note: "" },
 };
 
@@ -54,14 +57,36 @@ function uavFields(uav, { types, bases, place, isNew }) {
   const range = numberField("max_range_m", t("Own range"), uav.max_range_m, { factor: LONG_UNIT.metres, unit: LONG_UNIT.unit, min: 0.1 });
   const speed = numberField("cruise_speed_mps", t("Own speed"), uav.cruise_speed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5 });
   const hint = h("p", { class: "caption", role: "status" }, usual(typeOf(uav.type)));
+  const power = [
+    numberField("battery_wh", t("Own battery"), uav.battery_wh, { unit: "Wh", ...BOUNDS.battery_wh }),
+    numberField("mass_kg", t("Own mass"), uav.mass_kg, { unit: "kg", ...BOUNDS.mass_kg }),
+    numberField("reserve_percent", t("Own reserve"), uav.reserve_percent, { unit: "%", digits: 1, ...BOUNDS.reserve_percent }),
+    numberField("max_airspeed_mps", t("Own highest airspeed"), uav.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, ...AIRSPEED_BOUNDS }),
+  ];
+  const powerHint = h("p", { class: "caption", role: "status" });
+  /** What counts in an empty field stands in it in grey. */
+  function showUsual() {
+    const chosen = typeOf(type.read());
+    for (const field of power) field.usual(usualOf(chosen)[field.name]);
+    range.usual(chosen?.max_range_m);
+    speed.usual(chosen?.cruise_speed_mps);
+    const isCounted = Boolean(chosen?.battery_wh) || power[0].read() !== null;
+    const grey = chosen ? t("Empty: as its type, in grey.") : t("Empty: the usual, in grey.");
+    powerHint.textContent = isCounted ? grey : t("{grey} Without a battery no energy is counted.", { grey });
+  }
   const rest = [
-    numberField("battery_percent", t("Battery"), uav.battery_percent, { unit: "%", min: 0, max: 100, digits: 1 }),
+    numberField("battery_percent", t("Charged to"), uav.battery_percent, { unit: "%", min: 0, max: 100, digits: 1 }),
     textField("sensor", t("Sensor besides those of its type"), uav.sensor),
     choiceField("end_action", t("At the end, where a mission does not say “Return to start”"), uav.end_action, ENDS),
     textField("serial_number", t("Serial number"), uav.serial_number),
     numberField("mavlink_system_id", t("MAVLink system id"), uav.mavlink_system_id, { min: 1, max: 254, step: 1, digits: 0 }),
   ];
-  type.input.addEventListener("change", () => (hint.textContent = usual(typeOf(type.read()))));
+  type.input.addEventListener("change", () => {
+    hint.textContent = usual(typeOf(type.read()));
+    showUsual();
+  });
+  power[0].input.addEventListener("input", showUsual);
+  showUsual();
   const toBase = () => {
     const chosen = bases.find((row) => row.id === base.read());
     if (chosen) place.move(chosen.position);
@@ -74,8 +99,8 @@ function uavFields(uav, { types, bases, place, isNew }) {
   });
   showButton();
   return {
-    fields: [name, type, base, range, speed, ...rest],
-    elements: [name.element, pair(type, base), place.element, button, h("div", {}, pair(range, speed), hint), pair(rest[0], rest[4]), rest[1].element, rest[2].element, rest[3].element],
+    fields: [name, type, base, range, speed, ...power, ...rest],
+    elements: [name.element, pair(type, base), place.element, button, h("div", {}, pair(range, speed), hint), h("div", { class: "stack-tight" }, pair(power[0], power[1]), pair(power[2], power[3]), powerHint), pair(rest[0], rest[4]), rest[1].element, rest[2].element, rest[3].element],
   };
 }
 
@@ -83,14 +108,19 @@ function typeFields(type) {
   const name = textField("name", t("Name"), type.name, { required: true });
   const range = numberField("max_range_m", t("Range"), type.max_range_m, { factor: LONG_UNIT.metres, unit: LONG_UNIT.unit, min: 0.1, hint: t("On one battery; empty: not limited.") });
   const speed = numberField("cruise_speed_mps", t("Speed"), type.cruise_speed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, required: true });
-  const battery = numberField("battery_wh", t("Battery"), type.battery_wh, { unit: "Wh", min: 0.1 });
-  const mass = numberField("mass_kg", t("Mass"), type.mass_kg, { unit: "kg", min: 0.01, hint: t("At take-off.") });
-  const reserve = numberField("reserve_percent", t("Kept in reserve"), type.reserve_percent, { unit: "%", min: 0, max: 95, digits: 1, required: true, hint: t("Of the battery; a plan does not use it.") });
-  const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, hint: t("Against the wind; empty: not limited.") });
+  const battery = numberField("battery_wh", t("Battery"), type.battery_wh, { unit: "Wh", ...BOUNDS.battery_wh, hint: t("When full; empty: no energy is counted.") });
+  const mass = numberField("mass_kg", t("Mass"), type.mass_kg, { unit: "kg", ...BOUNDS.mass_kg, usual: IRIS.mass_kg, hint: t("At take-off; empty: that of a PX4 Iris, in grey.") });
+  const reserve = numberField("reserve_percent", t("Kept in reserve"), type.reserve_percent, { unit: "%", ...BOUNDS.reserve_percent, digits: 1, required: true, hint: t("Of the battery; a plan does not use it.") });
+  const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, ...AIRSPEED_BOUNDS, hint: t("Against the wind; empty: not limited.") });
+  const disk = numberField("rotor_disk_m2", t("Rotor area"), type.rotor_disk_m2, { unit: "m²", ...BOUNDS.rotor_disk_m2, digits: 4, usual: IRIS.rotor_disk_m2, hint: t("Circles of all rotors together; empty: those of a PX4 Iris, in grey.") });
+  const hover = numberField("hover_power_w", t("Power in a hover"), type.hover_power_w, { unit: "W", ...BOUNDS.hover_power_w, digits: 1, hint: t("As measured in still air, with this mass; empty: worked out from mass and rotors.") });
   const sensors = textField("sensors", t("Sensors"), type.sensors.join(", "), { maxlength: 600, hint: t("Divided by commas.") });
   const list = sensors.read;
   sensors.read = () => words(list());
-  return { fields: [name, range, speed, battery, mass, reserve, airspeed, sensors], elements: [name.element, pair(range, speed), pair(battery, mass), pair(reserve, airspeed), sensors.element] };
+  return {
+    fields: [name, range, speed, battery, mass, reserve, airspeed, disk, hover, sensors],
+    elements: [name.element, pair(range, speed), pair(battery, mass), pair(reserve, airspeed), pair(disk, hover), sensors.element],
+  };
 }
 
 function baseFields(base, { place }) {

@@ -2,8 +2,8 @@
 
 import { h } from "../dom.js";
 import { t, tn } from "../text.js";
-import { coordinateText, percentText, speedText } from "../units.js";
-import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, stateChip, uavsText, wattHours } from "./words.js";
+import { coordinateText, percentText, powerText, speedText } from "../units.js";
+import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, squareMetres, stateChip, uavsText, wattHours } from "./words.js";
 
 const caption = (words) => words && h("span", { class: "caption" }, words);
 const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
@@ -30,9 +30,13 @@ export const KINDS = {
       term(t("Type"), uav.type_name || t("not stated")),
       term(t("Base"), uav.base_name || t("not stated")),
       term(t("Position"), `${coordinateText(uav.position)} · ${ageText(uav)}`),
-      term(t("Battery"), batteryMark(uav.battery_percent)),
+      term(t("Charged to"), batteryMark(uav.battery_percent)),
       term(t("Range"), fromType(uav, "max_range_m", rangeText(uav.max_range_m))),
       term(t("Speed"), fromType(uav, "cruise_speed_mps", speedText(uav.cruise_speed_mps))),
+      term(t("Battery"), fromType(uav, "battery_wh", uav.battery_wh === null ? t("not stated") : wattHours(uav.battery_wh))),
+      term(t("Mass"), fromType(uav, "mass_kg", uav.mass_kg === null ? t("not stated") : kilograms(uav.mass_kg))),
+      term(t("Kept in reserve"), uav.reserve_percent === null ? null : fromType(uav, "reserve_percent", percentText(uav.reserve_percent))),
+      term(t("Highest airspeed"), fromType(uav, "max_airspeed_mps", uav.max_airspeed_mps === null ? t("not limited") : speedText(uav.max_airspeed_mps))),
       term(t("Sensors"), uav.sensors.join(", ") || t("not stated")),
       term(t("At the end"), endWords(uav.end_action)),
       term(t("Serial number"), uav.serial_number),
@@ -65,6 +69,8 @@ export const KINDS = {
       term(t("Mass"), kilograms(type.mass_kg)),
       term(t("Kept in reserve"), type.reserve_percent === null || type.reserve_percent === undefined ? "—" : percentText(type.reserve_percent)),
       term(t("Highest airspeed"), type.max_airspeed_mps ? speedText(type.max_airspeed_mps) : t("not limited")),
+      term(t("Rotor area"), squareMetres(type.rotor_disk_m2)),
+      term(t("Power in a hover"), type.hover_power_w ? powerText(type.hover_power_w) : t("worked out")),
       term(t("Sensors"), type.sensors.join(", ") || t("not stated")),
       term(t("UAVs"), type.uav_count ? uavsText(type.uav_count) : t("none")),
     ],

@@ -52,8 +52,9 @@ export function batteryMark(percent) {
   return h("span", { class: `battery${percent < LOW_PERCENT ? " low" : ""}` }, h("i", { "aria-hidden": "true" }, bar), percentText(percent));
 }
 
-export const wattHours = (battery_wh) => (battery_wh === null ? "—" : `${numberText(battery_wh)}\u00a0Wh`);
+export const wattHours = (battery_wh) => (battery_wh === null ? "—" : `${numberText(battery_wh, Number.isInteger(battery_wh) ? 0 : 1)}\u00a0Wh`);
 export const kilograms = (mass_kg) => (mass_kg === null ? "—" : `${numberText(mass_kg, Number.isInteger(mass_kg) ? 0 : 1)}\u00a0kg`);
+export const squareMetres = (area_m2) => (area_m2 === null ? t("not stated") : `${numberText(area_m2, 3)}\u00a0m²`);
 export const uavsText = (count) => tn(count, "{count} UAV", "{count} UAVs");
 
 /** A UAV of the API as one object. */

@@ -9,6 +9,7 @@ import { createLocking } from "./locking.js";
 import { settled } from "./locks.js";
 import { createPicking } from "./picking.js";
 import { createPlanning } from "./planning.js";
+import { createRallyPoints } from "./rally_points.js";
 import { showBoth } from "./panels/both.js";
 import { refusalOf } from "./refusals.js";
 import { createRunningJob } from "./running_job.js";
@@ -53,5 +54,5 @@ export function createActions(store, history, page, drafts) {
   let saving = null;
   const conflicts = createConflicts(context, () => saving, showBoth);
   saving = createSaving(context, { waitForJob, makeRoom }, conflicts);
-  return { failed, ...createPicking(context), ...createLocking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context), ...createHandEditing(context, saving) };
+  return { failed, ...createPicking(context), ...createLocking(context), ...planning, ...saving, ...conflicts, ...createFleetActions(context), ...createRallyPoints(context), ...createHandEditing(context, saving) };
 }

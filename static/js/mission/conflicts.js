@@ -63,7 +63,7 @@ export function createConflicts({ store, history, selection, change, problem, fa
     }
     const between = await lastSave(theirs);
     const clashes = before ? merged(before, mineNow(), now).clashes : ["targets"];
-    store.update({ mission: theirs, stored: now, planIsStored: false, savedBasis: picks.basisOf(stored), problem: null, conflict: { ...between, base, before, theirs: now, clashes } });
+    store.update({ mission: theirs, stored: now, planIsStored: false, savedBasis: picks.storedBasisOf(stored), problem: null, conflict: { ...between, base, before, theirs: now, clashes } });
   }
 
   /** Theirs becomes one more step of the history, so that mine is one step back. */

@@ -1,7 +1,7 @@
 /** The unsaved selection, kept in this browser for each user until it is saved. */
 
 import { t } from "../text.js";
-import { basisOf, EMPTY } from "./selection.js";
+import { EMPTY, storedBasisOf } from "./selection.js";
 
 /** What somebody has picked is theirs alone, also where several use one browser. */
 export const keyOf = (user, mission) => `spanwise.draft.${user}.${mission ?? "new"}`;
@@ -45,13 +45,13 @@ export function createDrafts({ user, editor, storage = () => globalThis.localSto
 
 /** Whether a new mission holds something that a reload should bring back, be it only a chosen UAV or an option. */
 export function isStarted({ name, selection }) {
-  return name.trim() !== "" || basisOf(selection) !== basisOf(EMPTY);
+  return name.trim() !== "" || storedBasisOf(selection) !== storedBasisOf(EMPTY);
 }
 
 /** What to do with a draft of a stored mission: "none", "restore" it, or say that it is "behind" what somebody has saved since. */
 export function draftDecision(draft, mission, storedBasis) {
   if (!draft) return "none";
-  const isSame = basisOf(draft.selection) === storedBasis && (draft.name || mission.name) === mission.name;
+  const isSame = storedBasisOf(draft.selection) === storedBasis && (draft.name || mission.name) === mission.name;
   if (isSame) return "none";
   return draft.revision === mission.revision ? "restore" : "behind";
 }

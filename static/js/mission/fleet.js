@@ -5,7 +5,7 @@ import { t, tn } from "../text.js";
 import { lengthText, speedText } from "../units.js";
 
 /** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, range, speed and end. */
-const factsIn = ({ base, base_name, type_name, sensors, battery_percent, state }) => ({ base, base_name, type_name, sensors, battery_percent, state });
+const factsIn = ({ base, base_name, type_name, sensors, battery_percent, state, usual }) => ({ base, base_name, type_name, sensors, battery_percent, state, usual });
 
 /** Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet. */
 export function standingUavs({ selection, fleet }) {

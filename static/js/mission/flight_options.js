@@ -1,10 +1,11 @@
-/** When and in what air a mission is flown, and what its UAVs may charge with. Values in, values out. */
+/** When and in what air a mission is flown, what its UAVs may charge with and what they do without a link. Values in, values out. */
 
 import { t } from "../text.js";
 import { clockText, dayText, heightText, sinceText, speedText, temperatureText } from "../units.js";
+import { lostLinkOf } from "./lost_link.js";
 
-/** Any time, calm, no charging. */
-export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null });
+/** Any time, calm, no charging; without a link UAVs go on. */
+export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null, lost_link: null });
 export const MILD_C = 15; // ISA at sea level, where nobody says otherwise
 export const MOST_LAYERS = 10; // missions/serializers/limits.py
 const COMPASS = [t("north"), t("north-east"), t("east"), t("south-east"), t("south"), t("south-west"), t("west"), t("north-west")];
@@ -23,8 +24,8 @@ export function conditionsOf(conditions) {
 /** The same moment written in one way. */
 export const momentOf = (departs_at) => (departs_at ? new Date(departs_at).toISOString() : null);
 
-/** The three of a stored mission or a draft. */
-export const flightOptionsOf = ({ departs_at, conditions, charging_w }) => ({ departs_at: momentOf(departs_at), conditions: conditionsOf(conditions), charging_w: charging_w ?? null });
+/** The four of a stored mission or a draft. */
+export const flightOptionsOf = ({ departs_at, conditions, charging_w, lost_link }) => ({ departs_at: momentOf(departs_at), conditions: conditionsOf(conditions), charging_w: charging_w ?? null, lost_link: lostLinkOf(lost_link) });
 
 /** What of them is said, as the API takes it. */
 export function flightOptionsAsked(selection) {

@@ -11,10 +11,12 @@ import { createDrafts } from "./draft.js";
 import { standingUavs } from "./fleet.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map_panel.js";
+import { mountEndings } from "./panels/endings.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFlightOptions } from "./panels/flight_options.js";
 import { mountFoot } from "./panels/foot.js";
 import { mountHeader } from "./panels/header.js";
+import { mountLostLink } from "./panels/lost_link.js";
 import { mountOptions } from "./panels/options.js";
 import { mountOptionsRead } from "./panels/options_read.js";
 import { mountProfile } from "./panels/profile.js";
@@ -37,7 +39,7 @@ const store = createStore({
   plan: null, groundRevision: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
-  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], hand: null,
+  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], litReturn: null, hand: null,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -55,7 +57,9 @@ uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre
 if (page.canPlan) {
   mountOptions(store, actions, page.canPlan);
   mountFlightOptions(store, actions);
+  mountEndings(store, actions);
 } else mountOptionsRead(store);
+mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces: (positions) => (layout.showMap(), map.showPlaces(positions)) });
 mountFoot(store, actions);
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });
@@ -140,6 +144,10 @@ function escape() {
 }
 
 function placeInTheMiddle() {
+  if (store.state.tool === "rally") {
+    actions.addRallyPoint(map.centre());
+    return true;
+  }
   if (store.state.tool !== "place") return false;
   uavPanel.askForUav();
   return true;

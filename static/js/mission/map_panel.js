@@ -21,6 +21,8 @@ import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
 import { staysOf } from "./route_times.js";
 import { mountHandMap } from "./hand_map.js";
+import { usesRallyPoints } from "./lost_link.js";
+import { mountLostLinkMap } from "./lost_link_map.js";
 import { mountReachLayer } from "./reach_layer.js";
 import { createMapPicking } from "./map_picking.js";
 import { isWhole, nameOf } from "./selection.js";
@@ -43,9 +45,9 @@ export function mountMap(store, actions, page, { askForUav }) {
     onLook: (sequence) => store.update({ lookedAt: store.state.plan ? sequence : null }),
   });
   const tip = createTip(frame);
-  let [handMap, reachLayer] = [null, null]; // once the map has its style
+  let [handMap, reachLayer, lostLinkMap] = [null, null, null]; // once the map has its style
 
-  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => store.state.tool === "place", measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => (handMap?.recolour(), reachLayer?.recolour()), layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []) });
+  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => ["place", "rally"].includes(store.state.tool), measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => [handMap, reachLayer, lostLinkMap].forEach((drawn) => drawn?.recolour()), layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []) });
 
   // clicks
 
@@ -60,8 +62,10 @@ export function mountMap(store, actions, page, { askForUav }) {
   function click(thing, place, point) {
     picking.close();
     tip(null);
-    if (controls.click(place) || handMap?.isOn()) return;
+    if (controls.click(place)) return;
     const { tool } = store.state;
+    if (tool === "rally") return void actions.addRallyPoint(place);
+    if (handMap?.isOn()) return;
     if (tool === "place") {
       askForUav(place.map((degrees) => Number(degrees.toFixed(6))));
       return;
@@ -188,6 +192,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     });
     store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);
+    lostLinkMap = mountLostLinkMap(map, store, actions, page);
     handMap = mountHandMap(map, store, actions);
     reachLayer = mountReachLayer(map, frame, store);
     store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
@@ -212,7 +217,8 @@ export function mountMap(store, actions, page, { askForUav }) {
   store.listen(["tool", "stretchFrom"], (state) => {
     const isPlacing = state.tool === "place";
     const banner = byId("map-banner");
-    const words = isPlacing ? t("Click where the UAV takes off, or press Enter for the middle of the map.") : picking.words(state);
+    const placing = { place: t("Click where the UAV takes off, or press Enter for the middle of the map."), rally: t("Click where UAVs may land without a link, or press Enter for the middle of the map.") };
+    const words = placing[state.tool] ?? picking.words(state);
     banner.hidden = !words;
     banner.replaceChildren(words ?? "", h("button", { type: "button", class: "text-button", onclick: () => store.update({ tool: "point" }) }, isPlacing ? t("Cancel") : t("Done")));
   });
@@ -222,10 +228,11 @@ export function mountMap(store, actions, page, { askForUav }) {
     map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes }));
   });
 
-  /** Routes and targets; UAVs only as long as nothing says which of them fly. */
+  /** Routes, targets and rally points; UAVs only as long as nothing says which of them fly. */
   function positionsOfMission({ plan, selection }) {
     const flown = routesOf(plan).flatMap((route) => route.geometry?.coordinates ?? []);
-    const places = [...flown, ...selection.targets.map((target) => target.centre).filter(Boolean)];
+    const rally = usesRallyPoints(selection.lost_link) ? selection.lost_link.rally_points : [];
+    const places = [...flown, ...rally, ...selection.targets.map((target) => target.centre).filter(Boolean)];
     return flown.length ? places : [...places, ...selection.uavs.map((uav) => uav.position)];
   }
 
@@ -251,6 +258,10 @@ export function mountMap(store, actions, page, { askForUav }) {
     box: () => map.getBounds().toArray().flat(),
     showPoint: (position) => routesLayer.showPoint(map, position),
     goTo: (place) => goTo(map, place, (box) => view.fit(box)),
+    showPlaces(positions) {
+      if (positions.length > 1) view.fit(boxAround(positions));
+      else goTo(map, { position: positions[0], zoom: Math.max(map.getZoom(), 13) }, (box) => view.fit(box));
+    },
     /** Brings a place into view, near enough to see what stands there. */
     show(target) {
       const shape = isWhole(target) ? shapeOf(target) : null;

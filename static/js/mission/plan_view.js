@@ -5,7 +5,7 @@ import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
-import { basisOf, withoutWishes } from "./selection.js";
+import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
 const REASONS = {
   no_path: t("No way along the network leads there."),
@@ -220,7 +220,6 @@ export function shownPlaces(state) {
 /** Whether leaving the page would lose something. */
 export function isUnsaved(state) {
   if (!state.mission) return state.selection.targets.length > 0 || state.name.trim() !== "";
-  const basis = basisOf(state.selection);
-  const planUnsaved = state.plan !== null && state.plan.basis === basis && !state.planIsStored;
-  return planUnsaved || basis !== state.savedBasis || (state.name.trim() || state.mission.name) !== state.mission.name;
+  const planUnsaved = isPlanCurrent(state) && !state.planIsStored;
+  return planUnsaved || storedBasisOf(state.selection) !== state.savedBasis || (state.name.trim() || state.mission.name) !== state.mission.name;
 }

@@ -10,7 +10,7 @@ export const VERDICTS = ["yes", "partly", "no"];
 /** What decides over it: UAVs, where they end, departure, air. Nothing where no UAV is chosen. */
 export function questionOf(selection) {
   if (!selection.uavs.length) return null;
-  const { targets, locks, objective, ...rest } = requestOf(selection);
+  const { targets, locks, objective, ...rest } = requestOf({ ...selection, lost_link: null });
   return rest;
 }
 

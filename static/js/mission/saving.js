@@ -39,7 +39,7 @@ export function createSaving({ store, history, selection, change, problem, faile
   /** What is said of a plan stays over a save: it stands until something else is picked. */
   const unlessOfSaving = (standing) => (standing?.about && !standing.isOfSaving ? standing : null);
 
-  const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.basisOf(picked), name, plan?.basis ?? null]);
+  const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.storedBasisOf(picked), name, plan?.basis ?? null]);
 
   function shownAs(mission, stored, plan) {
     refused = null; // what was refused may go on top of this revision
@@ -48,7 +48,7 @@ export function createSaving({ store, history, selection, change, problem, faile
       stored: { name: mission.name, selection: stored },
       plan: plan ?? store.state.plan,
       planIsStored: Boolean(plan),
-      savedBasis: picks.basisOf(stored),
+      savedBasis: picks.storedBasisOf(stored),
       figures: plan ? withResult(store.state.figures, plan.basis, plan.result) : store.state.figures,
       problem: unlessOfSaving(store.state.problem),
       conflict: null,
@@ -71,7 +71,7 @@ export function createSaving({ store, history, selection, change, problem, faile
   /** The mission as it has just been stored. The history stays, and what was changed meanwhile stays as well. */
   function keepOpen(mission, asked) {
     const { stored, plan } = storedOf(mission);
-    const isAsAsked = picks.basisOf(stored) === picks.basisOf(asked.selection);
+    const isAsAsked = picks.storedBasisOf(stored) === picks.storedBasisOf(asked.selection);
     if (selection() === asked.selection && !isAsAsked) history.settle(stored);
     if (store.state.name === asked.name && asked.name.trim()) store.update({ name: mission.name });
     shownAs(mission, stored, plan);
@@ -84,13 +84,13 @@ export function createSaving({ store, history, selection, change, problem, faile
   const nameOf = (name) => name.trim() || store.state.mission?.name || t("Mission of {day}, {time}", { day: dayText(new Date()), time: clockText(new Date()) });
 
   function bodyOf(asked, { isNew, asCopy }) {
-    const { mission, plan, planIsStored, stored, savedBasis } = store.state;
+    const { mission, plan, planIsStored, stored } = store.state;
     const basis = picks.basisOf(asked.selection);
     const body = isNew ? picks.requestOf(asked.selection) : changedParts(asked.selection, stored?.selection);
     const name = nameOf(asked.name);
     if (asCopy) body.name = t("{name} (copy)", { name });
     else if (isNew || name !== mission.name) body.name = name;
-    if (plan !== null && plan.basis === basis && (isNew || !planIsStored || basis !== savedBasis)) {
+    if (plan !== null && plan.basis === basis && (isNew || !planIsStored || basis !== picks.basisOf(stored.selection))) {
       body.plan = true;
       if (plan.result.job) body.plan_of = plan.result.job;
     }

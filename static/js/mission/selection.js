@@ -1,6 +1,7 @@
 /** What is to be flown, as plain values: targets, UAVs, options; and its shape on the wire. */
 
 import { t } from "../text.js";
+import { OWN_FIGURES } from "../uav_figures.js";
 import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
 
@@ -112,9 +113,10 @@ export function sensorsKnown(selection, fleet) {
 
 export function uavOf(feature) {
   const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent, heading_deg } = feature.properties;
+  const usual = Object.fromEntries(OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null])); // a mission may say otherwise
   return {
     id: feature.id, name, base: base ?? null, base_name: base_name ?? "", position: feature.geometry.coordinates.slice(0, 2), max_range_m, cruise_speed_mps, end_action,
-    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null, heading_deg: heading_deg ?? null,
+    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null, heading_deg: heading_deg ?? null, usual,
   };
 }
 
@@ -205,8 +207,13 @@ export function requestOf(selection) {
   };
 }
 
-/** Equal selections ask for equal plans. */
+/** Equal selections ask for equal routes: what is done without a link does not change them. */
 export function basisOf(selection) {
+  return storedBasisOf({ ...selection, lost_link: null });
+}
+
+/** Equal selections are stored as the same mission. */
+export function storedBasisOf(selection) {
   return JSON.stringify(requestOf(selection));
 }
 

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.graph.along_ways import leg_of_way, quantities_of_ways, steps_of_graph, sums_along
@@ -68,7 +68,6 @@ def test_steps_are_the_edges_with_their_directions():
     assert steps.east[2 if order == 1 else 1] == pytest.approx(order)
 
 
-@settings(deadline=None)
 @given(plannings(), st.integers(0, 2**32 - 1))
 def test_sums_agree_with_walking_every_way(planning, seed: int):
     graph, outward, inward = planning

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from shapely import LineString, Point
 
@@ -82,7 +82,6 @@ def test_no_railways_give_no_points():
 steps = st.tuples(st.floats(1.0, 120.0), st.floats(-0.6, 0.6))
 
 
-@settings(deadline=None)
 @given(st.lists(steps, min_size=1, max_size=60))
 def test_any_track_is_followed_closely_in_short_legs(turns):
     heading, spot, track = 0.0, (0.0, 0.0), [(0.0, 0.0)]

@@ -172,7 +172,7 @@ def zones_apart(draw: st.DrawFn) -> list[BaseGeometry]:
 
 
 @given(zones_apart(), st.lists(spot, min_size=2, max_size=4, unique=True))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_as_short_as_brute_force_and_clear(drawn, spots):
     """Brute force: all legs between all corners, stood off by 6 m, that shapely finds to be farther than 5.05 m from every zone."""
     zones = index(*drawn)
@@ -212,7 +212,7 @@ def brute_force_m(drawn: list[BaseGeometry], start: Spot, end: Spot) -> float:
 
 
 @given(zones_apart(), st.lists(spot, min_size=2, max_size=2, unique=True), st.data())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_fewer_zones_never_lengthen_a_way_round(drawn, spots, data):
     mask = np.array(data.draw(st.lists(st.booleans(), min_size=len(drawn), max_size=len(drawn))))
     zones = index(*drawn)

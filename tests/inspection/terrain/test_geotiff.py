@@ -192,7 +192,7 @@ def test_a_hostile_file_is_refused_with_little_memory(tmp_path: Path, content: b
     assert [found.name for found in tmp_path.iterdir()] == ["heights.tif"]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_a_file_with_any_bytes_changed_is_read_or_refused_and_nothing_else(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject

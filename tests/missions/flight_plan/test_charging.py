@@ -4,7 +4,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from missions.flight_plan.charging import CannotCharge, ChargerTooWeak, ChargingStop, charging_stops, places_over, with_stops
@@ -98,7 +98,6 @@ def test_a_uav_whose_battery_is_not_known_never_stops() -> None:
     assert stops_of(line(15), list(range(15)), performance=Performance()) == ()
 
 
-@settings(deadline=None)
 @given(st.lists(st.integers(200, 4000), min_size=2, max_size=14), st.data(), st.sampled_from([50.0, 400.0]))
 def test_the_battery_never_falls_below_its_reserve_nor_rises_above_full(steps: list[int], data: st.DataObject, charging_w: float) -> None:
     east_m = np.cumsum([0, *steps]).tolist()

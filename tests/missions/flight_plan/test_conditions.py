@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from missions.flight_plan.conditions import (
@@ -49,7 +49,6 @@ def test_density_is_that_of_the_standard_atmosphere() -> None:
     assert Conditions(temperature_c=8.5).air_density(1000.0) == pytest.approx(1.1117, abs=1e-4)
 
 
-@settings(deadline=None)
 @given(st.floats(-430, 11_000), st.floats(-60, 45))
 def test_density_follows_the_power_law_of_the_troposphere(amsl_m: float, temperature_c: float) -> None:
     pressure_pa = 101_325 * (1 - 0.0065 * amsl_m / 288.15) ** 5.25588
@@ -61,7 +60,6 @@ def test_density_without_a_known_height_is_that_of_sea_level() -> None:
     assert Conditions().air_density(None) == Conditions().air_density(0.0)
 
 
-@settings(deadline=None)
 @given(st.floats(-400, 4000), st.floats(1, 1000), st.floats(-40, 45))
 def test_air_is_thinner_higher_up_and_where_it_is_warmer(amsl_m: float, rise_m: float, temperature_c: float) -> None:
     here = Conditions(temperature_c=temperature_c).air_density(amsl_m)
@@ -69,7 +67,6 @@ def test_air_is_thinner_higher_up_and_where_it_is_warmer(amsl_m: float, rise_m: 
     assert Conditions(temperature_c=temperature_c + 5).air_density(amsl_m) < here
 
 
-@settings(deadline=None)
 @given(
     st.lists(st.floats(0, 500), max_size=10, unique=True),
     st.data(),

@@ -132,6 +132,12 @@ EAST = World(TOWERS, [at(0, 0)], [([at(2000, 0)], 45.0, 10.0)])
 WEST_WIND = Conditions((WindLayer(10, 5, 270),))
 
 
+def test_where_no_base_is_free_there_is_no_way_to_land_at_one() -> None:
+    costs = EAST.costs([IRIS], [BASE], Conditions())
+    assert costs.seconds.end.tolist() == costs.wh.end.tolist() == [[np.inf]]
+    assert np.isfinite(costs.seconds.first).all()
+
+
 def test_in_calm_air_a_route_takes_its_parts() -> None:
     """60 m up at 2.5 m/s, 2 km at 10 m/s, 15 m down, 10 s there, 15 m up, 2 km back and 60 m down."""
     costs = EAST.costs([IRIS], [RETURN], Conditions())
@@ -226,7 +232,7 @@ def worlds(draw: st.DrawFn) -> World:
     return World(graph, others[:2], visits, [others[2]])
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(worlds(), st.sampled_from([RETURN, LAND, HOVER, BASE]), st.floats(0, 8), st.floats(0, 359), st.data())
 def test_the_assignment_counts_what_the_drawn_route_takes(
     world: World, finish: Finish, wind_mps: float, from_deg: float, data: st.DataObject
@@ -282,7 +288,7 @@ def test_all_pairs_have_numbers() -> None:
     assert all(np.isfinite(part).all() for part in chain(vars(costs.seconds).values(), vars(costs.wh).values()))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(worlds(), st.lists(st.tuples(st.floats(0, 16), st.floats(0, 359)), min_size=2, max_size=3), st.data())
 def test_what_is_counted_as_open_can_be_flown_when_drawn(world: World, winds: list[tuple[float, float]], data: st.DataObject) -> None:
     """In wind that changes with height, drawing divides legs, and each part has the wind of its own height."""

@@ -68,7 +68,7 @@ def test_without_a_top_airspeed_nothing_above_the_cruising_speed_is_known_to_be_
         assert (found == {}) is is_fine
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(speed_mps=st.floats(1, 18), wind_mps=st.floats(0, 10), from_deg=st.floats(0, 359), north_m=st.floats(-900, 900))
 def test_what_is_in_range_is_flown_at_that_speed(speed_mps: float, wind_mps: float, from_deg: float, north_m: float) -> None:
     wind = Conditions((WindLayer(10, wind_mps, from_deg),))

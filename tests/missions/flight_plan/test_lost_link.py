@@ -7,6 +7,7 @@ import pytest
 import shapely
 
 from inspection.geodesy import LonLat
+from missions.flight_plan.charging import ChargingStop, with_stops
 from missions.flight_plan.clearance import Margins, ZoneFacts
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.lost_link import (
@@ -20,6 +21,7 @@ from missions.flight_plan.lost_link import (
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
 from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.sorties import joined_sorties, timing_of_route
 from missions.flight_plan.timing import timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
@@ -53,6 +55,28 @@ def box(west_km, east_km, half_km=0.1):
 
 def test_who_goes_on_does_what_was_checked():
     assert failed(route(0, 100), LostLinkPlan(LostLink.GO_ON), performance=Performance(battery_wh=1.0)) == []
+
+
+def test_what_was_charged_on_the_way_is_there_for_the_return():
+    """20 km out take more than the battery gives; with half an hour on a tower at 10 km the way back from there is in it."""
+    waypoints = route(0, 10, 12)
+    asked = {"cruise_speed_mps": 10.0, "conditions": CALM, "rules": RULES}
+    battery_wh = timing(waypoints, lands=True, performance=Performance(battery_wh=1_000.0), **asked).total_wh * 1.4
+    performance = Performance(battery_wh=battery_wh)
+    clock = timing(waypoints, lands=True, performance=performance, **asked)
+    around = {"zones": NOWHERE, "margins": Margins(5.0, 10.0, 300.0, 10.0), "performance": performance, **asked}
+    assert [one.waypoint for one in failed_returns(waypoints, clock, GO_HOME, **around)] == [1, 2]
+    stop = ChargingStop(place=1, charging_s=1800.0, charged_wh=0.7 * battery_wh, stopped_s=1900.0, used_wh=1.0)
+    assert [one.waypoint for one in failed_returns(waypoints, with_stops(clock, [stop], battery_wh), GO_HOME, **around)] == [1]
+
+
+def test_between_two_flights_it_stands_at_its_base_with_a_new_battery():
+    one_flight = route(0, 3, 0)
+    joined = joined_sorties([one_flight, one_flight], turnaround_s=3_600.0)
+    performance = Performance(battery_wh=56.6)
+    asked = {"cruise_speed_mps": 10.0, "performance": performance, "conditions": CALM, "rules": RULES}
+    clock = timing_of_route(joined, lands=True, **asked)
+    assert failed_returns(joined, clock, GO_HOME, **asked, zones=NOWHERE, margins=Margins(5.0, 10.0, 300.0, 10.0)) == []
 
 
 def test_without_a_battery_a_zone_or_a_hill_every_return_is_a_way_home():

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.energy_model import FLIGHTS, MOST_CALM, POWERS_W, Flight, modelled
@@ -38,7 +38,6 @@ def test_flying_slowly_takes_less_than_the_hover_and_flying_fast_more() -> None:
     assert power_w(IRIS, airspeed_mps=6) < power_w(IRIS) < power_w(IRIS, airspeed_mps=12)
 
 
-@settings(deadline=None)
 @given(speeds, st.floats(0.6, 1.3), st.floats(0.5, 10))
 def test_more_mass_takes_more_power(airspeed_mps: float, density: float, mass_kg: float) -> None:
     light, heavy = Performance(mass_kg=mass_kg), Performance(mass_kg=1.1 * mass_kg)
@@ -46,13 +45,11 @@ def test_more_mass_takes_more_power(airspeed_mps: float, density: float, mass_kg
     assert power_w(light, **at) < power_w(heavy, **at)
 
 
-@settings(deadline=None)
 @given(st.floats(0.6, 1.3))
 def test_thin_air_takes_more_power_in_the_hover(density: float) -> None:
     assert power_w(IRIS, air_density=0.9 * density) > power_w(IRIS, air_density=density)
 
 
-@settings(deadline=None)
 @given(st.floats(0, 25), st.floats(0.7, 1.4), st.sampled_from([0.0, 1.0, 2.5, 5.0]))
 def test_the_table_agrees_with_the_formula(airspeed_mps: float, density: float, climb_mps: float) -> None:
     table = power_table(IRIS, climb_mps)
@@ -105,7 +102,6 @@ def test_in_a_wind_in_which_it_cannot_stay_a_uav_goes_nowhere() -> None:
     assert ground_speed_mps(0, 8, 12, (0, 9)) is None
 
 
-@settings(deadline=None)
 @given(courses, st.floats(1, 20), st.floats(1, 20), courses, st.floats(0, 30))
 def test_what_is_flown_needs_no_more_airspeed_than_the_limit(
     course_deg: float, limit_mps: float, wanted_mps: float, to_deg: float, wind_mps: float

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
@@ -61,7 +61,6 @@ def route(targets: list[TargetPoints], ways: list[Way], way_home: Way | None = N
 NODES = st.lists(st.tuples(st.integers(0, 4), st.sampled_from([30.0, 60.0, 75.0])), max_size=4)
 
 
-@settings(deadline=None)
 @given(
     stops=st.lists(
         st.tuples(NODES, st.lists(st.integers(0, 4), min_size=1, max_size=3), st.sampled_from([25.0, 60.0, 90.0])), min_size=1, max_size=3

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, path_length_m
@@ -128,7 +128,6 @@ def duration_s(waypoints: Waypoints, *, length_m: float, cruise_speed_mps: float
     return float(length_m / cruise_speed_mps + vertical_m / RULES.climb_speed_mps + hold_s)
 
 
-@settings(deadline=None)
 @given(stops, st.booleans(), st.floats(1, 20))
 def test_in_calm_air_it_takes_its_level_flight_its_climbs_and_its_holds(some: list[Stop], lands: bool, speed_mps: float) -> None:
     waypoints = route(*some)
@@ -137,7 +136,6 @@ def test_in_calm_air_it_takes_its_level_flight_its_climbs_and_its_holds(some: li
     assert flown(waypoints, speed_mps=speed_mps, lands=lands).total_s == pytest.approx(counted_s, abs=0.01, rel=1e-6)
 
 
-@settings(deadline=None)
 @given(stops, st.floats(0, 9), st.floats(0, 360, exclude_max=True))
 def test_time_and_energy_only_grow_along_a_route(some: list[Stop], wind_mps: float, from_deg: float) -> None:
     found = flown(route(*some), Conditions((WindLayer(10, wind_mps, from_deg),)), Performance(battery_wh=50, max_airspeed_mps=11))
@@ -148,7 +146,6 @@ def test_time_and_energy_only_grow_along_a_route(some: list[Stop], wind_mps: flo
     assert (found.total_wh or 0) >= found.used_wh[-1]
 
 
-@settings(deadline=None)
 @given(stops, st.floats(0.1, 9), st.floats(0, 360, exclude_max=True))
 def test_no_wind_makes_a_round_trip_quicker(some: list[Stop], wind_mps: float, from_deg: float) -> None:
     performance = Performance(max_airspeed_mps=11)
@@ -158,7 +155,6 @@ def test_no_wind_makes_a_round_trip_quicker(some: list[Stop], wind_mps: float, f
     assert windy >= calm - 1e-6
 
 
-@settings(deadline=None)
 @given(st.floats(-80, 70), st.floats(-2000, 2000), st.floats(-2000, 2000))
 def test_a_short_vector_has_the_geodesics_length_and_direction(lat: float, east_m: float, north_m: float) -> None:
     lon, to_lat = WGS84.fwd(10.0, lat, math.degrees(math.atan2(east_m, north_m)), math.hypot(east_m, north_m))[:2]

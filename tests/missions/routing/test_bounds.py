@@ -24,7 +24,7 @@ def worse(problem: Problem, routes: Routes, leave_out: int) -> Routes:
     return shorter if all(problem.keeps_limits(uav, route) for uav, route in enumerate(shorter)) else routes
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @example(seed=1739, uavs=3, targets=1, leave_out=0)  # a UAV that can do nothing
 @given(seed=st.integers(0, 1_000_000), uavs=st.integers(1, 3), targets=st.integers(1, 8), leave_out=st.integers(0, 2))
 def test_no_plan_is_better_than_the_bound(seed: int, uavs: int, targets: int, leave_out: int) -> None:

@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from missions.routing.arcs import NO_WAY_M, Arcs
+from missions.routing.arcs import Arcs
 from missions.routing.crossing import NONE, added_m, draw_move, make, measured
 from missions.routing.plan_state import copy_plan, empty_plan, ground_of, settle, workspace
 from missions.routing.problem import Objective, Problem
+from missions.routing.quantities import NO_WAY_M
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.ruin_and_recreate import construct
 from tests.missions.routing.random_problems import mixed_problem, random_problem, windy_problem
@@ -51,13 +52,13 @@ def moved_as_measured(problem: Problem, seed: int) -> int:
     return made
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 1_000_000), st.integers(1, 4), st.integers(2, 14))
 def test_a_move_changes_a_plan_by_what_was_measured(seed: int, uavs: int, targets: int) -> None:
     moved_as_measured(mixed_problem(seed, uavs=uavs, targets=targets), seed)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 1_000_000), st.sampled_from(list(Objective)), st.integers(1, 4), st.integers(2, 14))
 def test_so_it_does_in_the_wind_between_uavs_that_fly_otherwise(seed: int, objective: Objective, uavs: int, targets: int) -> None:
     moved_as_measured(windy_problem(seed, objective, uavs=uavs, targets=targets), seed)

@@ -31,7 +31,7 @@ def by_search(problem: Problem) -> Routes:
     return found.routes
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(seed=seeds, objective=objectives, uavs=st.integers(1, 3))
 def test_a_small_plan_is_the_best_there_is_by_every_objective_and_limit(seed: int, objective: Objective, uavs: int) -> None:
     problem = windy_problem(seed, objective, uavs=uavs, targets=4 if uavs < 3 else 3)
@@ -41,7 +41,7 @@ def test_a_small_plan_is_the_best_there_is_by_every_objective_and_limit(seed: in
     assert merit(problem, routes)[:2] == pytest.approx(best_merit(problem)[:2], rel=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=seeds, objective=objectives, uavs=st.integers(1, 3), targets=st.integers(1, 6))
 def test_no_plan_is_better_than_the_bound(seed: int, objective: Objective, uavs: int, targets: int) -> None:
     problem = windy_problem(seed, objective, uavs=uavs, targets=targets)
@@ -50,7 +50,7 @@ def test_no_plan_is_better_than_the_bound(seed: int, objective: Objective, uavs:
     assert lower_bound(problem, reachable(problem, needed_m), needed_m, best, seed=7) <= merit(problem, best)[1] * (1 + 1e-12)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(seed=seeds, objective=objectives, uavs=st.integers(1, 4))
 def test_the_search_keeps_every_limit_and_finds_no_more_than_there_is(seed: int, objective: Objective, uavs: int) -> None:
     problem = windy_problem(seed, objective, uavs=uavs, targets=9)
@@ -70,7 +70,7 @@ def test_the_search_finds_the_best_of_nearly_all_small_problems(objective: Objec
     assert sum(as_good) >= 4
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=seeds, objective=objectives)
 def test_locked_runs_are_flown_as_wished_within_every_limit(seed: int, objective: Objective) -> None:
     problem = windy_problem(seed, objective, uavs=2, targets=5, locks=2)

@@ -18,7 +18,7 @@ from tests.missions.routing.random_problems import BY_WAYS, best_merit, mixed_pr
 seeds = st.integers(0, 1_000_000)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @example(seed=247205, uavs=3)  # two targets weigh the same, and the longest route leads to neither
 @given(seed=seeds, uavs=st.integers(1, 3))
 def test_a_small_plan_is_the_best_there_is_whatever_the_problem_holds(seed: int, uavs: int) -> None:
@@ -28,7 +28,7 @@ def test_a_small_plan_is_the_best_there_is_whatever_the_problem_holds(seed: int,
     assert merit(problem, routes) == pytest.approx(best_merit(problem), rel=1e-9)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seeds)
 def test_uavs_that_are_alike_share_the_work_as_any_others(seed: int) -> None:
     problem = mixed_problem(seed, uavs=1, targets=4)

@@ -32,7 +32,7 @@ def test_a_plan_with_locks_is_the_best_of_all_that_honour_them(seed: int) -> Non
     assert merit(problem, solution.routes) == pytest.approx(best, rel=1e-9)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seeds, st.integers(6, 25))
 def test_every_lock_is_honoured_or_left_out_whole(seed: int, targets: int) -> None:
     problem = mixed_problem(seed, uavs=3, targets=targets, locks=3)
@@ -44,7 +44,7 @@ def test_every_lock_is_honoured_or_left_out_whole(seed: int, targets: int) -> No
     assert sorted([*visited, *(item.target for item in solution.unassigned)]) == list(range(targets))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seeds, st.data())
 def test_locking_what_the_best_plan_has_anyway_costs_nothing(seed: int, data: st.DataObject) -> None:
     problem = mixed_problem(seed, uavs=2, targets=7)

@@ -11,7 +11,7 @@ from missions.routing.reach import needed_range_m, reachable
 from tests.missions.routing.random_problems import mixed_problem
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 1_000_000), st.integers(1, 4), st.integers(1, 9))
 def test_a_plan_of_ortools_keeps_every_limit_and_is_no_better_than_the_best(seed: int, uavs: int, targets: int) -> None:
     problem = mixed_problem(seed, uavs=uavs, targets=targets)

@@ -148,7 +148,7 @@ def test_an_asset_knows_where_its_nodes_are():
     assert found.box[-1].tolist() == pytest.approx([0.0, 0.0, 2 * SPAN_DEG, 0.0])
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 2**32 - 1))
 def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
     generator = np.random.default_rng(seed)
@@ -209,7 +209,7 @@ def needed_wh(graph, zones, one, node, bases, conditions):
     return float(costs.wh.first[0, 0] + costs.wh.service[0, 0] + costs.wh.end[0, 0])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1))
 def test_the_battery_is_counted_as_an_assignment_counts_it(seed):
     generator = np.random.default_rng(seed)

@@ -207,7 +207,7 @@ def test_a_search_improves_the_plan_and_reports_progress() -> None:
     assert merits[-1] == merit(problem, searched.routes)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.integers(0, 1_000_000), st.integers(1, 4))
 def test_the_search_keeps_every_limit_whatever_the_problem_holds(seed: int, uavs: int) -> None:
     problem = mixed_problem(seed, uavs=uavs, targets=9)

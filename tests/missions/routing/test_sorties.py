@@ -37,7 +37,7 @@ def returning(range_km: float, **more: float) -> UavStart:
     return UavStart(range_km * 1_000.0, End.RETURN, **more)  # type: ignore[arg-type]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=seeds, objective=st.sampled_from(list(Objective)), uavs=st.integers(1, 2))
 def test_a_small_plan_of_sorties_is_the_best_there_is(seed: int, objective: Objective, uavs: int) -> None:
     rows = unfolded(windy_problem(seed, objective, uavs=uavs, targets=4 - uavs // 2, sorties=3))
@@ -57,7 +57,7 @@ def check(problem: Problem, solution: Solution) -> None:
         assert solution.routes[uav] == tuple(visit for route in flown for visit in route)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=seeds, objective=st.sampled_from(list(Objective)), uavs=st.integers(1, 3), locks=st.integers(0, 2))
 def test_every_sortie_keeps_the_limits(seed: int, objective: Objective, uavs: int, locks: int) -> None:
     problem = windy_problem(seed, objective, uavs=uavs, targets=6, sorties=3, locks=locks)
@@ -68,7 +68,7 @@ def test_every_sortie_keeps_the_limits(seed: int, objective: Objective, uavs: in
     assert solution.lower_bound <= value * (1 + 1e-12)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(seed=seeds, objective=st.sampled_from(list(Objective)), uavs=st.integers(1, 3))
 def test_so_does_the_search_and_its_bound_is_one(seed: int, objective: Objective, uavs: int) -> None:
     rows = unfolded(windy_problem(seed, objective, uavs=uavs, targets=8, sorties=3))

@@ -6,6 +6,7 @@ import { t, tn } from "../../text.js";
 import { clockText, powerText } from "../../units.js";
 import { targetDifferences, uavDifferences } from "../merge.js";
 import { conditionsText, departureText } from "../flight_options.js";
+import { lostLinkText } from "../lost_link.js";
 import { OBJECTIVES } from "../plan_view.js";
 
 const MOST_NAMES = 6;
@@ -49,6 +50,7 @@ export function showBoth(conflict, mine, ways) {
     [t("Departure"), ({ selection }) => [selection.departs_at ? departureText(selection.departs_at) : t("any time")]],
     [t("Conditions"), ({ selection }) => [conditionsText(selection.conditions)]],
     [t("Charging on towers"), ({ selection }) => [selection.charging_w ? powerText(selection.charging_w) : t("no")]],
+    [t("If the link is lost"), ({ selection }) => [lostLinkText(selection.lost_link)]],
     [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
     [t("Locked"), ({ selection }) => lockWords(selection)],
   ];

@@ -5,6 +5,7 @@ import { h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
 import { exactText, lengthText, whenText } from "../../units.js";
+import { lostLinkText } from "../lost_link.js";
 
 const TOGETHER_MS = 10 * 60_000;
 const ICONS = { create: "plus", change: "pencil", rename: "pencil", plan: "waypoints", delete: "trash-2", restore: "archive-restore", duplicate: "copy" };
@@ -20,6 +21,7 @@ function changeWords({ before, after }) {
   if (after?.uavs_removed) words.push(tn(after.uavs_removed, "{count} UAV removed: {names}", "{count} UAVs removed: {names}", { names: names(after.uavs_names.removed, after.uavs_removed) }));
   if (before?.objective !== after?.objective) words.push(after?.objective === "total" ? t("best at: fly least") : t("best at: even routes"));
   if (before?.return_to_start !== after?.return_to_start) words.push(after?.return_to_start ? t("each UAV returns to its start") : t("no UAV has to return"));
+  if (JSON.stringify(before?.lost_link) !== JSON.stringify(after?.lost_link)) words.push(t("without a link each UAV {does}", { does: lostLinkText(after?.lost_link) }));
   return words.join("; ") || t("places or tasks changed");
 }
 

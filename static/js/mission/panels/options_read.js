@@ -4,14 +4,15 @@ import { byId } from "../../dom.js";
 import { t } from "../../text.js";
 import { powerText, zoneText } from "../../units.js";
 import { conditionsText, departureText } from "../flight_options.js";
+import { lostLinkText } from "../lost_link.js";
 import { OBJECTIVES } from "../plan_view.js";
 
 export function mountOptionsRead(store) {
   store.listen(["selection"], ({ selection }) => {
     const best = OBJECTIVES.find(({ value }) => value === selection.objective)?.words ?? "";
     const end = selection.return_to_start ? t("UAVs fly back to where they took off") : t("UAVs do not all fly back");
-    const { departs_at, conditions, charging_w } = selection;
+    const { departs_at, conditions, charging_w, lost_link } = selection;
     const departure = departs_at ? t("Departure {moment} ({zone})", { moment: departureText(departs_at), zone: zoneText(departs_at) }) : t("Departure at any time");
-    byId("options-words").textContent = [best, departure, conditionsText(conditions), charging_w && t("charging on towers with {power}", { power: powerText(charging_w) }), end].filter(Boolean).join(" · ");
+    byId("options-words").textContent = [best, departure, conditionsText(conditions), charging_w && t("charging on towers with {power}", { power: powerText(charging_w) }), end, t("without a link each UAV {does}", { does: lostLinkText(lost_link) })].filter(Boolean).join(" · ");
   });
 }

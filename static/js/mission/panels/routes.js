@@ -7,6 +7,7 @@ import { durationText, lengthText } from "../../units.js";
 import { counterpart, profileOfSummary } from "../compare.js";
 import { timeAt } from "../flight_options.js";
 import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
+import { checkStateOf, checkText } from "../lost_link.js";
 import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
 import { GROUNDING } from "../plan_words.js";
 import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
@@ -170,14 +171,24 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     ];
     const place = byId("plan-quality");
     const separation = isCurrent ? separationOf(state.plan.result) : null;
-    place.hidden = !quality && !locked && !separation;
+    const linkState = checkStateOf(state.selection.lost_link, state.plan, isCurrent);
+    const isLost = linkState === "lost";
+    place.hidden = !quality && !locked && !separation && !isLost;
     place.replaceChildren(
       ...[
         quality && h("span", { class: "plan-bound" }, icon(quality.isProven ? "circle-check" : "info", "small"), h("span", {}, h("strong", {}, quality.words), " ", quality.detail)),
         separation && h("span", { class: `plan-bound${separation.isFault ? " fault" : ""}` }, icon(separation.isFault ? "triangle-alert" : "replace", "small"), h("span", {}, separation.words)),
+        isLost && h("span", { class: "plan-bound fault" }, icon("triangle-alert", "small"), h("span", {}, t("If the link is lost:"), " ", checkText(linkState, state.plan), h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")))),
         locked > 0 && h("span", { class: "plan-wish" }, icon("lock", "small"), h("span", {}, wish), acts),
       ].filter(Boolean),
     );
+  }
+
+  function showLostLink() {
+    const place = byId("lost-link");
+    const scroll = place.closest(".side-scroll"); // alone: scrollIntoView would move what must not scroll
+    scroll.scrollBy({ top: place.getBoundingClientRect().top - scroll.getBoundingClientRect().top });
+    place.querySelector(".link-failures button")?.focus({ preventScroll: true });
   }
 
   function mark(state) {
@@ -225,7 +236,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   });
   store.listen(["plan"], (state) => {
     lookForZones(state);
-    dock.closest(".side-scroll")?.scrollTo({ top: 0 }); // on a phone the result stands first
+    if (!state.planIsStored) dock.closest(".side-scroll")?.scrollTo({ top: 0 }); // on a phone the result of planning stands first
   });
   store.listen(["lookedAt", "chosenRoute", "litTarget"], mark);
   store.listen(["along"], follow);

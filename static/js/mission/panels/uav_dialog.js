@@ -1,9 +1,10 @@
 /** Where a UAV starts, how far and how fast it flies, with which battery, and how its flight ends: for a new one, or for this mission alone. */
 
-import { ApiError, signInAddress } from "../../api.js";
-import { h } from "../../dom.js";
+import { ApiError, get, signInAddress } from "../../api.js";
+import { h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
+import { boundsIn, usualOf } from "../../uav_figures.js";
 import { LONG_UNIT, SPEED_UNIT } from "../../units.js";
 import { MOST_TARGETS } from "../picking.js";
 
@@ -14,14 +15,25 @@ let fields = 0; // each has an id of its own
 function field(label, input, unit = "") {
   fields += 1;
   input.id = `field-${fields}`;
-  return h("div", { class: "field" }, h("label", { for: input.id }, label), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input);
+  const fault = h("p", { class: "field-error", id: `${input.id}-fault`, hidden: true });
+  input.setAttribute("aria-describedby", fault.id);
+  return h("div", { class: "field" }, h("label", { for: input.id }, label), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input, fault);
+}
+
+/** Says beside a field what is wrong with it; empty words take that away. */
+function tell(input, words) {
+  const fault = input.closest(".field").querySelector(".field-error");
+  fault.hidden = !words;
+  fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
+  if (words) input.setAttribute("aria-invalid", "true");
+  else input.removeAttribute("aria-invalid");
 }
 
 function number(value, min, max, required = true) {
   return h("input", { class: "input", type: "number", step: "any", min, max, required, value: value ?? "" });
 }
 
-const END_CHOICES = [
+export const END_CHOICES = [
   ["hover", t("Hover over its last target")],
   ["return", t("Return to start")],
   ["land", t("Land at its last target")],
@@ -30,11 +42,10 @@ const END_CHOICES = [
 
 const inUnits = (value, unit) => Number((value / unit).toPrecision(6));
 
-/** A value of this mission's own; empty it is the type's. */
-function own(value, min, max, unit = 1) {
-  const input = number(value === null || value === undefined ? "" : inUnits(value, unit), min, max, false);
-  input.placeholder = t("as its type");
-  return input;
+/** A value of its own, in units of so many of the stored ones; empty it is what stands in grey. */
+function own(name, value, unit = 1) {
+  const { min, max } = boundsIn(name, unit);
+  return number(value === null || value === undefined ? "" : inUnits(value, unit), min, max, false);
 }
 
 /** What a field says in SI units. One that nobody touched is what it was: typed units are rounded. */
@@ -44,7 +55,7 @@ function kept(input, before, unit) {
   return input.valueAsNumber * unit;
 }
 
-/** A new one has a name and a base as well; battery and airspeed are its type's until a mission says otherwise. */
+/** A new one has a name, a base and a type as well; where a field of its battery and airspeed is empty, what counts stands in it in grey. */
 export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   const longitude = number(Number(uav.position[0].toFixed(6)), -180, 180);
   const latitude = number(Number(uav.position[1].toFixed(6)), -90, 90);
@@ -54,31 +65,48 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   const speed = number(uav.cruise_speed_mps === null || uav.cruise_speed_mps === undefined ? "" : inUnits(uav.cruise_speed_mps, SPEED_UNIT.mps), 0.5, 300, false);
   const end = h("select", { class: "input" }, END_CHOICES.map(([value, words]) => h("option", { value, selected: value === uav.end_action }, words)));
   const most = h("input", { class: "input", type: "number", min: 1, max: MOST_TARGETS, step: 1, placeholder: t("as many as fit"), value: uav.most_targets ?? "" });
-  const battery = own(uav.battery_wh, 0.1, 100_000);
-  const mass = own(uav.mass_kg, 0.01, 10_000);
-  const reserve = own(uav.reserve_percent, 0, 95);
-  const airspeed = own(uav.max_airspeed_mps, 0.5, 300, SPEED_UNIT.mps);
+  const battery = own("battery_wh", uav.battery_wh);
+  const mass = own("mass_kg", uav.mass_kg);
+  const reserve = own("reserve_percent", uav.reserve_percent);
+  const airspeed = own("max_airspeed_mps", uav.max_airspeed_mps, SPEED_UNIT.mps);
+  const type = h("select", { class: "input", onchange: takesType }, h("option", { value: "" }, t("none")));
+  const byName = { name, base_name: base, max_range_m: range, cruise_speed_mps: speed, battery_wh: battery, mass_kg: mass, reserve_percent: reserve, max_airspeed_mps: airspeed, end_action: end, type };
+  let types = [];
+  function showUsual(usual) {
+    const units = { max_airspeed_mps: SPEED_UNIT.mps };
+    for (const [figure, value] of Object.entries(usual)) byName[figure].placeholder = value === null ? "" : inUnits(value, units[figure] ?? 1);
+  }
+  showUsual(uav.usual ?? usualOf(null));
+
+  function takesType() {
+    const chosen = types.find(({ id }) => `${id}` === type.value);
+    showUsual(usualOf(chosen));
+    range.placeholder = chosen?.max_range_m ? inUnits(chosen.max_range_m, LONG_UNIT.metres) : "";
+    speed.placeholder = chosen ? inUnits(chosen.cruise_speed_mps, SPEED_UNIT.mps) : "";
+    sayWhatIsMissing();
+  }
   const sorties = h("input", { class: "input", type: "number", min: 1, max: MOST_SORTIES, step: 1, required: true, value: uav.sorties ?? 1 });
   const unlimited = h("p", { class: "caption", role: "status" });
   const wrong = h("p", { class: "field-error", role: "alert" });
-  const sayWhatIsMissing = () => (unlimited.textContent = range.value ? "" : t("Range not stated: it is planned as unlimited."));
+  const sayWhatIsMissing = () => (unlimited.textContent = range.value || range.placeholder ? "" : t("Range not stated: it is planned as unlimited."));
   range.addEventListener("input", sayWhatIsMissing);
   sayWhatIsMissing();
   const dialog = h("dialog", { "aria-labelledby": "place-title" });
+  const ofType = isNew && field(t("Type"), type);
   const form = h(
     "form",
     { method: "dialog" },
     h("div", {}, h("h2", { id: "place-title" }, title), h("p", { class: "quiet-text" }, note)),
     isNew && h("div", { class: "pair" }, field(t("Name"), name), field(t("Base"), base)),
+    ofType,
     h("div", {}, h("div", { class: "pair" }, field(t("Range"), range, LONG_UNIT.unit), field(t("Speed"), speed, SPEED_UNIT.unit)), unlimited),
-    !isNew &&
-      h(
-        "div",
-        { class: "stack", role: "group", "aria-label": t("Battery and airspeed") },
-        h("div", { class: "pair" }, field(t("Battery"), battery, "Wh"), field(t("Kept in reserve"), reserve, "%")),
-        h("div", { class: "pair" }, field(t("Mass at take-off"), mass, "kg"), field(t("Highest airspeed"), airspeed, SPEED_UNIT.unit)),
-        h("p", { class: "caption own-values" }, t("Empty: as its type. Without a battery its energy is not planned.")),
-      ),
+    h(
+      "div",
+      { class: "stack", role: "group", "aria-label": t("Battery and airspeed") },
+      h("div", { class: "pair" }, field(t("Battery"), battery, "Wh"), field(t("Kept in reserve"), reserve, "%")),
+      h("div", { class: "pair" }, field(t("Mass at take-off"), mass, "kg"), field(t("Highest airspeed"), airspeed, SPEED_UNIT.unit)),
+      h("p", { class: "caption own-values" }, isNew ? t("Empty: as its type, in grey. Without a battery its energy is not planned.") : t("Empty: as in the fleet, in grey. Without a battery its energy is not planned.")),
+    ),
     field(t("End, where “Return to start” is off"), end),
     !isNew && h("div", {}, h("div", { class: "pair" }, field(t("At most this many targets"), most), field(t("At most this many flights"), sorties)), h("p", { class: "caption" }, t("More than one flight only where it returns to its start; each on a full battery."), " ", uav.sensors?.length ? t("Sensors: {names}", { names: uav.sensors.join(", ") }) : t("No sensor is stated for it."))),
     h("div", { class: "pair" }, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")),
@@ -87,6 +115,8 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   );
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
+    Object.values(byName).filter((input) => form.contains(input)).forEach((input) => tell(input, ""));
+    wrong.replaceChildren();
     try {
       await submit({
         name: name.value.trim(),
@@ -95,14 +125,31 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
         max_range_m: kept(range, uav.max_range_m, LONG_UNIT.metres),
         cruise_speed_mps: kept(speed, uav.cruise_speed_mps, SPEED_UNIT.mps),
         end_action: end.value,
-        ...(isNew ? {} : { most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null, sorties: sorties.valueAsNumber, battery_wh: kept(battery, uav.battery_wh, 1), mass_kg: kept(mass, uav.mass_kg, 1), reserve_percent: kept(reserve, uav.reserve_percent, 1), max_airspeed_mps: kept(airspeed, uav.max_airspeed_mps, SPEED_UNIT.mps) }),
+        battery_wh: kept(battery, uav.battery_wh, 1),
+        mass_kg: kept(mass, uav.mass_kg, 1),
+        reserve_percent: kept(reserve, uav.reserve_percent, 1),
+        max_airspeed_mps: kept(airspeed, uav.max_airspeed_mps, SPEED_UNIT.mps),
+        ...(isNew ? { type: type.value ? Number(type.value) : null } : { most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null, sorties: sorties.valueAsNumber }),
       });
       dialog.close();
     } catch (error) {
-      wrong.replaceChildren(error instanceof ApiError ? error.message : t("It could not be added."), error.isSignedOut ? h("a", { href: signInAddress() }, t("Sign in")) : "");
+      const told = Object.entries(error.details ?? {}).filter(([part]) => byName[part] && form.contains(byName[part]));
+      for (const [part, words] of told) tell(byName[part], [words].flat().join(" "));
+      if (told.length) byName[told[0][0]].focus();
+      else wrong.replaceChildren(error instanceof ApiError ? error.message : t("It could not be added."), error.isSignedOut ? h("a", { href: signInAddress() }, t("Sign in")) : "");
     }
   });
   dialog.append(form);
   open(dialog);
-  if (isNew) name.select();
+  if (!isNew) return;
+  name.select();
+  ofType.hidden = true; // until there are types to choose from
+  get("/uav-types?limit=100").then(
+    ({ data }) => {
+      types = data.results;
+      type.append(...types.map((row) => h("option", { value: row.id }, row.name)));
+      ofType.hidden = !types.length;
+    },
+    () => {}, // it is added without one
+  );
 }

@@ -1,0 +1,134 @@
+"""The last look at towers and wires before a plan leaves: no leg passes one too near. Shares no code with the drawing that rises over them.
+
+Legs are straight from waypoint to waypoint in place and height; they are walked in steps, and each step is measured from the wires
+beside it, which hang no higher than straight from top to top. Where a UAV takes off and lands is its operator's choice: the columns there
+are not looked at.
+"""
+
+import math
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import shapely
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.graph.spans import Spans
+from missions.flight_plan.heights import GroundHeights
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.waypoints import BASE, FloatArray, RoutePoints, Waypoints
+
+BESIDE_M = 24.0  # across the ground; drawing keeps a little more
+STEP_M = 4.0
+SHORT_M = 2.0  # by so much a leg may come short of the clearance right over a wire: rounding, steps, a tower come to on a slope
+SLOPE = 0.3  # and by that much more for each metre beside it: then it is farther away all the same
+SAME_M = 2.0
+NEAR_DEG = 0.002
+
+IntArray = NDArray[np.int64]
+
+_by_west: WeakKeyDictionary[Spans, tuple[IntArray, FloatArray, float]] = WeakKeyDictionary()
+
+
+def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules) -> set[int]:
+    """Numbers of the spans that a leg of a finished route passes too near; not those that hang at what it inspects there."""
+    points = waypoints.points
+    if len(points) < 2 or not len(spans):
+        return set()
+    is_known = waypoints.amsl_m is not None and ground_heights_m is not None
+    near = _rows_near(spans, points.position, 0.0 if is_known else float(points.agl_m.min()) - rules.clearance_m + SHORT_M)
+    if not len(near):
+        return set()
+    frame = LocalFrame.around(*points.position.mean(axis=0).tolist())
+    line, start, end = frame.to_metres(points.position), frame.to_metres(spans.start[near]), frame.to_metres(spans.end[near])
+    leg, span = _pairs(line, start, end)
+    is_flown = (points.kind[leg] != BASE) & (points.kind[leg + 1] != BASE)
+    leg, span = leg[is_flown], span[is_flown]
+    if not len(leg):
+        return set()
+    level_m = points.agl_m if waypoints.amsl_m is None or not is_known else waypoints.amsl_m
+    top_m = np.column_stack([spans.start_height_m[near], spans.end_height_m[near]])
+    if is_known and ground_heights_m is not None:
+        used = np.unique(span)
+        highest_m = float((level_m - points.agl_m).max())
+        told_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
+        top_m[used] += np.where(np.isnan(told_m), highest_m, told_m)
+    found: set[int] = set()
+    too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
+    for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):
+        if not _is_inspected(points, line, own_leg, start[own_span], end[own_span]):
+            found.add(int(near[own_span]))
+    return found
+
+
+def _rows_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
+    """Spans that are higher, and of which the box comes near that of the route."""
+    if spans not in _by_west:
+        west = np.minimum(spans.start[:, 0], spans.end[:, 0])
+        order = np.argsort(west, kind="stable")
+        _by_west[spans] = order, west[order], float(np.abs(spans.end[:, 0] - spans.start[:, 0]).max())
+    order, west, widest = _by_west[spans]
+    low, high = position.min(axis=0), position.max(axis=0)
+    stretch = max(np.cos(np.radians(np.abs(position[:, 1]).max())), 0.01)
+    about = np.array([NEAR_DEG / stretch, NEAR_DEG])
+    low, high = low - about, high + about
+    rows = order[np.searchsorted(west, low[0] - widest) : np.searchsorted(west, high[0], side="right")]
+    rows = rows[spans.highest_m[rows] > lowest_m]
+    start, end = spans.start[rows], spans.end[rows]
+    near = (np.maximum(start, end) >= low).all(axis=1) & (np.minimum(start, end) <= high).all(axis=1)
+    chosen: IntArray = rows[near]
+    return chosen
+
+
+def _pairs(line: FloatArray, start: FloatArray, end: FloatArray) -> tuple[IntArray, IntArray]:
+    """Legs and spans that come near each other across the ground."""
+    span, leg = shapely.STRtree(_drawn(line[:-1], line[1:])).query(_drawn(start, end), predicate="dwithin", distance=BESIDE_M)
+    return leg.astype(np.int64), span.astype(np.int64)
+
+
+def _drawn(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
+    """Lines, and points where one would have no length."""
+    drawn: NDArray[np.object_] = np.array(shapely.points(start), dtype=object)
+    moves = (start != end).any(axis=1)
+    drawn[moves] = shapely.linestrings(np.stack([start[moves], end[moves]], axis=1))
+    return drawn
+
+
+@njit(cache=True, nogil=True)
+def _too_near(
+    line: FloatArray, level_m: FloatArray, leg: IntArray, start: FloatArray, end: FloatArray, top_m: FloatArray, clearance_m: float
+) -> NDArray[np.bool_]:
+    """Of pairs of a leg and a wire from start to end, (p, 2) each, between tops (p, 2): whether a step of the leg is too near to it."""
+    too_near = np.zeros(len(leg), dtype=np.bool_)
+    for pair in range(len(leg)):
+        here, there = leg[pair], leg[pair] + 1
+        if min(level_m[here], level_m[there]) >= max(top_m[pair, 0], top_m[pair, 1]) + clearance_m - SHORT_M:
+            continue
+        by_x, by_y = line[there, 0] - line[here, 0], line[there, 1] - line[here, 1]
+        along_x, along_y = end[pair, 0] - start[pair, 0], end[pair, 1] - start[pair, 1]
+        squared = along_x * along_x + along_y * along_y
+        steps = math.ceil(math.hypot(by_x, by_y) / STEP_M) + 1
+        for step in range(steps + 1):
+            share = step / steps
+            off_x, off_y = line[here, 0] + share * by_x - start[pair, 0], line[here, 1] + share * by_y - start[pair, 1]
+            where = min(max((off_x * along_x + off_y * along_y) / squared, 0.0), 1.0) if squared > 0.0 else 0.0
+            beside_m = math.hypot(off_x - where * along_x, off_y - where * along_y)
+            if beside_m > BESIDE_M:
+                continue
+            over_m = level_m[here] + share * (level_m[there] - level_m[here]) - top_m[pair, 0] - where * (top_m[pair, 1] - top_m[pair, 0])
+            if over_m < clearance_m - SHORT_M - SLOPE * beside_m:
+                too_near[pair] = True
+                break
+    return too_near
+
+
+def _is_inspected(points: RoutePoints, line: FloatArray, leg: int, start: FloatArray, end: FloatArray) -> bool:
+    """Whether the leg belongs to a target, or comes down to one or rises from it, at which the span hangs or along which it is flown."""
+    target = int(max(points.target[leg], points.target[leg + 1]))
+    moves = bool((line[leg] != line[leg + 1]).any())
+    if target < 0 or (moves and points.target[leg] != points.target[leg + 1]):
+        return False
+    places = line[points.target == target]
+    hangs = min(float(np.hypot(*(places - place).T).min()) for place in (start, end)) <= SAME_M
+    return hangs or bool((shapely.distance(shapely.points(line[leg : leg + 2]), _drawn(start[None], end[None])[0]) <= SAME_M).all())

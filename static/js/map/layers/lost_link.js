@@ -1,0 +1,66 @@
+/** Rally points as marks that can be dragged, and the ways back that fail: a dot at each waypoint and a line to where it would land. */
+
+import { h } from "../../dom.js";
+import { t } from "../../text.js";
+import { maplibre } from "../maplibre.js";
+
+const SOURCE = "lost-link";
+const NOTHING = { type: "FeatureCollection", features: [] };
+const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+const isKind = (type) => ["==", ["geometry-type"], type];
+
+function layers() {
+  const [critical, casing] = ["--critical", "--map-casing"].map(read);
+  const lit = ["get", "lit"];
+  return [
+    { id: "lost-link-casing", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), lit], paint: { "line-color": casing, "line-width": 5 } },
+    { id: "lost-link-lines", type: "line", source: SOURCE, filter: isKind("LineString"), paint: { "line-color": critical, "line-width": ["case", lit, 2, 1], "line-opacity": ["case", lit, 1, 0.35], "line-dasharray": [4, 3] } },
+    {
+      id: "lost-link-dots", type: "circle", source: SOURCE, filter: isKind("Point"),
+      paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 9, ["case", lit, 4, 2], 13, ["case", lit, 7, 5]], "circle-color": ["case", lit, critical, read("--raised")], "circle-stroke-color": critical, "circle-stroke-width": 2 },
+    },
+  ];
+}
+
+const feature = (type, coordinates, lit) => ({ type: "Feature", properties: { lit }, geometry: { type, coordinates } });
+
+/** returns: [{ from, to, lit }]; none takes them away. */
+export function showFailures(map, returns) {
+  if (!map.getSource(SOURCE)) {
+    if (!returns.length) return;
+    map.addSource(SOURCE, { type: "geojson", data: NOTHING });
+    for (const layer of layers()) map.addLayer(layer);
+  }
+  const features = returns.flatMap(({ from, to, lit }) => [feature("LineString", [from, to], lit), feature("Point", from, lit)]);
+  map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
+}
+
+export function recolour(map) {
+  if (!map.getSource(SOURCE)) return;
+  for (const { id, paint } of layers()) for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+}
+
+/** Marks of the rally points. onMove(index, position). */
+export function createRallyPoints(map, { onMove }) {
+  let marks = [];
+  let drawn = "";
+  return {
+    /** points: [{ name, position }] */
+    update(points, canMove) {
+      const now = JSON.stringify([points, canMove]);
+      if (now === drawn) return;
+      drawn = now;
+      marks.forEach((mark) => mark.remove());
+      marks = points.map(({ name, position }, index) => {
+        const words = t("Rally point {name}", { name });
+        const element = h("div", { class: `map-rally${canMove ? " movable" : ""}`, role: "img", "aria-label": words, title: canMove ? t("Rally point {name}. Drag it to another place", { name }) : words, onclick: (event) => event.stopPropagation() }, h("span", { class: "rally-mark" }, name));
+        const mark = new maplibre.Marker({ element, draggable: canMove });
+        mark.on("dragend", () => {
+          const { lng, lat } = mark.getLngLat();
+          onMove(index, [lng, lat]);
+        });
+        return mark.setLngLat(position).addTo(map);
+      });
+    },
+  };
+}

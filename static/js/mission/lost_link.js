@@ -1,0 +1,151 @@
+/** What UAVs do when their link is lost, where they may land then, and what the server's check of it means. Values in, values out. */
+
+import { routeLetter } from "../map/palette.js";
+import { language, localeOf, t, tn } from "../text.js";
+import { durationText, exactHeightText, numberText } from "../units.js";
+
+export const MOST_RALLY_POINTS = 50; // missions/serializers/limits.py
+export const LONGEST_HOLD_S = 3600; // missions/routing/problem.py
+const USUAL_HOLD_S = 60;
+const DIGITS = 6; // some 0.1 m
+
+export const BEHAVIOURS = [
+  { value: "go_on", words: t("Fly on"), meaning: t("Each UAV flies its route to the end, as it was checked.") },
+  { value: "hold", words: t("Hold, then return"), meaning: t("Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.") },
+  { value: "return", words: t("Return"), meaning: t("Each UAV flies straight to the nearest of its start and the rally points, and lands.") },
+];
+const GO_ON = "go_on";
+
+const rounded = (position) => position.slice(0, 2).map((degrees) => Number(degrees.toFixed(DIGITS)));
+
+/** One form for equal wishes: null where UAVs go on and no rally point is set; hold_s counts only with "hold". */
+export function lostLinkOf(lost_link) {
+  const { behaviour = GO_ON, rally_points = [], hold_s = 0 } = lost_link ?? {};
+  if (behaviour === GO_ON && !rally_points.length) return null;
+  return { behaviour, rally_points: rally_points.map((position) => position.slice(0, 2)), hold_s: behaviour === "hold" ? hold_s : 0 };
+}
+
+/** The same as one object with all parts. */
+export const wholeLostLink = (lost_link) => lostLinkOf(lost_link) ?? { behaviour: GO_ON, rally_points: [], hold_s: 0 };
+
+const changed = (lost_link, values) => lostLinkOf({ ...wholeLostLink(lost_link), ...values });
+
+export const withBehaviour = (lost_link, behaviour) => changed(lost_link, { behaviour, hold_s: wholeLostLink(lost_link).hold_s || USUAL_HOLD_S });
+export const withHold = (lost_link, hold_s) => changed(lost_link, { hold_s });
+
+export function withRallyPoint(lost_link, position) {
+  const { rally_points } = wholeLostLink(lost_link);
+  return rally_points.length < MOST_RALLY_POINTS ? changed(lost_link, { rally_points: [...rally_points, rounded(position)] }) : lostLinkOf(lost_link);
+}
+
+export const withRallyPointAt = (lost_link, index, position) => changed(lost_link, { rally_points: wholeLostLink(lost_link).rally_points.map((at, place) => (place === index ? rounded(position) : at)) });
+export const withoutRallyPoint = (lost_link, index) => changed(lost_link, { rally_points: wholeLostLink(lost_link).rally_points.filter((_, place) => place !== index) });
+
+/** Whether UAVs may land at rally points: where they go on, none is used. */
+export const usesRallyPoints = (lost_link) => wholeLostLink(lost_link).behaviour !== GO_ON;
+
+/** "R2", as on the map. */
+export const rallyName = (index) => `R${index + 1}`;
+
+const holdText = (hold_s) => (hold_s < 100 ? `${numberText(hold_s)}\u00a0s` : durationText(hold_s));
+
+/** "holds 60 s and returns, 2 rally points". */
+export function lostLinkText(lost_link) {
+  const { behaviour, rally_points, hold_s } = wholeLostLink(lost_link);
+  if (behaviour === GO_ON) return t("flies on");
+  const does = behaviour === "hold" ? t("holds {time}, then returns", { time: holdText(hold_s) }) : t("returns");
+  return rally_points.length ? [does, tn(rally_points.length, "{count} rally point", "{count} rally points")].join(", ") : does;
+}
+
+const areSame = (a, b) => JSON.stringify(lostLinkOf(a)) === JSON.stringify(lostLinkOf(b));
+
+/** "go-on", "unplanned", "unknown" (a plan of before), "waiting" (checked for another wish), "home" or "lost". */
+export function checkStateOf(lost_link, plan, isCurrent) {
+  if (!usesRallyPoints(lost_link)) return "go-on";
+  if (!plan || !isCurrent) return "unplanned";
+  const check = plan.result.lost_link ?? null;
+  if (!check) return "unknown";
+  if (!areSame(check, lost_link)) return "waiting";
+  return check.failed.length ? "lost" : "home";
+}
+
+/** Places in a route that do not return: [{ sequence, letter, name, haven, trouble, zone, zone_id, waypoints: [index], missing_wh, over_m }], worst figures. */
+export function failuresOf(plan) {
+  const groups = new Map();
+  for (const { route, waypoint, haven, trouble, missing_wh, zone, zone_id = null, over_m } of plan.result.lost_link.failed) {
+    const key = [route, haven, trouble, zone_id ?? zone].join("|");
+    const group = groups.get(key) ?? { key, sequence: route, letter: routeLetter(route), name: plan.result.routes[route]?.uav ?? "", haven, trouble, zone, zone_id, waypoints: [], missing_wh: 0, over_m: 0 };
+    group.waypoints.push(waypoint);
+    group.missing_wh = Math.max(group.missing_wh, missing_wh ?? 0);
+    group.over_m = Math.max(group.over_m, over_m ?? 0);
+    groups.set(key, group);
+  }
+  return [...groups.values()];
+}
+
+/** "3–9, 12", counted from 1. */
+export function placesText(waypoints) {
+  const runs = [];
+  for (const number of [...waypoints].sort((a, b) => a - b)) {
+    const last = runs.at(-1);
+    if (last && number === last.to + 1) last.to = number;
+    else runs.push({ from: number, to: number });
+  }
+  return runs.map(({ from, to }) => (from === to ? `${from + 1}` : `${from + 1}–${to + 1}`)).join(", ");
+}
+
+export const havenText = (haven) => (haven === 0 ? t("its start") : rallyName(haven - 1));
+
+/** Wh to a tenth: what is missing may be little. */
+const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
+
+/** What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }. */
+export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_m }) {
+  const values = { places: placesText(waypoints), haven: havenText(haven) };
+  const where = waypoints.length === 1 ? t("waypoint {places}, back to {haven}", values) : t("waypoints {places}, back to {haven}", values);
+  const isOne = waypoints.length === 1;
+  const lack = lackText(missing_wh);
+  const why = {
+    battery: isOne ? t("{energy} are missing with the reserve kept", { energy: lack }) : t("up to {energy} are missing with the reserve kept", { energy: lack }),
+    wind: t("the wind is too strong for the way back"),
+    zone: zone ? t("the way back meets {zone}", { zone }) : t("the way back meets a no-fly zone"),
+    too_high: t("the way back would be {height} above the greatest height", { height: exactHeightText(over_m) }),
+    unknown_ground: t("the ground under the way back is not known"),
+  }[trouble];
+  return { where, why };
+}
+
+const flownOf = (plan) => plan.result.routes.filter(({ geometry }) => geometry);
+
+/** UAVs whose energy nobody counts: their return may be too far all the same. */
+export const uncountedOf = (plan) => flownOf(plan).filter(({ energy_wh }) => energy_wh === null || energy_wh === undefined).map(({ uav }) => uav);
+
+/** The sentence over the check. */
+export function checkText(state, plan) {
+  if (state === "go-on") return "";
+  if (state === "unplanned") return t("It is checked for energy and zones once there is a plan.");
+  if (state === "unknown") return t("This plan was made before this was checked. Plan again to check it.");
+  if (state === "waiting") return t("It is being checked for energy and zones.");
+  if (state === "lost") {
+    const count = new Set(plan.result.lost_link.failed.map(({ route, waypoint }) => `${route} ${waypoint}`)).size;
+    const total = flownOf(plan).reduce((sum, { waypoints }) => sum + waypoints.length, 0);
+    return tn(count, "From {count} of {total} waypoints a UAV would not get home.", "From {count} of {total} waypoints a UAV would not get home.", { total: total.toLocaleString(localeOf(language)) });
+  }
+  return uncountedOf(plan).length === flownOf(plan).length ? t("From every waypoint the way back meets no zone.") : t("From every waypoint each UAV gets home with its reserve, and meets no zone.");
+}
+
+/** Nothing that is not known is taken for safe: who has no battery stated is named. */
+export function uncountedText(plan) {
+  const names = uncountedOf(plan);
+  return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";
+}
+
+/** For the map: [{ key, from, to }], each waypoint that fails and where it would return to; key: of its group. */
+export function returnLinesOf(plan) {
+  const { rally_points } = plan.result.lost_link;
+  return failuresOf(plan).flatMap(({ key, sequence, haven, waypoints }) => {
+    const places = plan.result.routes[sequence]?.waypoints ?? [];
+    const to = haven === 0 ? places[0]?.position : rally_points[haven - 1];
+    return waypoints.filter((waypoint) => places[waypoint] && to).map((waypoint) => ({ key, from: places[waypoint].position, to }));
+  });
+}

@@ -1,0 +1,22 @@
+/** Rally points and failing ways back on the mission's map, as the store has them. */
+
+import * as layer from "../map/layers/lost_link.js";
+import { checkStateOf, rallyName, returnLinesOf, usesRallyPoints, wholeLostLink } from "./lost_link.js";
+import { isPlanCurrent } from "./plan_view.js";
+
+/** Returns { recolour() }. */
+export function mountLostLinkMap(map, store, actions, { canPlan }) {
+  const rally = layer.createRallyPoints(map, { onMove: actions.moveRallyPoint });
+
+  store.listen(["selection"], ({ selection: { lost_link } }) => {
+    const points = usesRallyPoints(lost_link) ? wholeLostLink(lost_link).rally_points : [];
+    rally.update(points.map((position, index) => ({ position, name: rallyName(index) })), canPlan);
+  });
+  store.listen(["selection", "plan", "litReturn", "hand"], (state) => {
+    const { plan, selection, litReturn, hand } = state;
+    const isLost = !hand && checkStateOf(selection.lost_link, plan, isPlanCurrent(state)) === "lost";
+    layer.showFailures(map, isLost ? returnLinesOf(plan).map((line) => ({ ...line, lit: line.key === litReturn })) : []);
+  });
+
+  return { recolour: () => layer.recolour(map) };
+}

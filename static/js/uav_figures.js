@@ -1,0 +1,22 @@
+/** What a UAV's flight takes: bounds of its figures, and what counts where nothing is stated. As in missions/flight_plan/performance.py. */
+
+export const USUAL_RESERVE_PERCENT = 20;
+/** The PX4 Iris. */
+export const IRIS = Object.freeze({ mass_kg: 1.545, rotor_disk_m2: 0.2059 });
+/** { min, max } in the units of the names. */
+export const BOUNDS = Object.freeze({
+  battery_wh: { min: 1, max: 100_000 },
+  mass_kg: { min: 0.05, max: 1000 },
+  reserve_percent: { min: 0, max: 90 },
+  max_airspeed_mps: { min: 1, max: 100 },
+  rotor_disk_m2: { min: 0.001, max: 1000 },
+  hover_power_w: { min: 1, max: 1_000_000 },
+});
+/** What a UAV may have of its own. */
+export const OWN_FIGURES = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps"];
+
+/** What counts for a UAV of this type, or of none, where it has no figure of its own. */
+export const usualOf = (type) => Object.fromEntries(OWN_FIGURES.map((name) => [name, type?.[name] ?? { mass_kg: IRIS.mass_kg, reserve_percent: USUAL_RESERVE_PERCENT }[name] ?? null]));
+
+/** The bounds in another unit, of so many of the stored ones, to a tenth inwards. */
+export const boundsIn = (name, unit) => (unit === 1 ? BOUNDS[name] : { min: Math.ceil((BOUNDS[name].min / unit) * 10) / 10, max: Math.floor((BOUNDS[name].max / unit) * 10) / 10 });

@@ -1,0 +1,137 @@
+"""Random missions among towers and wires of all heights on real regions: no leg passes one too near; and what cannot be flown over."""
+
+import random
+from collections import Counter
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from inspection.geodesy import distance_m
+from inspection.models import Asset, NoFlyZone
+from inspection.selectors import ground_heights_m
+from inspection.services import build_graph, import_osm, mark_ground_changed
+from missions.services import make_plan
+from tests.inspection import ground
+from tests.missions.ground_judge import Hills
+from tests.missions.random_flights import ASSETS, HILLY, cut_out
+from tests.missions.random_missions import Region, put_random_zones
+from tests.missions.test_random_flights import REGIONS
+from tests.missions.wire_judge import WireJudge
+from tests.missions.worlds import power_line, rebuild, request, uav, world
+
+pytestmark = pytest.mark.django_db
+ZONES = 10
+A_TUESDAY = datetime(2026, 11, 24, 9, tzinfo=UTC)
+
+
+def test_random_missions_pass_no_tower_and_no_wire_too_near(shared_data: Any, tmp_path: Path) -> None:
+    _fly(shared_data("osm/liechtenstein-2021-infra.osm.pbf"), tmp_path, missions=60, seed=3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("file_name", REGIONS)
+def test_many_random_missions_pass_no_tower_and_no_wire_too_near(shared_data: Any, file_name: str, tmp_path: Path) -> None:
+    _fly(shared_data(f"osm/{file_name}"), tmp_path, missions=1_500, seed=4)
+
+
+def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
+    import_osm(path=path)
+    cut_out(ASSETS)
+    if path.name in HILLY:
+        Hills().bring_in(folder / "hills.tif")
+    draw = random.Random(seed)
+    _give_heights(draw)
+    put_random_zones(seed)
+    NoFlyZone.objects.exclude(pk__in=NoFlyZone.objects.order_by("pk").values_list("pk", flat=True)[:ZONES]).delete()
+    for zone in NoFlyZone.objects.order_by("pk"):  # room for flights below most of them, but not for all rises
+        NoFlyZone.objects.filter(pk=zone.pk).update(lower_limit_m=draw.choice([None, 90.0, 100.0, 110.0]), lower_reference="AGL")
+    mark_ground_changed()
+    build_graph()
+    region, judge, seen = Region(), WireJudge(ground_heights_m if path.name in HILLY else None), Counter[str]()
+    for _ in range(missions):
+        asked = region.mission(draw)
+        plan = make_plan(request=asked)
+        assert judge.faults(plan) == [], asked
+        heights_m = [waypoint["altitude_agl_m"] for route in plan["routes"] for waypoint in route["waypoints"]]
+        seen["risen"] += max(heights_m, default=0.0) > 61.0
+        seen["visited"] += sum(len(route["targets"]) for route in plan["routes"])
+        seen.update(item["reason"] for item in plan["unassigned"])
+    print(path.name, dict(seen), judge.passed)
+    assert seen["visited"] > missions // 2
+    assert seen["risen"] > missions // 10
+
+
+def _give_heights(draw: random.Random) -> None:
+    """Some towers stand taller than what is cleared between targets, a few too tall for any flight."""
+    towers = list(Asset.objects.filter(kind="tower").order_by("pk"))
+    for tower in towers:
+        tower.height_m = draw.choices([None, draw.uniform(15, 105), draw.uniform(106, 160)], [0.7, 0.27, 0.03])[0]
+    Asset.objects.bulk_update(towers, ["height_m"])
+
+
+# --- on a small world ---------------------------------------------------------------------------------------------------------
+
+
+def crossing(height_m: float) -> None:
+    """A line of two towers across the way from the UAV to the line of the world, half way to it, some 500 m long."""
+    towers = [ground.tower((lon, 55.9975), height_m=height_m) for lon in (9.997, 10.005)]
+    power_line(towers)
+    rebuild()
+
+
+def test_a_leg_rises_over_a_wire_far_from_both_its_towers() -> None:
+    here = world()
+    crossing(90.0)
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),)))
+    assert plan["unassigned"] == []
+    assert max(waypoint["altitude_agl_m"] for waypoint in plan["routes"][0]["waypoints"]) == pytest.approx(105.0)
+    assert WireJudge().faults(plan) == []
+
+
+def test_the_judge_sees_a_leg_through_a_wire() -> None:
+    here = world()
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),)))
+    assert WireJudge().faults(plan) == []
+    crossing(90.0)
+    assert "too low" in WireJudge().faults(plan)[0]
+
+
+def test_wires_too_tall_for_any_flight_are_gone_round() -> None:
+    here = world()
+    free = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),)))
+    crossing(110.0)
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),)))
+    assert plan["unassigned"] == []
+    assert plan["total_length_m"] > free["total_length_m"] + 100.0
+    places = np.array([waypoint["position"] for waypoint in plan["routes"][0]["waypoints"]])
+    for end in ((9.997, 55.9975), (10.005, 55.9975)):
+        assert distance_m(places, np.broadcast_to(end, places.shape)).min() > 25.0
+    assert WireJudge().faults(plan) == []
+
+
+def test_a_uav_under_wires_too_tall_for_any_flight_stays_on_the_ground() -> None:
+    here = world()
+    crossing(110.0)
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9975)),)))
+    assert "cannot be flown over" in plan["warnings"][0]["message"]
+    assert plan["routes"][0]["targets"] == []
+
+
+def test_a_leg_does_not_rise_into_a_zone() -> None:
+    here = world()
+    crossing(90.0)
+    zone = ground.zone((10.001, 55.9975), 0.0008, name="Approach")
+    NoFlyZone.objects.filter(pk=zone.pk).update(lower_limit_m=100.0, lower_reference="AGL")
+    rebuild()
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),), departs_at=A_TUESDAY))
+    assert plan["unassigned"] == []
+    inside = [
+        waypoint["altitude_agl_m"]
+        for waypoint in plan["routes"][0]["waypoints"]
+        if abs(waypoint["position"][0] - 10.001) < 0.0008 and abs(waypoint["position"][1] - 55.9975) < 0.0008
+    ]
+    assert all(height_m <= 60.0 for height_m in inside)
+    assert WireJudge().faults(plan) == []

@@ -1,0 +1,112 @@
+"""Judges finished plans by how near they come to towers, wires, catenaries and bridges: by the rows of the database, step by step.
+
+Shares no code with the planner or its last look. A wire hangs no higher than straight from top to top.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import shapely
+
+from inspection.models import Asset
+from tests.missions.plane import EARTH_M
+
+CLEARANCE_M, ROUNDING_M = 15.0, 1.0
+BESIDE_M = 24.0
+STEEPEST = 0.26  # a tower is come to on a slope: so much less than the clearance for each metre that it still is away
+STEP_M = 3.0
+USUAL_M = {"tower": 45.0, "line": 45.0, "railway": 8.0, "bridge": 30.0}
+
+Ground = Callable[[Any], Any]
+
+
+class WireJudge:
+    """Of all plans over the assets that are in the database now; ground: metres above the sea at (n, 2) lon, lat."""
+
+    def __init__(self, ground: Ground | None = None) -> None:
+        self.ground = ground
+        rows = list(Asset.objects.filter(is_flyable=True, vanished_at=None).order_by("pk"))
+        tops = {tuple(row.centre.coords): self._height(row) for row in reversed(rows) if row.kind == "tower"}
+        wires = [(place, place, top, top) for place, top in tops.items()]
+        for row in rows:
+            if row.kind == "bridge":
+                wires.append((tuple(row.centre.coords), tuple(row.centre.coords), self._height(row), self._height(row)))
+            elif row.kind in {"line", "railway"}:
+                shape = shapely.from_wkb(bytes(row.geometry.wkb))
+                for part in shapely.get_parts(shape):
+                    course = [tuple(place[:2]) for place in part.coords]
+                    for start, end in pairwise(course):
+                        wires.append((start, end, *(self._top(row, place, tops) for place in (start, end))))
+        self.origin = np.array([wires[0][0][0], wires[0][0][1]])
+        self.start, self.end = (self._metres(np.array([wire[side] for wire in wires])) for side in (0, 1))
+        self.top_m = np.array([wire[2:] for wire in wires])
+        if ground is not None:
+            self.top_m = self.top_m + np.column_stack([ground(np.array([wire[side] for wire in wires])) for side in (0, 1)])
+        self.tree = shapely.STRtree([shapely.LineString([a, b]) if a != b else shapely.Point(a) for a, b in self._ends()])
+        self.passed = 0
+
+    def faults(self, plan: dict[str, Any]) -> list[str]:
+        return [fault for route in plan["routes"] for fault in self._faults(route)]
+
+    def _faults(self, route: dict[str, Any]) -> Iterator[str]:
+        waypoints = route["waypoints"]
+        if not waypoints:
+            return
+        places = self._metres(np.array([waypoint["position"] for waypoint in waypoints]))
+        name = "altitude_agl_m" if self.ground is None else "altitude_amsl_m"
+        level_m = [waypoint[name] for waypoint in waypoints]
+        for leg, (one, other) in enumerate(pairwise(waypoints)):
+            if "base" in {one["kind"], other["kind"]}:
+                continue  # up from the ground, or down to it
+            line = shapely.LineString(places[leg : leg + 2]) if (places[leg] != places[leg + 1]).any() else shapely.Point(places[leg])
+            target = self._target(one, other, line)
+            own = places[[waypoint["target"] == target for waypoint in waypoints]] if target is not None else places[:0]
+            for wire in self.tree.query(line, predicate="dwithin", distance=BESIDE_M).tolist():
+                self.passed += 1
+                short_m = self._short_m(places[leg], places[leg + 1], level_m[leg], level_m[leg + 1], wire)
+                if short_m > ROUNDING_M and not self._is_inspected(own, wire):
+                    yield f"{route['uav']}: leg {leg} at {one['position']} is {short_m:.1f} m too low over {self.top_m[wire].tolist()}"
+
+    def _short_m(self, start: Any, end: Any, start_m: float, end_m: float, wire: int) -> float:
+        share = np.linspace(0.0, 1.0, int(math.dist(start, end) / STEP_M) + 2)
+        at = start + share[:, None] * (end - start)
+        along = self.end[wire] - self.start[wire]
+        where = np.clip((at - self.start[wire]) @ along / max(float(along @ along), 1e-9), 0.0, 1.0)
+        beside_m = np.hypot(*(at - self.start[wire] - where[:, None] * along).T)
+        top_m = self.top_m[wire, 0] + where * (self.top_m[wire, 1] - self.top_m[wire, 0])
+        over_m = start_m + share * (end_m - start_m) - top_m
+        short_m = CLEARANCE_M - STEEPEST * beside_m - over_m
+        return float(short_m[beside_m <= BESIDE_M].max(initial=-math.inf))
+
+    def _is_inspected(self, own: Any, wire: int) -> bool:
+        """Whether it hangs at a place of the target, or the target lies along it."""
+        if not len(own):
+            return False
+        ends = np.array([self.start[wire], self.end[wire]])
+        if min(np.hypot(*(own - end).T).min() for end in ends) < 2.0:
+            return True
+        near = shapely.distance(shapely.points(own), shapely.LineString(ends) if (ends[0] != ends[1]).any() else shapely.Point(ends[0]))
+        return bool((np.sort(near)[: 2 if len(own) > 1 else 1] < 2.0).all())
+
+    @staticmethod
+    def _target(one: dict[str, Any], other: dict[str, Any], line: Any) -> int | None:
+        if line.geom_type == "Point":
+            return one["target"] if one["target"] is not None else other["target"]
+        return one["target"] if one["target"] == other["target"] else None
+
+    @staticmethod
+    def _height(row: Asset) -> float:
+        return USUAL_M[row.kind] if row.height_m is None else row.height_m
+
+    def _top(self, row: Asset, place: Any, tops: dict[Any, float]) -> float:
+        return tops.get(place, self._height(row)) if row.kind == "line" else self._height(row)
+
+    def _ends(self) -> list[tuple[tuple[float, ...], tuple[float, ...]]]:
+        return [(tuple(start), tuple(end)) for start, end in zip(self.start.tolist(), self.end.tolist(), strict=True)]
+
+    def _metres(self, places: Any) -> Any:
+        degree_m = math.radians(1.0) * EARTH_M
+        return (np.asarray(places)[:, :2] - self.origin) * (degree_m * math.cos(math.radians(self.origin[1])), degree_m)
