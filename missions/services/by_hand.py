@@ -26,7 +26,7 @@ from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
 from missions.flight_plan.tall_clearance import spans_too_near
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.leg_selectors import LegFlyer, speed_words
+from missions.leg_selectors import LegFlyer, speed_words, too_low_text
 from missions.models import EndAction, Mission, Route, Waypoint
 from missions.services.last_look import flown_route
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
@@ -204,12 +204,8 @@ def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
     near = spans_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
-        if span not in near:
-            continue
-        words = _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
-        if agl_m > flight.max_agl_m:
-            words = _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{flight.max_agl_m:.0f}"}
-        faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", words)
+        if span in near:
+            faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
     return faults
 
 

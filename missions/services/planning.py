@@ -28,6 +28,7 @@ from missions.services.lost_link import lost_link_check
 from missions.services.over_wires import spans_in_the_way, walls_of_spans, without_routes_barred
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
+from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
 from missions.services.warnings import warnings_of
@@ -136,7 +137,10 @@ class _Planner:
         if settings.GRAPH_RULES.off_network_factor == 1.0 or not self._is_out_of_reach(preferred):
             return preferred
         shortest = self._drawn(ground, choice, chosen, share / 2, walls, is_by_length=True)
-        return shortest if shortest.worth.left_out < preferred.worth.left_out else preferred
+        if shortest.worth.left_out < preferred.worth.left_out:
+            return shortest
+        left_out = _least_missing(preferred.found.left_out, shortest.found.left_out)
+        return replace(preferred, found=replace(preferred.found, left_out=left_out))
 
     def _is_out_of_reach(self, plan: Finished) -> bool:
         """Whether a target is left out for which another way might do."""
@@ -205,6 +209,12 @@ class _Planner:
                 break
             window_s = 2.0 * ends_s
         return routes, separation, others
+
+
+def _least_missing(preferred: Sequence[LeftOut], shortest: Sequence[LeftOut]) -> list[LeftOut]:
+    """What both leave out as out of reach lacks no more than it does on the shortest ways."""
+    nearer = {item.target: item for item in shortest if item.reason in OUT_OF_REACH}
+    return [nearer.get(item.target, item) if item.reason in OUT_OF_REACH else item for item in preferred]
 
 
 def make_plan(

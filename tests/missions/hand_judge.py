@@ -25,8 +25,10 @@ from workspace.models import User
 
 TRANSIT_M, HIGHEST_M = 60.0, 120.0
 ROUNDING_M = 0.06
+SHORT_M = 2.2
 UNTAGGED_M = {"tower": 45.0, "line": 60.0, "bridge": 30.0, "railway": 8.0}  # at most
 _LACKS = re.compile(r"lacks ([\d.]+) Wh")
+_SHORT = re.compile(r"is ([\d.]+) m too low")
 _NO_STOPS: dict[int, float] = {}
 
 
@@ -58,8 +60,12 @@ class HandJudge:
         seen["changed by hand"] += 1
         routes = [stored_route(row) for row in mission.routes.all()]
         flown = plan | {"routes": routes, "separation": mission.separation, "lost_link": mission.lost_link_check}
-        faults = [*self.judge.faults_of_routes(asked, flown), *self.judge.wires.faults(flown), *self.judge.returns.faults(asked, flown)]
+        faults = [*self.judge.faults_of_routes(asked, flown), *self._too_low(flown), *self.judge.returns.faults(asked, flown)]
         return [f"by hand: {fault}" for fault in (*faults, *_not_as_wished(routes[number]["waypoints"], wished))]
+
+    def _too_low(self, flown: dict[str, Any]) -> list[str]:
+        """Over wires: a hand may come by so little short of the clearance as rounding and slopes do."""
+        return [fault for fault in self.judge.wires.faults(flown) if float(_SHORT.search(fault)[1]) > SHORT_M]
 
     def _is_true(self, asked: PlanRequest, number: int, route: dict[str, Any], wished: list[dict[str, Any]], place: str, said: str) -> bool:
         what, _, rest = place.partition(".")

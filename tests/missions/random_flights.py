@@ -23,8 +23,8 @@ from tests.missions.random_missions import Region, put_random_zones
 from workspace.models import User
 
 HILLY = ("columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf")  # elsewhere limits above sea level cannot be compared
-ASSETS = 500  # of each region
-ZONES = 16
+ASSETS = 250  # of each region
+ZONES = 12
 TALL_SHARE = 0.06  # of its towers stick out above what is cleared between targets
 APPROVED = 2  # missions of each departure
 AIRS = 8  # conditions that are drawn from: what they make of a network is worked out once

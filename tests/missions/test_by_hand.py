@@ -150,6 +150,22 @@ def test_a_dragged_leg_is_told_what_it_meets(here: World, client: Client) -> Non
     assert (above["is_clear"], above["zone"]) == (False, None)
 
 
+@pytest.mark.parametrize(("height_m", "words"), [(90.0, "fly at 105 m above ground"), (110.0, "cannot be flown over below 120 m")])
+def test_a_dragged_leg_over_wires_is_told_how_high_to_fly(here: World, client: Client, height_m: float, words: str) -> None:
+    power_line([ground.tower((lon, 55.9942), height_m=height_m) for lon in (9.999, 10.005)])
+    rebuild()
+
+    def leg(north: float) -> dict[str, Any]:
+        ends = ([10.002, 55.9935], [10.002, north])
+        start, end = ({"position": position, "altitude_agl_m": 70.0, "arrival_s": 0.0} for position in ends)
+        return {"start": start, "end": end}
+
+    short, over = post(client, "leg-checks", {"legs": [leg(55.9938), leg(55.995)]}).json()["legs"]
+    assert short["is_clear"]
+    assert not over["is_clear"]
+    assert words in over["message"]
+
+
 def planned_with(here: World, client: Client, **wishes: Any) -> dict[str, Any]:
     """One UAV of 12 m/s that may fly 14 m/s through the air, with a battery."""
     body = mission_body(here.towers[3], here.towers[5]) | {"plan": True} | wishes

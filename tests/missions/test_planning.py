@@ -413,3 +413,4 @@ def test_what_is_out_of_range_along_the_line_is_flown_straight_and_the_plan_says
     assert [(warning["code"], warning["uav"]) for warning in straight["warnings"]] == [("shortest_ways", None)]
     [left_out] = make_plan(request=request(far, uavs=(uav(max_range_m=1_200.0),)))["unassigned"]
     assert left_out["reason"] == "beyond_range"
+    assert left_out["message"].startswith(f"It is {straight['total_length_m'] / 1_000:.1f} km there")

@@ -20,7 +20,6 @@ export default {
   "Any time: the plan keeps clear of all zones at all times.": "Jederzeit: Der Plan meidet alle Zonen zu allen Zeiten.",
   "Arrival": "Ankunft",
   "As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.": "Wie gezeichnet, über das Gelände und was hoch aufragt, braucht eine Route dorthin {missing} Wh mehr, als der Akku von {name} geben darf.",
-  "as its type": "wie sein Typ",
   "as many targets as it may have": "so viele Ziele, wie es haben darf",
   "As planned.": "Wie geplant.",
   "at landing": "bei der Landung",
