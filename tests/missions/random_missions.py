@@ -10,11 +10,14 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
+from missions.flight_plan.performance import Performance
 from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import BaseRequest, PlanRequest, TargetRequest, UavRequest
+from missions.services.requests import NO_BATTERY
 
 ZONES = 40
+AMPLE = Performance(battery_wh=50_000.0)  # where the least energy is wished for, every UAV has a battery; this one binds nobody
 
 
 def put_random_zones(seed: int) -> None:
@@ -61,6 +64,7 @@ class Region:
             .order_by("pk")
             .values_list("pk", "kind")
         )
+        objective = draw.choice(list(Objective))
         uavs = tuple(
             UavRequest(
                 f"UAV {number}",
@@ -68,12 +72,13 @@ class Region:
                 draw.choice([None, None, 15_000.0, 40_000.0]),
                 12.0,
                 draw.choice(list(EndAction)),
+                performance=AMPLE if objective is Objective.ENERGY else NO_BATTERY,
             )
             for number in range(draw.randint(1, 2))
         )
         targets = tuple(self._target(draw, near, nearby) for _ in range(draw.randint(1, 4)))
         bases = tuple(BaseRequest(f"Base {number}", _moved(draw, draw.choice(near), 0.02)) for number in range(2))
-        return PlanRequest(uavs, targets, draw.choice(list(Objective)), draw.random() < 0.3, bases=bases)
+        return PlanRequest(uavs, targets, objective, draw.random() < 0.3, bases=bases)
 
     def _target(self, draw: random.Random, near: list[tuple[float, float]], nearby: list[tuple[int, str]]) -> TargetRequest:
         if not nearby or draw.random() < 0.15:

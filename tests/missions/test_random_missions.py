@@ -15,14 +15,15 @@ import shapely
 from inspection.geodesy import distance_m, path_length_m
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.selectors import zones_in_force
+from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
-from missions.routing.problem import Problem, UavStart, Visit
+from missions.routing.problem import Objective, Problem, UavStart, Visit
 from missions.routing.terminals import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
 from missions.services import PlanRequest, make_plan
 from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
 from missions.services.refusals import Scene
-from missions.services.scenes import current_scene
+from missions.services.scenes import current_scene, scene_on
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.routing.random_problems import best_merit
@@ -52,7 +53,7 @@ def _fly(path: Any, *, missions: int, seed: int) -> None:
     seen: Counter[str] = Counter()
     for zone_set in range(ZONE_SETS):
         put_random_zones(seed * 100 + zone_set)
-        region, scene = Region(), current_scene()
+        region, scene, shortest = Region(), current_scene(), scene_on(planning_read().ground(), None, is_by_length=True)
         draw = random.Random(seed * 1_000 + zone_set)
         rings = _exact_rings()
         network = _networkx_graph(scene.graph)
@@ -62,7 +63,7 @@ def _fly(path: Any, *, missions: int, seed: int) -> None:
             _assert_no_leg_meets_a_zone(plan, rings)
             _assert_ranges_and_lengths(request, plan)
             model = _Model(request, scene)
-            _assert_reasons_are_true(request, plan, scene, model)
+            _assert_reasons_are_true(request, plan, scene, model, shortest)
             if number % NETWORKX_EVERY == 0:
                 model.assert_distances_are_networkxs(network)
                 seen["checked by networkx"] += 1
@@ -143,7 +144,7 @@ class _Model:
             from_start_m=self.ways.from_start_m,
             between_m=self.ways.between_m,
             to_start_m=self.ways.to_start_m,
-            objective=request.objective,
+            objective=Objective.TOTAL if request.objective is Objective.ENERGY else request.objective,  # who is left out is the same
             to_base_m=np.repeat(self.ways.to_base_m[:, None], len(self.uavs), axis=1),
         )
 
@@ -181,7 +182,7 @@ def _is_in_zone(place: Place, scene: Scene) -> bool:
     return bool(scene.zones.meets(line[:-1], line[1:], near).any())
 
 
-def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: Scene, model: _Model) -> None:
+def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: Scene, model: _Model, shortest: Scene) -> None:
     reason_of = {item["target"]: item["reason"] for item in plan["unassigned"]}
     for place in model.places:
         reason = reason_of.get(place.target)
@@ -198,10 +199,20 @@ def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: 
             assert not _can_be_reached(number, model, scene) or not _fits_beside_the_others(model, plan)
         if reason == "beyond_range":
             assert any(uav.max_range_m is not None for uav in request.uavs)
-    if model.uavs:
-        assert len(reason_of) - (len(model.places) - len(model.open)) == best_merit(model.problem)[0]
-    else:
+    if not model.uavs:
         assert len(reason_of) == len(request.targets)
+        return
+    left_out, least = len(reason_of) - (len(model.places) - len(model.open)), best_merit(model.problem)[0]
+    if "beyond_range" in reason_of.values() or is_on_shortest_ways(plan):
+        on_shortest = best_merit(_Model(request, shortest).problem)[0]
+        assert is_on_shortest_ways(plan) == (on_shortest < least)
+        least = min(least, on_shortest)
+    assert left_out == least
+
+
+def is_on_shortest_ways(plan: dict[str, Any]) -> bool:
+    """What is out of reach along infrastructure is tried on the shortest ways."""
+    return any(warning["code"] == "shortest_ways" for warning in plan["warnings"])
 
 
 def _fits_beside_the_others(model: _Model, plan: dict[str, Any]) -> bool:

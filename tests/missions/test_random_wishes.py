@@ -11,14 +11,18 @@ import shapely
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import zones_in_force
+from inspection.selectors.planning import planning_read
 from missions.models import EndAction
 from missions.routing.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 from missions.routing.terminals import Terminal, ways_between
 from missions.services import BaseRequest, LockRequest, PlanRequest, TargetRequest, UavRequest, make_plan
 from missions.services.places import places_of
-from missions.services.scenes import current_scene
+from missions.services.requests import NO_BATTERY
+from missions.services.scenes import current_scene, scene_on
 from tests.exact_geometry import segment_meets_polygon
+from tests.missions.random_missions import AMPLE
 from tests.missions.routing.random_problems import every_plan
+from tests.missions.test_random_missions import is_on_shortest_ways
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, World, island, world, zone_around
 
 pytestmark = pytest.mark.django_db
@@ -52,6 +56,7 @@ def test_random_missions_keep_every_wish() -> None:
 
 def _mission(draw: random.Random, here: World) -> PlanRequest:
     """One or two UAVs, two to four targets, and wishes as the dice fall, of which none contradicts another."""
+    objective = draw.choice(list(Objective))
     uavs = tuple(
         UavRequest(
             name,
@@ -61,12 +66,13 @@ def _mission(draw: random.Random, here: World) -> PlanRequest:
             draw.choice(list(EndAction)),
             most_targets=draw.choice([None, None, 1, 2]),
             sensors=tuple(draw.sample(["Lidar", "Thermal"], draw.randint(0, 2))),
+            performance=AMPLE if objective is Objective.ENERGY else NO_BATTERY,
         )
         for name in ["West", "East"][: draw.randint(1, 2)]
     )
     targets = tuple(_target(draw, here, uavs) for _ in range(draw.randint(2, 4)))
     bases = tuple(BaseRequest(str(number), LonLat(draw.uniform(9.998, 10.022), draw.uniform(55.997, 56.001))) for number in range(2))
-    asked = PlanRequest(uavs, targets, draw.choice([Objective.TOTAL, Objective.MAKESPAN]), draw.random() < 0.2, bases=bases)
+    asked = PlanRequest(uavs, targets, objective, draw.random() < 0.2, bases=bases)
     return replace(asked, locks=_locks(draw, asked)) if draw.random() < 0.5 else asked
 
 
@@ -126,11 +132,15 @@ def _assert_wishes_are_kept(asked: PlanRequest, plan: dict[str, Any]) -> None:
     for lock in asked.locks:
         order = next(route["targets"] for uav, route in zip(asked.uavs, plan["routes"], strict=True) if uav.name == lock.uav)
         assert _is_flown(lock, order) or not any(target in flown_by for target in lock.targets)
-    value = plan["total_length_m"] if asked.objective is Objective.TOTAL else max(route["duration_s"] for route in plan["routes"])
-    bound = plan["lower_bound_m"] if asked.objective is Objective.TOTAL else plan["lower_bound_s"]
+    value, bound = {
+        Objective.TOTAL: (plan["total_length_m"], plan["lower_bound_m"]),
+        Objective.MAKESPAN: (max(route["duration_s"] for route in plan["routes"]), plan["lower_bound_s"]),
+        Objective.TIME: (plan["total_duration_s"], plan["lower_bound_s"]),
+        Objective.ENERGY: (plan["total_energy_wh"] or 0.0, plan["lower_bound_wh"]),
+    }[asked.objective]
     assert 0.0 <= bound <= value
     assert (plan["wish"] is not None) == bool(asked.locks)
-    if asked.locks and plan["wish"]["cost_m"] is not None:
+    if asked.locks and plan["wish"]["cost_m"] is not None and asked.objective in {Objective.TOTAL, Objective.MAKESPAN}:
         assert plan["wish"]["cost_m" if asked.objective is Objective.TOTAL else "cost_s"] >= 0.0
 
 
@@ -148,8 +158,8 @@ class _Model:
     numbers: list[int]  # of the open places, in the request
 
 
-def _model(asked: PlanRequest) -> _Model:
-    scene = current_scene()
+def _model(asked: PlanRequest, plan: dict[str, Any]) -> _Model:
+    scene = scene_on(planning_read().ground(), None, is_by_length=is_on_shortest_ways(plan))
     near_m = scene.access.zone_clearance_m
 
     def is_clear(place: LonLat) -> bool:
@@ -188,7 +198,7 @@ def _model(asked: PlanRequest) -> _Model:
         from_start_m=ways.from_start_m,
         between_m=ways.between_m,
         to_start_m=ways.to_start_m,
-        objective=asked.objective,
+        objective=Objective.TOTAL if asked.objective is Objective.ENERGY else asked.objective,  # who is left out is the same
         to_base_m=np.repeat(ways.to_base_m[:, None], len(uavs), axis=1),
         allowed=np.array(may, dtype=bool).reshape(len(uavs), len(visits)),
     )
@@ -197,7 +207,7 @@ def _model(asked: PlanRequest) -> _Model:
 
 def _assert_nothing_better_is_possible(asked: PlanRequest, plan: dict[str, Any]) -> None:
     """No plan flies more of the high targets, of the normal ones, of the low ones, of each the locked ones first, then fewer metres."""
-    model = _model(asked)
+    model = _model(asked, plan)
     if not model.problem.uavs or not model.numbers:
         assert not any(route["targets"] for route in plan["routes"])
         return
