@@ -2,6 +2,7 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from inspection.geodesy import distance_m
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, mark_ground_changed
+from missions.flight_plan.performance import Performance
 from missions.services import make_plan
 from tests.inspection import ground
 from tests.missions.ground_judge import Hills
@@ -24,6 +26,7 @@ from tests.missions.worlds import power_line, rebuild, request, uav, world
 
 pytestmark = pytest.mark.django_db
 ZONES = 10
+AMPLE = Performance(battery_wh=2_000.0)
 A_TUESDAY = datetime(2026, 11, 24, 9, tzinfo=UTC)
 
 
@@ -53,6 +56,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
     region, judge, seen = Region(), WireJudge(ground_heights_m if path.name in HILLY else None), Counter[str]()
     for _ in range(missions):
         asked = region.mission(draw)
+        asked = replace(asked, uavs=tuple(replace(one, performance=AMPLE) for one in asked.uavs))
         plan = make_plan(request=asked)
         assert judge.faults(plan) == [], asked
         heights_m = [waypoint["altitude_agl_m"] for route in plan["routes"] for waypoint in route["waypoints"]]
