@@ -59,11 +59,14 @@ def drawn_lacks(request: PlanRequest, routes: Sequence[PlannedRoute], over: Coll
     return lacks
 
 
-def with_drawn_reasons(left_out: Sequence[LeftOut], lacks: Mapping[int, DrawnLack]) -> list[LeftOut]:
-    """Once the search counts on less of a battery than there is, its own figures are not what is missing: what was drawn says it."""
+def with_drawn_reasons(left_out: Sequence[LeftOut], lacks: Mapping[int, DrawnLack], not_charged: Collection[int]) -> list[LeftOut]:
+    """Once the search counts on less of a battery than there is, its own figures are not what is missing: what was drawn says it.
+
+    not_charged: targets for which no charging suffices, of which that is said already.
+    """
 
     def told(one: LeftOut) -> LeftOut:
-        if one.reason != BEYOND_ENERGY:
+        if one.reason != BEYOND_ENERGY or one.target in not_charged:
             return one
         message = lacks[one.target].message if one.target in lacks else WITH_THAT_KEPT_BACK
         return replace(one, message=message + (LOCKED if one.message.endswith(LOCKED) else ""))

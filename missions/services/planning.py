@@ -172,6 +172,10 @@ class _Planner:
             in_the_way = spans_in_the_way(alone, scene.network, terrain)
             if not over and not in_the_way:
                 break
+            if number < MOST_TRIES - 2:
+                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
+                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
+                    over.pop(uav)
             lacks |= drawn_lacks(self.request, alone, over)
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
@@ -180,14 +184,10 @@ class _Planner:
                 barred |= frozenset().union(*in_the_way.values())
                 wires = walls_of_spans(scene.network, barred)
                 scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires), is_by_length=is_by_length)
-            if number < MOST_TRIES - 2:
-                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
-                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
-                    over.pop(uav)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         if lacks:
-            found = replace(found, left_out=with_drawn_reasons(found.left_out, lacks))
+            found = replace(found, left_out=with_drawn_reasons(found.left_out, lacks, frozenset().union(*kept_from.values())))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
