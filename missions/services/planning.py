@@ -172,11 +172,7 @@ class _Planner:
             in_the_way = spans_in_the_way(alone, scene.network, terrain)
             if not over and not in_the_way:
                 break
-            if number < MOST_TRIES - 2:
-                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
-                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
-                    over.pop(uav)
-            lacks |= drawn_lacks(self.request, alone, over)
+            drawn = alone
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
                 found, alone = without_routes_barred(self.request, found, alone, in_the_way)
@@ -184,6 +180,11 @@ class _Planner:
                 barred |= frozenset().union(*in_the_way.values())
                 wires = walls_of_spans(scene.network, barred)
                 scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires), is_by_length=is_by_length)
+            if number < MOST_TRIES - 2:
+                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
+                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
+                    over.pop(uav)
+            lacks |= drawn_lacks(self.request, drawn, over)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         if lacks:
@@ -212,9 +213,16 @@ class _Planner:
 
 
 def _least_missing(preferred: Sequence[LeftOut], shortest: Sequence[LeftOut]) -> list[LeftOut]:
-    """What both leave out as out of reach lacks no more than it does on the shortest ways."""
+    """What both leave out as out of reach lacks no more than it does on the shortest ways, unless drawn routes show it otherwise."""
     nearer = {item.target: item for item in shortest if item.reason in OUT_OF_REACH}
-    return [nearer.get(item.target, item) if item.reason in OUT_OF_REACH else item for item in preferred]
+
+    def least(item: LeftOut) -> LeftOut:
+        other = nearer.get(item.target, item)
+        if item.missing_wh is not None and other.missing_wh is not None and item.missing_wh <= other.missing_wh:
+            return item
+        return other
+
+    return [least(item) if item.reason in OUT_OF_REACH else item for item in preferred]
 
 
 def make_plan(
