@@ -14,6 +14,8 @@ BoolArray = NDArray[np.bool_]
 
 # Where no tag states a height, towards the upper end of what is common, so that the error is on the safe side.
 UNTAGGED_HEIGHT_M = {NodeKind.SUPPORT: 45.0, NodeKind.LINE_VERTEX: 45.0, NodeKind.RAILWAY: 8.0, NodeKind.BRIDGE: 30.0, NodeKind.BEND: 0.0}
+# Supports of lines of the highest voltages are taller than that.
+HIGHEST_VOLTAGE_V, HIGHEST_VOLTAGE_HEIGHT_M = 300_000, 60.0
 _UNTAGGED_M = np.array([UNTAGGED_HEIGHT_M[kind] for kind in NodeKind])
 
 

@@ -26,7 +26,7 @@ class Ways:
     """Lines or railways; the vertices of way w are numbers first[w] to first[w + 1] - 1."""
 
     asset: NDArray[np.int64]  # (w,) primary keys
-    height_m: NDArray[np.float64]  # (w,) NaN when not stated
+    height_m: NDArray[np.float64]  # (w,) as stated, else of a line of the highest voltages; NaN otherwise
     first: NDArray[np.int64]  # (w + 1,)
     osm_node: NDArray[np.int64]  # (v,) or NO_OSM_NODE
     position: NDArray[np.float64]  # (v, 2) lon, lat [deg]

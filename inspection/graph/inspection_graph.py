@@ -36,7 +36,7 @@ class InspectionGraph:
     position      float64 (n, 2)  lon, lat [deg]
     node_kind     uint8   (n,)    NodeKind
     node_asset    int64   (n,)    primary key of the asset at the node: tower, railway, bridge; for a line vertex its line, for a bend -1
-    node_height_m float64 (n,)    height of that asset as tagged, NaN when not stated
+    node_height_m float64 (n,)    height of that asset as stated, or of a line of the highest voltages on it; NaN otherwise
     edge          int32   (m, 2)  node indices, the smaller first; at most one edge per pair
     length_m      float64 (m,)    geodesic length
     cost          float64 (m,)    length_m, times the off-network factor for links

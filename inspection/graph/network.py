@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.graph.edges import Edges, cheapest_per_pair, component_labels, costs, edges_of, joined, lengths_m, without_seam
+from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.graph.ground_data import GroundData, Places, Ways
 from inspection.graph.inspection_graph import EdgeKind, NodeKind, read_only
-from inspection.graph.joining import join_vertices
+from inspection.graph.joining import JoinedVertices, join_vertices
 from inspection.graph.links import bridge_links, crossing_links, railway_crossing_links
 from inspection.graph.railway_points import railway_points
 from inspection.graph.rules import LinkingRules
@@ -126,7 +127,12 @@ def _nodes_and_edges(ground: GroundData, rules: LinkingRules) -> tuple[Edges, No
             [ground.supports.asset, ground.lines.asset[vertices], ground.railways.asset[railways.way], ground.bridges.asset]
         ),
         height_m=np.concatenate(
-            [ground.supports.height_m, ground.lines.height_m[vertices], ground.railways.height_m[railways.way], ground.bridges.height_m]
+            [
+                _support_heights_m(ground, on_lines),
+                ground.lines.height_m[vertices],
+                ground.railways.height_m[railways.way],
+                ground.bridges.height_m,
+            ]
         ),
     )
 
@@ -143,6 +149,15 @@ def _nodes_and_edges(ground: GroundData, rules: LinkingRules) -> tuple[Edges, No
     changeovers = railway_crossing_links(beside_railways, nodes.of_kind(NodeKind.RAILWAY), nodes.position, rules)
     between_bridges = bridge_links(bridges, nodes.position, rules)
     return without_seam(joined(along_lines, along_railways, crossings, changeovers, between_bridges), nodes.position), nodes
+
+
+def _support_heights_m(ground: GroundData, on_lines: JoinedVertices) -> FloatArray:
+    """As stated; else that of the tallest line on it, if it is taller than supports are otherwise taken to be."""
+    heights_m = np.full(len(on_lines.position), UNTAGGED_HEIGHT_M[NodeKind.SUPPORT])
+    np.fmax.at(heights_m, on_lines.node_of_vertex, ground.lines.height_m[ground.lines.way_of_vertex])
+    by_line_m = heights_m[: len(ground.supports)]
+    taller_m = np.where(by_line_m > UNTAGGED_HEIGHT_M[NodeKind.SUPPORT], by_line_m, np.nan)
+    return np.where(np.isnan(ground.supports.height_m), taller_m, ground.supports.height_m)
 
 
 def _edges_along(kind: EdgeKind, ways: Ways, node_of_vertex: IntArray) -> Edges:

@@ -23,7 +23,7 @@ from inspection.graph.route_index import RouteIndex, asset_places, node_tree, ro
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
 
-LAYOUT = 3  # of the stored arrays and of the files; what has another layout is made anew
+LAYOUT = 4  # of the stored arrays and of the files; what has another layout is made anew
 FLYABLE = "flyable."  # begins the names of the flyable part's files, where it is not the whole graph
 NETWORKS, CLEARED = "networks", "cleared"
 KEPT_NETWORKS, KEPT_CLEARED = 3, 8

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from django.db import connection
 
+from inspection.graph.flown_heights import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V
 from inspection.graph.ground_data import NO_OSM_NODE, GroundData, Places, Ways, Zones
 from inspection.models import AssetKind
 from inspection.selectors.ground import ground_revision
@@ -90,10 +91,11 @@ def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> Ways:
     """A way whose vertices do not match its list of OSM nodes, or that a curator edited, is joined by position alone."""
     rows = _rows(
         f"""
-        SELECT id, height_m, ST_AsBinary(geometry), CASE WHEN NOT is_edited THEN node_osm_ids END
+        SELECT id, COALESCE(height_m, CASE WHEN max_voltage_v >= %s THEN %s END), ST_AsBinary(geometry),
+               CASE WHEN NOT is_edited THEN node_osm_ids END
         FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL {area.condition} ORDER BY id
         """,  # noqa: S608  # the condition is a literal of this file
-        [kind, *area.parameters],
+        [HIGHEST_VOLTAGE_V, HIGHEST_VOLTAGE_HEIGHT_M, kind, *area.parameters],
     )
     geometries = shapely.from_wkb(np.array([bytes(row[2]) for row in rows], dtype=object))
     parts, owner = shapely.get_parts(geometries, return_index=True)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
-from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
+from inspection.graph.flown_heights import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V, UNTAGGED_HEIGHT_M
 from inspection.graph.inspection_graph import NodeKind
 from inspection.terrain.heights import amsl_m, counted_from
 from missions.flight_plan.rules import FlightRules
@@ -26,7 +26,12 @@ DEFAULT_HEIGHT_M = {
     "railway": UNTAGGED_HEIGHT_M[NodeKind.RAILWAY],
     "bridge": UNTAGGED_HEIGHT_M[NodeKind.BRIDGE],
 }
-LINE_HEIGHT_M = ((300_000, 60.0), (100_000, 45.0), (50_000, 30.0), (1, 14.0))  # supports of a line of so many volts or more
+LINE_HEIGHT_M = (
+    (HIGHEST_VOLTAGE_V, HIGHEST_VOLTAGE_HEIGHT_M),
+    (100_000, 45.0),
+    (50_000, 30.0),
+    (1, 14.0),
+)  # supports of a line of so many volts or more
 
 
 def asset_height_m(*, kind: str, subtype: str = "", tagged_m: float | None = None, voltage_v: int | None = None) -> float:

@@ -60,9 +60,10 @@ class TargetExplanationSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[
             "asset_gone", "inside_zone", "above_height_limit", "too_far_from_network", "no_path", "beyond_range", "not_with_the_others",
-            "not_allowed",
+            "not_allowed", "beyond_energy", "wind", "most_targets",
         ]
     )  # fmt: skip
+    message = serializers.CharField(allow_blank=True, help_text="of energy and wind, as a plan of this target alone tells it")
     zones = ZoneNameSerializer(many=True, help_text="that hold it, or that bar the ways to it")
     stretches = serializers.ListField(
         child=serializers.ListField(child=PositionField(), min_length=2, max_length=2),

@@ -78,7 +78,7 @@ class UnassignedSerializer(serializers.Serializer):
     reason = serializers.ChoiceField(
         choices=[
             "no_path", "inside_zone", "beyond_range", "too_far_from_network", "above_height_limit", "asset_gone", "not_allowed",
-            "beyond_energy", "most_targets",
+            "beyond_energy", "wind", "most_targets",
         ]
     )  # fmt: skip
     message = serializers.CharField()

@@ -31,6 +31,7 @@ from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
+from missions.services.unreached import WIND
 from missions.services.warnings import warnings_of
 from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
@@ -145,7 +146,7 @@ class _Planner:
     def _is_out_of_reach(self, plan: Finished) -> bool:
         """Whether a target is left out for which another way might do."""
         reasons = {item.reason for item in plan.found.left_out}
-        return not reasons.isdisjoint(OUT_OF_REACH) or (Reason.NO_PATH in reasons and not self.request.conditions.is_calm)
+        return not reasons.isdisjoint(OUT_OF_REACH | {WIND})
 
     def _drawn(
         self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float, walls: ZoneIndex | None, *, is_by_length: bool

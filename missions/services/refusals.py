@@ -9,6 +9,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.network import Network
+from inspection.graph.route_index import asset_places
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import Edition
 from missions.fleet_selectors import states_out_of_service
@@ -74,10 +75,13 @@ def refused_place(place: Place, scene: Scene) -> LeftOut | None:
 
 
 def place_height_m(place: Place, scene: Scene) -> float:
-    """The asset's height; over a stretch of a line not less than its tallest support."""
-    if place.is_stretch and place.asset is not None:
+    """The asset's height, not less than what its line's voltage tells; over a stretch of a line not less than its tallest support."""
+    if place.asset is None:
+        return place.height_m
+    if place.is_stretch:
         return max(place.height_m, tallest_support_m(scene.network, place.asset, place.course))
-    return place.height_m
+    node = asset_places(scene.whole_graph).node_of(place.asset)
+    return place.height_m if node is None else float(np.fmax(place.height_m, scene.whole_graph.node_height_m[node]))
 
 
 @dataclass(frozen=True)

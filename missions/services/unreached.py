@@ -1,11 +1,11 @@
 """Why a target is left out after the routes are found: the solver's reason, and the wish, the distance or the zones behind it."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from missions.routing.problem import BoolArray, End, Problem, Reason, Unassigned
+from missions.routing.problem import BoolArray, End, Objective, Problem, Reason, Unassigned
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.terminals import Ways, is_near_network
 from missions.services.assignment import Assignment
@@ -15,6 +15,8 @@ from missions.services.requests import PlanRequest, TargetRequest, UavRequest
 from missions.services.wishes import has_sensor, may_do
 
 LOCKED = " It is locked to others: the run is left out as a whole."
+WIND = "wind"
+TOO_STRONG = "The wind is too strong on every way to it, or back."
 MOST_NAMED = 3  # UAVs that a reason names
 
 
@@ -53,7 +55,7 @@ def unreached_places(
             reason, message = item.reason.value, _all_have_enough(request.targets[place.target], crew, visits)
         else:
             reason, message = _why(item, request.targets[place.target], request, asked, visits, ways) or _way_barred(
-                place, item, visits, ways, scene
+                place, item, asked.problem, visits, ways, scene
             )
         found.append(LeftOut(place.target, reason, message + (LOCKED if item.target in in_runs else "")))
     return found
@@ -122,10 +124,12 @@ def _all_have_enough(target: TargetRequest, crew: _Crew, visits: Sequence[int]) 
     return f"{', '.join(uav.name for uav in full[:-1])} and {full[-1].name} have as many targets as they may have{rest}"
 
 
-def _way_barred(place: Place, item: Unassigned, visits: Sequence[int], ways: Ways, scene: Scene) -> tuple[str, str]:
+def _way_barred(place: Place, item: Unassigned, problem: Problem, visits: Sequence[int], ways: Ways, scene: Scene) -> tuple[str, str]:
     """Where the solver found no way, whether that is the distance to the network or the zones around."""
     if item.reason is not Reason.NO_PATH or not ways.uavs:
         return item.reason.value, item.message
+    if _is_stopped_by_wind(problem, visits):
+        return WIND, TOO_STRONG
     reach = f"{scene.access.access_leg_m / 1_000:g} km"
     if not any(ways.entry_legs[visit] for visit in visits):
         if any(is_near_network(scene.graph, end, scene.access.access_leg_m) for end in (place.course[0], place.course[-1])):
@@ -134,3 +138,12 @@ def _way_barred(place: Place, item: Unassigned, visits: Sequence[int], ways: Way
     if not any(ways.uav_legs):
         return Reason.NO_PATH.value, f"No UAV has a clear way of up to {reach} to the network from where it stands."
     return item.reason.value, item.message
+
+
+def _is_stopped_by_wind(problem: Problem, visits: Sequence[int]) -> bool:
+    """Whether a way is there, but none in this wind."""
+    if problem.seconds is None:
+        return False
+    uavs = tuple(replace(uav, usable_wh=None) for uav in problem.uavs)
+    calm = replace(problem, uavs=uavs, objective=Objective.TOTAL, seconds=None, wh=None)
+    return bool(np.isfinite(needed_range_m(calm)[:, list(visits)]).any())

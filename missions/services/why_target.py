@@ -19,7 +19,9 @@ from missions.routing.problem import Objective, Problem, UavStart
 from missions.routing.reach import needed_range_m
 from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.assignment import route_end
+from missions.services.counted import needs_counting
 from missions.services.places import Place, places_of
+from missions.services.planning import make_plan
 from missions.services.refusals import Scene, groundings, place_height_m, zone_at
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest
 from missions.services.scenes import current_scene
@@ -38,6 +40,7 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     said: dict[str, Any] = {
         "target": target,
         "reason": "asset_gone",
+        "message": "",
         "zones": [],
         "stretches": [],
         "network_m": None,
@@ -86,7 +89,16 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
         for number, uav in enumerate(asked)
     ]
     reason, barring = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, scene)
+    alone = _refused_alone(request, target) if reason == "not_with_the_others" and needs_counting(request) else None
+    if alone is not None:
+        return said | {"reason": alone["reason"], "message": alone["message"], "uavs": uavs}
     return said | {"reason": reason, "zones": barring, "uavs": uavs}
+
+
+def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
+    """Why the mission's UAVs cannot do it in this wind and with these batteries, if they had nothing else to do; None if they can."""
+    refused = make_plan(request=replace(request, targets=(request.targets[target],), locks=()))["unassigned"]
+    return refused[0] if refused else None
 
 
 def _reason(wished: TargetRequest, place: Place, uavs: list[dict[str, Any]], ways: Ways, scene: Scene) -> tuple[str, list[dict[str, Any]]]:

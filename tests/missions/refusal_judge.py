@@ -28,8 +28,8 @@ OFF_NETWORK_FACTOR = 2.0  # what a metre away from infrastructure costs
 LONGEST_FLIGHT_S = 4 * 3_600.0
 HIGHEST_AGL_M = 120.0
 STAYS_S = 60.0  # more than any task of these missions takes
-REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path"}
-OF_WAYS = {"no_path", "beyond_range", "beyond_energy", "too_far_from_network"}
+REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path", "wind"}
+OF_WAYS = {"no_path", "wind", "beyond_range", "beyond_energy", "too_far_from_network"}
 NO_NUMBER = ("alone", "kept back", "charges on the way")  # beside others nothing is missing that has one number
 _MISSING = re.compile(r"([\d,.]+) (k?m|Wh) more than")
 

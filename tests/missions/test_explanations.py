@@ -251,3 +251,17 @@ def test_what_the_shortest_way_reaches_nothing_calls_out_of_range(here: World, c
     reached = post(client, "reachability", {"uavs": body["uavs"]}).json()["assets"]
     assert reached["code"][reached["ids"].index(here.towers[5].pk)] == 0
     assert post(client, "plans/why-target", body | {"target": 0}).json()["reason"] == "not_with_the_others"
+
+
+def test_a_battery_too_small_and_a_wind_too_strong_are_told_as_such(here: World, client: Client) -> None:
+    body = plan_body(here.towers[5]) | {"return_to_start": True}
+    small = TERN | {"battery_wh": 4.0, "mass_kg": 1.5, "max_airspeed_mps": 15.0}
+    calm = body | {"uavs": [small]}
+    storm = body | {
+        "uavs": [small | {"battery_wh": 400.0}],
+        "conditions": {"wind": [{"altitude_agl_m": 0, "speed_mps": 18, "from_deg": 270}]},
+    }
+    for asked, reason in ((calm, "beyond_energy"), (storm, "wind")):
+        (left_out,) = post(client, "plans", asked).json()["unassigned"]
+        said = why_target(client, asked)
+        assert (left_out["reason"], said["reason"], said["message"]) == (reason, reason, left_out["message"])

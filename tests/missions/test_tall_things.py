@@ -15,6 +15,7 @@ from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
 from missions.flight_plan.performance import Performance
+from missions.models import EndAction
 from missions.services import make_plan
 from tests.inspection import ground
 from tests.inspection.terrain.tiffs import write_geotiff
@@ -183,3 +184,18 @@ def test_a_wire_too_high_over_a_valley_is_gone_round_or_the_target_left_out(tmp_
     assert all(waypoint["altitude_agl_m"] <= 120.0 for route in plan["routes"] for waypoint in route["waypoints"])
     assert plan["unassigned"] == []
     assert plan["total_length_m"] > 500.0  # straight it is some 400 m
+
+
+@pytest.mark.parametrize(("volts", "least_m"), [(380_000, 75.0), (110_000, 60.0)])
+def test_lines_of_the_highest_voltages_are_taken_to_be_taller_and_their_towers_too(volts: int, least_m: float) -> None:
+    """No height is tagged. The line is crossed on the way, and one of its towers is inspected."""
+    here = world()
+    towers = [ground.tower((lon, 55.998)) for lon in (10.006, 10.011)]
+    power_line(towers, voltages_v=[volts])
+    rebuild()
+    tern = uav((10.009, 55.995), end_action=EndAction.RETURN)
+    crossing = make_plan(request=request(here.towers[2], uavs=(tern,)))
+    assert max(waypoint["altitude_agl_m"] for waypoint in crossing["routes"][0]["waypoints"]) == least_m
+    inspecting = make_plan(request=request(towers[0], uavs=(tern,)))
+    (at_tower,) = [waypoint for waypoint in inspecting["routes"][0]["waypoints"] if waypoint["kind"] == "target"]
+    assert at_tower["altitude_agl_m"] == least_m

@@ -12,6 +12,7 @@ const REASONS = {
   inside_zone: t("It stands inside a no-fly zone."),
   beyond_range: t("It is out of range."),
   beyond_energy: t("No battery lasts for the way there and back."),
+  wind: t("The wind is too strong on every way to it, or back."),
   too_far_from_network: t("It is too far from the network."),
   above_height_limit: t("It is higher than may be flown."),
   asset_gone: t("It is no longer in the data."),

@@ -222,6 +222,7 @@ export default {
   "The route is kept as changed by hand.": "Die Route bleibt, wie sie von Hand geändert ist.",
   "The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach.": "Die Routen nehmen die kürzesten Wege, auch abseits der Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
   "The UAVs keep apart.": "Die UAVs halten Abstand.",
+  "The wind is too strong on every way to it, or back.": "Der Wind ist auf jedem Weg dorthin oder zurück zu stark.",
   "the wind": "der Wind",
   "the wind, {time} more than in calm air": "der Wind, {time} mehr als bei Windstille",
   "There is no asset to inspect.": "Es gibt kein Objekt zu inspizieren.",

@@ -108,7 +108,7 @@ export default {
   "Nothing to save yet": "Noch nichts zu speichern",
   "One a line, or parted by commas, semicolons or tabs.": "Eine je Zeile oder durch Komma, Semikolon oder Tabulator getrennt.",
   "No other UAV has the range left after its other targets.": "Kein anderes UAV hat nach seinen anderen Zielen noch die Reichweite.",
-  "One UAV alone could fly there, but none has the range left after its other targets.": "Ein UAV allein könnte hinfliegen, aber keines hat nach seinen anderen Zielen noch die Reichweite.",
+  "One UAV alone could fly there, but none has range or battery left after its other targets.": "Ein UAV allein könnte hinfliegen, aber keines hat nach seinen anderen Zielen noch Reichweite oder Akku.",
   "Paste at least one reference.": "Mindestens eine Nummer einfügen.",
   "places or tasks changed": "Orte oder Aufgaben geändert",
   "Plan": "Planen",

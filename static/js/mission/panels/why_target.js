@@ -20,7 +20,7 @@ export function fullUavs(said, plan) {
 
 function sharedWords(said, full) {
   const able = (said.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
-  if (!full.length) return t("One UAV alone could fly there, but none has the range left after its other targets.");
+  if (!full.length) return t("One UAV alone could fly there, but none has range or battery left after its other targets.");
   const names = full.map(({ name }) => name).join(", ");
   const words = tn(full.length, "{names} could fly there, but has as many targets as it may have.", "{names} could fly there, but have as many targets as they may have.", { names });
   return full.length === able.length ? words : `${words} ${t("No other UAV has the range left after its other targets.")}`;
@@ -37,6 +37,8 @@ export function reasonWords(said, full = []) {
     too_far_from_network: () => t("The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.", lengths),
     no_path: () => (zones ? t("Every way to it leads through {zones}.", { zones }) : t("No way leads there that keeps clear of every zone.")),
     beyond_range: () => t("It is out of range of every UAV of this mission."),
+    beyond_energy: () => inWords(said.message, t("No battery lasts for the way there and back.")),
+    wind: () => t("The wind is too strong on every way to it, or back."),
     not_allowed: () => t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
     most_targets: () => t("Every UAV that could fly it has as many targets as it may."),
     not_with_the_others: () => sharedWords(said, full),
@@ -46,7 +48,7 @@ export function reasonWords(said, full = []) {
 
 function facts(said) {
   const needs = said.uavs.filter(({ is_in_mission }) => is_in_mission);
-  if (!needs.length) return null;
+  if (!needs.length || ["beyond_energy", "wind"].includes(said.reason)) return null; // ranges say nothing of them
   const row = ({ name, needed_m, max_range_m, most_targets, is_grounded }) => {
     const limit = most_targets ? tn(most_targets, "at most {count} target", "at most {count} targets") : "";
     const has = [max_range_m === null ? t("not limited") : lengthText(max_range_m), limit].filter(Boolean).join(", ");
@@ -67,9 +69,10 @@ function changes(said, { target, full, store, actions }) {
     };
     list.push(act(tn(most_targets, "{name} may do {count} target at most.", "{name} may do {count} targets at most.", { name }), t("Let {name} do one more", { name }), raise));
   }
-  const spare = said.uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
+  const isOfRange = !["beyond_energy", "wind"].includes(said.reason);
+  const spare = isOfRange && said.uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
   if (spare) list.push(act(t("{name} could fly there: it needs {needed}.", { name: spare.name, needed: lengthText(spare.needed_m) }), t("Take {name} along", { name: spare.name }), () => (actions.addUavOfFleet(spare.uav_id), actions.plan())));
-  const nearest = said.uavs.filter((uav) => uav.is_in_mission && uav.is_allowed && uav.needed_m !== null && uav.max_range_m !== null && !uav.is_enough).sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
+  const nearest = said.uavs.filter((uav) => isOfRange && uav.is_in_mission && uav.is_allowed && uav.needed_m !== null && uav.max_range_m !== null && !uav.is_enough).sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
   if (nearest) list.push(h("li", {}, t("{name} would need {missing} more range, or a start that is nearer: drag its square on the map.", { name: nearest.name, missing: lengthText(nearest.needed_m - nearest.max_range_m) })));
   if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
   list.push(act(t("The plan goes without it."), t("Remove it"), () => (store.update({ why: null }), actions.removeTargets([target.key]))));
