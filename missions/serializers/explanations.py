@@ -25,6 +25,7 @@ class WhyRouteInputSerializer(PlanInputSerializer):
         help_text="for each UAV the indices of its targets in the order of the visits",
     )
     uav = serializers.IntegerField(min_value=0, help_text="index of the UAV")
+    shortest_ways = serializers.BooleanField(default=False, help_text="the plan warns that it takes the shortest ways")
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         attrs = super().validate(attrs)

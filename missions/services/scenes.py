@@ -48,7 +48,7 @@ def current_scene(request: PlanRequest | None = None, *, is_by_length: bool = Fa
     return scene_on(ground, chosen, is_by_length=is_by_length)
 
 
-def scene_without_zones() -> Scene:
-    """As if there were none. Raises NoGraph."""
+def scene_without_zones(*, is_by_length: bool = False) -> Scene:
+    """As if there were none; is_by_length as in scene_on. Raises NoGraph."""
     ground = planning_read().ground()
-    return scene_on(ground, np.zeros(len(ground.table), dtype=bool))
+    return scene_on(ground, np.zeros(len(ground.table), dtype=bool), is_by_length=is_by_length)

@@ -6,7 +6,7 @@ from typing import Any
 from missions.services.refusals import Grounding
 from missions.services.requests import PlanRequest
 
-SHORTEST_WAYS = "The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach."
+SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
 
 
 def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_by_length: bool) -> list[dict[str, Any]]:

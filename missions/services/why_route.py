@@ -39,11 +39,14 @@ class _Field:
     bases: list[LonLat]
 
 
-def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int) -> dict[str, Any]:
-    """routes: for each UAV of the request its targets in order. Raises InvalidRequest or NoGraph."""
+def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int, is_by_length: bool = False) -> dict[str, Any]:
+    """routes: for each UAV of the request its targets in order; is_by_length: the plan takes the shortest ways.
+
+    Raises InvalidRequest or NoGraph.
+    """
     if not routes[uav]:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
-    scene = current_scene(request)
+    scene = current_scene(request, is_by_length=is_by_length)
     wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
     field = _field(request, wanted, scene, scene.graph, scene.leg_zones)
     order = _best_order(request, field, uav, routes[uav])
@@ -179,7 +182,7 @@ def _detours(
     (west, south), (east, north) = np.min(positions, axis=0) - BOX_MARGIN_DEG, np.max(positions, axis=0) + BOX_MARGIN_DEG
     if not shapely.intersects(scene.zones.polygons, shapely.box(west, south, east, north)).any():
         return [(0.0, []) for _ in legs_m]
-    free = scene_without_zones()
+    free = scene_without_zones(is_by_length=scene.is_by_length)
     graph = free.graph
     own = replace(request, uavs=(request.uavs[uav],), locks=())
     field = _field(own, set(targets), scene, graph, free.leg_zones)

@@ -50,5 +50,7 @@ class WhyRoute(_Explanation):
         body.is_valid(raise_exception=True)
         values = body.validated_data
         with api_problems():
-            answer = services.explain_route(request=plan_request(values), routes=values["routes"], uav=values["uav"])
+            answer = services.explain_route(
+                request=plan_request(values), routes=values["routes"], uav=values["uav"], is_by_length=values["shortest_ways"]
+            )
         return Response(explanations.RouteExplanationSerializer(answer).data)

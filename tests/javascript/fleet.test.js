@@ -50,9 +50,9 @@ test("each kind counts itself in words", () => {
   assert.deepEqual(Object.values(KINDS).map((kind) => [kind.count(1), kind.count(2)]), [["1 UAV", "2 UAVs"], ["1 type", "2 types"], ["1 base", "2 bases"]]);
 });
 
-test("what a UAV has no figure of its own for is its type's, else an Iris's, else not known", () => {
+test("what a UAV has no figure of its own for is its type's, an Iris's mass with a battery of its type, else not known", () => {
   assert.deepEqual(usualOf({ battery_wh: 400, mass_kg: null, reserve_percent: 25, max_airspeed_mps: 14 }), { battery_wh: 400, mass_kg: 1.545, reserve_percent: 25, max_airspeed_mps: 14 });
-  assert.deepEqual(usualOf(null), { battery_wh: null, mass_kg: 1.545, reserve_percent: 20, max_airspeed_mps: null });
+  assert.deepEqual(usualOf(null), { battery_wh: null, mass_kg: null, reserve_percent: 20, max_airspeed_mps: null });
 });
 
 test("bounds in miles per hour lie within those in metres a second", () => {

@@ -265,3 +265,12 @@ def test_a_battery_too_small_and_a_wind_too_strong_are_told_as_such(here: World,
         (left_out,) = post(client, "plans", asked).json()["unassigned"]
         said = why_target(client, asked)
         assert (left_out["reason"], said["reason"], said["message"]) == (reason, reason, left_out["message"])
+
+
+def test_a_route_on_the_shortest_ways_is_explained_on_these(here: World, client: Client) -> None:
+    body = plan_body(here.towers[5])
+    body["uavs"] = [body["uavs"][0] | {"position": list(UAV_AT), "max_range_m": 1_400.0}]
+    plan = post(client, "plans", body).json()
+    asked = body | {"routes": [route["targets"] for route in plan["routes"]], "uav": 0, "shortest_ways": True}
+    said = post(client, "plans/why-route", asked).json()
+    assert said["length_m"] == pytest.approx(plan["total_length_m"], rel=1e-6)

@@ -21,12 +21,14 @@ const SENTENCES = [
   [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
   [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed, missing })],
   [/^The wind is too strong on every way to it, or back\.$/, () => t("The wind is too strong on every way to it, or back.")],
-  [/^The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach\.$/, () => t("The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach.")],
+  [/^The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach\.$/, () => t("The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.")],
   [/^As drawn, over the ground and what stands tall, a route with it takes ([\d,.]+) Wh more than the battery of (.+) may give\.$/, (missing, name) => t("As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.", { missing, name })],
   [/^Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it\.$/, () => t("Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.")],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 
+/** Whether a plan leaves the preferred ways for the shortest ones. */
+export const takesShortestWays = ({ warnings }) => (warnings ?? []).some(({ code }) => code === "shortest_ways");
 /** What a plan warns of where a UAV stays on the ground. */
 export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
 

@@ -220,7 +220,7 @@ export default {
   "The mission": "Die Mission",
   "The next legal one is {when}.": "Der nächste erlaubte ist {when}.",
   "The route is kept as changed by hand.": "Die Route bleibt, wie sie von Hand geändert ist.",
-  "The routes take the shortest ways, away from the lines too: along the lines, not all targets are in reach.": "Die Routen nehmen die kürzesten Wege, auch abseits der Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
+  "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.": "Die Routen nehmen kürzere Wege als bevorzugt, weiter weg von den Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
   "The UAVs keep apart.": "Die UAVs halten Abstand.",
   "The wind is too strong on every way to it, or back.": "Der Wind ist auf jedem Weg dorthin oder zurück zu stark.",
   "the wind": "der Wind",

@@ -6,6 +6,7 @@ import { byId, h, icon } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
+import { takesShortestWays } from "../plan_words.js";
 import { requestOf } from "../selection.js";
 import { alternatives } from "./alternatives.js";
 import { createByHand } from "./by_hand.js";
@@ -91,7 +92,7 @@ export function mountWhy(store, actions, { canPlan }) {
     } else {
       const route = plan.result.routes[why.route];
       if (!route?.geometry) store.update({ why: null });
-      else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route, routes: plan.result.routes.map(({ targets }) => targets) }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
+      else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route, routes: plan.result.routes.map(({ targets }) => targets), shortest_ways: takesShortestWays(plan.result) }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
     }
     const sequence = why.route ?? why.byHand;
     panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
