@@ -96,6 +96,7 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
       end();
       keepOpen(data, { selection: selection(), name });
       history.startFrom(selection());
+      store.update({ problem: null }); // what planning again would take away may be there no more
       toast(t("The last change by hand is taken back."));
     } catch (error) {
       if (state()) put({ isSaving: false });
@@ -119,7 +120,9 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
       if (!state()) return undefined;
       const faults = hand.faultsOf(error.details);
       const places = faults.points.size + faults.legs.size;
-      put({ isSaving: false, faults: places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] }, chosen: [...faults.points.keys(), ...faults.legs.keys()][0] ?? state().chosen });
+      const told = places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] };
+      toast(t("Not kept: {reason}", { reason: [...told.other, ...told.points.values(), ...told.legs.values()][0] }));
+      put({ isSaving: false, faults: told, chosen: [...faults.points.keys(), ...faults.legs.keys()][0] ?? state().chosen });
       if (error.isSignedOut) problem(t("You are signed out."), wordsOf(error));
     }
     return undefined;

@@ -50,7 +50,7 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     queueMicrotask(plan); // after whoever saved has settled
   });
 
-  const isByHand = () => (store.state.plan?.result.routes ?? []).some(({ by_hand }) => by_hand?.length > 0);
+  const isByHand = () => (store.state.plan?.result.routes ?? []).some(({ by_hand, hand_steps }) => by_hand?.length > 0 || hand_steps > 0);
 
   /** `isSure` is true where somebody has been told what is lost; events are no answer. */
   async function plan(isSure) {

@@ -196,6 +196,7 @@ export default {
   "Reasons": "Gründe",
   "Remove this height": "Diese Höhe entfernen",
   "(shown)": "(gezeigt)",
+  "Not kept: {reason}": "Nicht übernommen: {reason}",
   "south": "Süden",
   "south-east": "Südosten",
   "south-west": "Südwesten",
