@@ -96,8 +96,7 @@ def _count(seen: Counter[str], plan: dict[str, Any]) -> None:
 def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.Random, seen: Counter[str]) -> list[str]:
     """Of a target that is refused for range or battery: not to be had before all others, and with what is said to be missing it is."""
     refused = [item for item in plan["unassigned"] if item["reason"] in {"beyond_range", "beyond_energy"}]
-    if not refused or asked.charging_w is not None or draw.random() > AS_DRAWN = "As drawn"  # of one route with the target and others, not the least
-FLOWN_SHARE:
+    if not refused or asked.charging_w is not None or draw.random() > FLOWN_SHARE:
         return []
     item = draw.choice(refused)
     target, lacks = item["target"], missing(item)
