@@ -9,16 +9,23 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
-from inspection.selectors import ground_heights_m, has_terrain
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.graph.spans import Spans, spans_between, spans_of
+from inspection.selectors import NoGraph, ground_heights_m, has_terrain
+from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.clearance import FlownRoute
 from missions.flight_plan.conditions import Conditions
 from missions.flight_plan.heights import with_heights
 from missions.flight_plan.leg_speeds import SpeedRange, speeds_out_of_range
+from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.zone_selectors import zones_met
+
+NEAR_DEG = 0.002
+AT_DEG = 1e-5  # a metre
 
 
 class LegEnd(NamedTuple):
@@ -90,10 +97,33 @@ def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: Zone
     for meeting in zones_met([leg], table)[0]:
         if 0 <= meeting.breach.leg < len(position) - 1:
             return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
-    return None
+    low = too_low(flown, _spans_elsewhere(position), ground_heights_m if has_ground else None, flight)
+    return None if low is None else _fault(None, too_low_text(float(low.agl_m.max())))
 
 
 _NO_FAULT: dict[str, Any] = {"is_clear": True, "zone": None, "message": ""}
+
+
+def too_low_text(agl_m: float) -> str:
+    """What is said of a leg that has to be flown at this height above ground over something."""
+    limit_m = settings.FLIGHT_RULES.max_agl_m
+    if agl_m > limit_m:
+        return _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{limit_m:.0f}"}
+    return _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
+
+
+def _spans_elsewhere(position: FloatArray) -> Spans:
+    """Near a leg all but what hangs at its ends: whether these are inspected is not known while it is dragged."""
+    try:
+        spans = spans_of(planning_read().ground().network())
+    except NoGraph:
+        return spans_between(*(np.zeros((0, 2)),) * 2, *(np.zeros(0),) * 2)
+    low, high = position.min(axis=0) - NEAR_DEG, position.max(axis=0) + NEAR_DEG
+    near = ((np.maximum(spans.start, spans.end) >= low) & (np.minimum(spans.start, spans.end) <= high)).all(axis=1)
+    for at in (position[0], position[-1]):
+        for ends in (spans.start, spans.end):
+            near &= (np.abs(ends - at) > AT_DEG).any(axis=1)
+    return spans_between(spans.start[near], spans.end[near], spans.start_height_m[near], spans.end_height_m[near])
 
 
 def _fault(zone: int | None, message: str) -> dict[str, Any]:

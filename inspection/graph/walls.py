@@ -1,6 +1,7 @@
 """What cannot be flown over, and so has to be gone round: towers and wires too tall for the highest flight, or tall under a zone."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -43,8 +44,9 @@ def index_of_walls(polygons: Geometries) -> ZoneIndex:
     return ZoneIndex(polygons, np.full(len(polygons), NO_ZONE), [WALL] * len(polygons))
 
 
+@lru_cache(maxsize=32)
 def with_walls(zones: ZoneIndex, walls: ZoneIndex) -> ZoneIndex:
-    """Both, the zones first."""
+    """Both, the zones first; made once for the two, with what the index works out as it is asked."""
     if not len(walls):
         return zones
     return ZoneIndex(

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from inspection.geodesy import path_length_m
 from missions.flight_plan.conditions import Conditions
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
@@ -115,6 +116,13 @@ def _before_last_wh(whole: Timing) -> float:
         return 0.0
     drops = np.flatnonzero(np.diff(whole.used_wh) < 0)  # a new battery
     return float(whole.used_wh[drops].sum())
+
+
+def lengths_of_sorties(waypoints: Waypoints) -> list[float]:
+    """Metres of each flight of a route."""
+    position = waypoints.points.position
+    stops = np.flatnonzero(waypoints.points.kind == BASE).tolist()
+    return [path_length_m(position[begin : end + 1]) for begin, end in zip([0, *stops], [*stops, len(position) - 1], strict=True)]
 
 
 def wh_of_sorties(clock: Timing) -> list[float]:

@@ -6,6 +6,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import shapely
 from numba import njit
 from numpy.typing import NDArray
 
@@ -29,6 +30,8 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
+ON_SPAN_DEG = 1e-6  # a tenth of a metre: places on a span are rounded
+END_SHARE = 0.01  # of a span at each end, where the wire hangs as high as its support
 _NO_WAY_TO_GO = np.zeros(1)  # metres from a place to its own node
 
 
@@ -118,12 +121,16 @@ def _along_own_line(
 
 
 def tallest_support_m(network: Network, asset: int, course: Sequence[LonLat]) -> float:
-    """The greatest tagged height among the supports at the vertices of a line's stretch; 0 if none is tagged."""
-    nodes = np.unique(network.edge[network.edge_asset == asset])
-    tagged = nodes[network.node_height_m[nodes] > 0]
-    vertices = {tuple(position) for position in course}
-    heights_m = [float(network.node_height_m[node]) for node in tagged if tuple(network.position[node].tolist()) in vertices]
-    return max(heights_m, default=0.0)
+    """The greatest tagged height among the supports of the spans along which a line's stretch runs; 0 if none is tagged."""
+    spans = network.edge[network.edge_asset == asset]
+    if not len(spans):
+        return 0.0
+    flown = shapely.linestrings(np.array(course)) if len(course) > 1 else shapely.points(course[0])
+    start, end = network.position[spans[:, 0]], network.position[spans[:, 1]]
+    inner = np.stack([start + END_SHARE * (end - start), end + END_SHARE * (start - end)], axis=1)  # a stretch may end where one begins
+    touched = shapely.distance(shapely.linestrings(inner), flown) <= ON_SPAN_DEG
+    heights_m = network.node_height_m[np.unique(spans[touched])]
+    return float(heights_m[heights_m > 0].max(initial=0.0))
 
 
 def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: ZoneIndex, rules: AccessRules) -> list[DirectLeg]:

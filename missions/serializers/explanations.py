@@ -37,7 +37,7 @@ class WhyRouteInputSerializer(PlanInputSerializer):
 
 
 class ZoneNameSerializer(serializers.Serializer):
-    id = serializers.IntegerField()
+    id = serializers.IntegerField(allow_null=True, help_text="null: no zone, but what cannot be flown over")
     name = serializers.CharField()
 
 

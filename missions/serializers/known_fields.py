@@ -9,19 +9,24 @@ from rest_framework import serializers
 
 MOST_TOLD = 10
 LONGEST_TOLD = 80
+UNKNOWN_TOLD = "unknown_fields_told"
 
 
 class KnownFieldsSerializer(serializers.Serializer):
-    """Refuses a field that it does not have, and names the one that is most like it."""
+    """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only."""
 
     def to_internal_value(self, data: Any) -> Any:
         if isinstance(data, Mapping):
-            unknown = [str(name) for name in data if name not in self.fields][:MOST_TOLD]
+            unknown = [str(name)[:LONGEST_TOLD] for name in data if name not in self.fields]
             if unknown:
-                raise serializers.ValidationError({name[:LONGEST_TOLD]: [_words(name, self.fields)] for name in unknown})
+                told = self.context.setdefault(UNKNOWN_TOLD, [])
+                full = unknown[: max(0, MOST_TOLD - len(told))]
+                told += full
+                words = {name: [_words(name, self.fields)] for name in full}
+                raise serializers.ValidationError(words or {unknown[0]: [_("There is no such field.")]})
         return super().to_internal_value(data)
 
 
 def _words(unknown: str, names: Collection[str]) -> str:
-    nearest = get_close_matches(unknown[:LONGEST_TOLD], list(names), 1)
+    nearest = get_close_matches(unknown, list(names), 1)
     return _("There is no such field; is %(name)s meant?") % {"name": nearest[0]} if nearest else _("There is no such field.")

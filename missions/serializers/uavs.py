@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
@@ -88,6 +89,8 @@ class UavFlatSerializer(UavPropertiesSerializer):
         stored = self.instance
         uav_type = attrs["uav_type"] if "uav_type" in attrs else getattr(stored, "uav_type", None)
         own = {name: attrs[name] if name in attrs else getattr(stored, name, None) for name in OWN_PERFORMANCE_KEYS}
+        if own["battery_wh"] is not None and own["mass_kg"] is None and getattr(uav_type, "mass_kg", None) is None:
+            return {"mass_kg": _("A UAV with a battery of its own needs a mass: what a flight takes follows from it.")}
         try:
             performance_with(uav_type, own)
         except InvalidPerformance as error:

@@ -94,7 +94,8 @@ def attempt(
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
     )
-    costs = counted(request, scene, uavs, places, agl_m, visits, courses, ways, bases) if counts else None
+    drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
+    costs = counted(drawing, uavs) if counts else None
     ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
     no_landing = _no_landing(request, uavs, places, scene)
     asked = assignment(
@@ -105,7 +106,6 @@ def attempt(
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
     left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing, kept_from)
-    drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
 
 

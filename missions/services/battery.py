@@ -59,14 +59,19 @@ def drawn_lacks(request: PlanRequest, routes: Sequence[PlannedRoute], over: Coll
     return lacks
 
 
-def with_drawn_reasons(left_out: Sequence[LeftOut], lacks: Mapping[int, DrawnLack]) -> list[LeftOut]:
-    """Once the search counts on less of a battery than there is, its own figures are not what is missing: what was drawn says it."""
+def with_drawn_reasons(left_out: Sequence[LeftOut], lacks: Mapping[int, DrawnLack], told_of: Collection[int]) -> list[LeftOut]:
+    """Once the search counts on less of a battery than there is, its own figures are not what is missing: what was drawn says it.
+
+    told_of: targets whose reason is known otherwise.
+    """
 
     def told(one: LeftOut) -> LeftOut:
-        if one.reason != BEYOND_ENERGY:
+        if one.reason != BEYOND_ENERGY or one.target in told_of:
             return one
-        message = lacks[one.target].message if one.target in lacks else WITH_THAT_KEPT_BACK
-        return replace(one, message=message + (LOCKED if one.message.endswith(LOCKED) else ""))
+        lack = lacks.get(one.target)
+        message = WITH_THAT_KEPT_BACK if lack is None else lack.message
+        message += LOCKED if one.message.endswith(LOCKED) else ""
+        return replace(one, message=message, missing_wh=None if lack is None else lack.missing_wh)
 
     return [told(one) for one in left_out]
 

@@ -9,6 +9,7 @@ import numpy as np
 from django.conf import settings
 from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
+from django.db.models import Q
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
@@ -22,12 +23,13 @@ from missions.flight_plan.leg_speeds import speeds_out_of_range
 from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
-from missions.flight_plan.sorties import timing_of_route, wh_of_sorties
+from missions.flight_plan.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
 from missions.flight_plan.tall_clearance import spans_too_near
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.leg_selectors import LegFlyer, speed_words
+from missions.leg_selectors import LegFlyer, speed_words, too_low_text
 from missions.models import EndAction, Mission, Route, Waypoint
+from missions.routing.terminals import tallest_support_m
 from missions.services.last_look import flown_route
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute
@@ -67,6 +69,8 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
         locked, route = _locked_route(mission, uav, expected_revision)
         until_now = list(route.waypoints.select_related("asset", "target"))
         _refuse(_shape_faults(points, until_now))
+        if len(route.before_hand) == MOST_STEPS:  # the route as planned is forgotten, and with it what was proven of it
+            locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
         route.before_hand = [*route.before_hand, [_step_row(waypoint) for waypoint in until_now]][-MOST_STEPS:]
         by_hand = {_place(point.position, point.agl_m) for point in points if _is_by_hand(point, until_now)}
         _fly(locked, route, uav, _route_points(points, until_now), by_hand)
@@ -125,7 +129,8 @@ def _quality(mission: Mission) -> dict[str, Any]:
     """Nothing is proven of a plan that a hand has changed; once every change is taken back, what was proven before is."""
     quality = mission.plan_quality or {}
     planned = quality.get("planned", quality)
-    if not Waypoint.objects.filter(route__mission=mission, is_by_hand=True).exists():
+    by_hand = Q(waypoints__is_by_hand=True) | ~Q(before_hand=[])  # of what was only taken out nothing is left to see
+    if not mission.routes.filter(by_hand).exists():
         return dict(planned)
     return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
 
@@ -204,12 +209,8 @@ def _obstacle_faults(points: RoutePoints) -> dict[str, str]:
     near = spans_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
-        if span not in near:
-            continue
-        words = _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
-        if agl_m > flight.max_agl_m:
-            words = _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{flight.max_agl_m:.0f}"}
-        faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", words)
+        if span in near:
+            faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
     return faults
 
 
@@ -229,6 +230,9 @@ def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:
     if waypoint.asset is not None:
         asset = waypoint.asset
         height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
+        if waypoint.target is not None and waypoint.target.stretch is not None:
+            course = [LonLat(*vertex) for vertex in waypoint.target.stretch.coords]
+            height_m = max(height_m, tallest_support_m(planning_read().ground().network(), asset.pk, course))
         least_m = height_m + flight.clearance_m
         return least_m if waypoint.target_id is not None else max(least_m, flight.transit_agl_m)
     return min(waypoint.altitude_agl_m, flight.transit_agl_m)
@@ -317,8 +321,9 @@ def leg_of(meeting: MetZone) -> int:
 
 def _reach_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[str, str]:
     asked = request.uavs[uav]
-    if asked.max_range_m is not None and flown.length_m > asked.max_range_m:
-        values = {"length": f"{flown.length_m / 1_000:.1f}", "range": f"{asked.max_range_m / 1_000:.1f}", "uav": asked.name}
+    longest_m = max(lengths_of_sorties(flown.waypoints)) if flown.waypoints else 0.0
+    if asked.max_range_m is not None and longest_m > asked.max_range_m:
+        values = {"length": f"{longest_m / 1_000:.1f}", "range": f"{asked.max_range_m / 1_000:.1f}", "uav": asked.name}
         return {"waypoints": _("This is %(length)s km; the range of %(uav)s is %(range)s km.") % values}
     usable_wh = asked.performance.usable_wh
     most_wh = max(wh_of_sorties(flown.timing), default=0.0) if flown.timing else 0.0

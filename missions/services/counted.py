@@ -11,10 +11,9 @@ from inspection.selectors.planning import has_terrain_at, terrain_at
 from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
 from missions.flight_plan.ways_taken import FlightClass, NodeGround
 from missions.models import EndAction
-from missions.routing.problem import Objective, Visit
-from missions.routing.terminals import Ways
+from missions.routing.problem import Objective
 from missions.services.assignment import route_end
-from missions.services.places import Place
+from missions.services.laid_out import LaidOut
 from missions.services.refusals import Scene
 from missions.services.requests import BaseRequest, PlanRequest
 
@@ -30,32 +29,24 @@ def needs_counting(request: PlanRequest) -> bool:
     )
 
 
-def counted(
-    request: PlanRequest,
-    scene: Scene,
-    uavs: Sequence[int],
-    places: Sequence[Place],
-    agl_m: Sequence[float],
-    visits: Sequence[Visit],
-    courses: Sequence[tuple[LonLat, ...]],
-    ways: Ways,
-    bases: Sequence[BaseRequest],
-) -> FlightCosts:
-    """For the UAVs that fly, by their numbers in the request, and the visits of the places; agl_m of each place."""
+def counted(laid_out: LaidOut, uavs: Sequence[int]) -> FlightCosts:
+    """For the UAVs that fly, by their numbers in the request, and the visits."""
+    request, scene = laid_out.request, laid_out.scene
     asked = [request.uavs[uav] for uav in uavs]
+    starts = [uav.position for uav in asked]
     return flight_costs(
         scene.graph,
-        ways,
+        laid_out.ways,
         classes=[FlightClass(uav.performance, uav.cruise_speed_mps) for uav in asked],
         finishes=[Finish(route_end(request, uav), request.end_action(uav) is not EndAction.HOVER) for uav in uavs],
-        starts=[uav.position for uav in asked],
-        bases=[base.position for base in bases],
-        courses=courses,
-        agl_m=[agl_m[visit.target] for visit in visits],
-        hold_s=[places[visit.target].task.hold_s for visit in visits],
+        starts=starts,
+        bases=[base.position for base in laid_out.bases],
+        courses=laid_out.courses,
+        agl_m=[laid_out.agl_m[visit.target] for visit in laid_out.visits],
+        hold_s=[laid_out.places[visit.target].task.hold_s for visit in laid_out.visits],
         conditions=request.conditions,
         rules=scene.flight,
-        ground=_ground(scene, [uav.position for uav in asked], courses, bases) if has_terrain_at(scene.edition) else None,
+        ground=_ground(scene, starts, laid_out.courses, laid_out.bases) if has_terrain_at(scene.edition) else None,
     )
 
 

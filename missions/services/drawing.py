@@ -22,13 +22,12 @@ from missions.flight_plan.sorties import joined_sorties, timing_of_route
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import NONE, RoutePoints, Waypoints
 from missions.models import EndAction
-from missions.routing.problem import Routes, Visit
-from missions.routing.terminals import Ways
+from missions.routing.problem import Routes
 from missions.services.assignment import route_end
-from missions.services.places import Place
+from missions.services.laid_out import LaidOut
 from missions.services.plan_json import PlannedRoute
-from missions.services.refusals import Scene, zone_at
-from missions.services.requests import BaseRequest, InvalidRequest, PlanRequest
+from missions.services.refusals import zone_at
+from missions.services.requests import BaseRequest, InvalidRequest
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,28 +40,8 @@ class _Flown:
     blocked_by: tuple[int, ...]
 
 
-class Drawing:
-    """Turns the visits of UAVs into their waypoints. agl_m: the height above ground at which each place is inspected."""
-
-    def __init__(
-        self,
-        request: PlanRequest,
-        scene: Scene,
-        places: Sequence[Place],
-        agl_m: Sequence[float],
-        visits: Sequence[Visit],
-        courses: Sequence[tuple[LonLat, ...]],
-        ways: Ways,
-        bases: Sequence[BaseRequest],
-    ) -> None:
-        self.request = request
-        self.scene = scene
-        self.places = places
-        self.agl_m = agl_m
-        self.visits = visits
-        self.courses = courses
-        self.ways = ways
-        self.bases = bases
+class Drawing(LaidOut):
+    """Turns the visits of UAVs into their waypoints."""
 
     def routes(self, uavs: Sequence[int], sorties: Sequence[Routes], ground: GroundHeights | None) -> Mapping[int, PlannedRoute]:
         """What each UAV that has visits flies, by its number in the request; uavs are the numbers of those that fly.

@@ -63,7 +63,7 @@ class Finished:
     has_terrain: bool
     met: frozenset[int]
     worth: Worth
-    is_whole: bool  # the search could count on all of what the batteries hold
+    is_whole: bool  # the search could count on all of what the batteries hold, and on all ways
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +172,7 @@ class _Planner:
             in_the_way = spans_in_the_way(alone, scene.network, terrain)
             if not over and not in_the_way:
                 break
-            lacks |= drawn_lacks(self.request, alone, over)
+            drawn = alone
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
                 found, alone = without_routes_barred(self.request, found, alone, in_the_way)
@@ -184,16 +184,17 @@ class _Planner:
                 for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
                     kept_from[uav] = kept_from.get(uav, frozenset()) | targets
                     over.pop(uav)
+            lacks |= drawn_lacks(self.request, drawn, over)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         if lacks:
-            found = replace(found, left_out=with_drawn_reasons(found.left_out, lacks))
+            found = replace(found, left_out=with_drawn_reasons(found.left_out, lacks, frozenset().union(*kept_from.values())))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
             routes, separation, others = self._apart(alone, choice, may_raise=False)
             met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        is_whole = not usable_share and not kept_from
+        is_whole = not usable_share and not kept_from and not barred  # a wall bars more than what was in the way
         return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), is_whole)
 
     def _apart(
@@ -212,9 +213,16 @@ class _Planner:
 
 
 def _least_missing(preferred: Sequence[LeftOut], shortest: Sequence[LeftOut]) -> list[LeftOut]:
-    """What both leave out as out of reach lacks no more than it does on the shortest ways."""
+    """What both leave out as out of reach lacks no more than it does on the shortest ways, unless drawn routes show it otherwise."""
     nearer = {item.target: item for item in shortest if item.reason in OUT_OF_REACH}
-    return [nearer.get(item.target, item) if item.reason in OUT_OF_REACH else item for item in preferred]
+
+    def least(item: LeftOut) -> LeftOut:
+        other = nearer.get(item.target, item)
+        if item.missing_wh is not None and other.missing_wh is not None and item.missing_wh <= other.missing_wh:
+            return item
+        return other
+
+    return [least(item) if item.reason in OUT_OF_REACH else item for item in preferred]
 
 
 def make_plan(
@@ -271,7 +279,8 @@ def _others_in_the_air(request: PlanRequest, window_s: float) -> OtherFlights:
 
 def _quality(request: PlanRequest, plan: Finished, freest: Finished) -> dict[str, object]:
     """How good the plan is beside all others, those that fly through a zone while it is not in force included."""
-    share = freest.worth.value / plan.worth.value if plan.worth.value and freest.worth.left_out == plan.worth.left_out else None
+    alike = (freest.worth.left_out, freest.worth.is_by_length) == (plan.worth.left_out, plan.worth.is_by_length)
+    share = freest.worth.value / plan.worth.value if plan.worth.value and alike else None
     return quality_of(
         freest.found.solution,
         plan.found.lock_cost,

@@ -46,10 +46,11 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
     """In the shape of the API; the request's targets do not matter. Raises NoGraph.
 
     starts: bases from each of which each UAV might fly, instead of from where it stands; box: west, south, east, north of what is wanted.
-    Zones that can be in force at any time of the flight are kept clear of, as a plan first does.
+    Zones that can be in force at any time of the flight are kept clear of, as a plan first does, and the shortest ways count, as they do
+    before a plan refuses anything.
     """
     ground = planning_read().ground()
-    scene = scene_on(ground, zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest)
+    scene = scene_on(ground, zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest, is_by_length=True)
     starting, flights, grounded = _flights(request, starts, scene)
     bases = [base.position for base in request.bases if zone_at(base.position, scene) is None]
     found = reach(

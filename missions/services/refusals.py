@@ -41,11 +41,12 @@ class Scene:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A target that no route visits; `target` is its place in the request."""
+    """A target that no route visits; `target` is its place in the request. missing_wh: where a drawn route showed what is missing."""
 
     target: int
     reason: str
     message: str
+    missing_wh: float | None = None
 
 
 def asset_gone(target: int) -> LeftOut:

@@ -41,11 +41,11 @@ def scene_on(ground: PlanningGround, chosen: BoolArray | None, more_walls: ZoneI
     )
 
 
-def current_scene(request: PlanRequest | None = None) -> Scene:
-    """With all zones, or with those that can be in force while the request is flown. Raises NoGraph."""
+def current_scene(request: PlanRequest | None = None, *, is_by_length: bool = False) -> Scene:
+    """With all zones, or with those that can be in force while the request is flown; is_by_length as in scene_on. Raises NoGraph."""
     ground = planning_read().ground()
     chosen = None if request is None else zone_choice(ground.table, request.departs_at, settings.FLIGHT_RULES).widest
-    return scene_on(ground, chosen)
+    return scene_on(ground, chosen, is_by_length=is_by_length)
 
 
 def scene_without_zones() -> Scene:

@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from inspection.geodesy import LonLat
 from missions.flight_plan.costs import FlightCosts
 from missions.flight_plan.heights import inspection_agl_m
 from missions.routing.problem import Amounts, Objective
 from missions.routing.terminals import Ways
 from missions.services.counted import counted
+from missions.services.laid_out import LaidOut
 from missions.services.places import Place
 from missions.services.refusals import Scene, place_height_m, zone_at
 from missions.services.requests import CALM, PlanRequest
@@ -60,7 +60,7 @@ def _costs(request: PlanRequest, scene: Scene, places: Sequence[Place], ways: Wa
     visits, courses = visits_of_places(places)
     agl_m = [inspection_agl_m(place_height_m(place, scene), scene.flight) for place in places]
     bases = [base for base in request.bases if zone_at(base.position, scene) is None]
-    return counted(request, scene, flying, places, agl_m, visits, [tuple(map(LonLat._make, course)) for course in courses], ways, bases)
+    return counted(LaidOut(request, scene, places, agl_m, visits, courses, ways, bases), flying)
 
 
 def _of_route(costs: FlightCosts, quantity: str, number: int, order: Sequence[int]) -> float:

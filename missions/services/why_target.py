@@ -10,6 +10,7 @@ from shapely.ops import nearest_points
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.graph.route_index import node_tree
+from inspection.graph.walls import NO_ZONE
 from inspection.graph.zone_index import widen
 from missions.fleet_selectors import uavs_of_organisation
 from missions.flight_plan.heights import is_above_limit
@@ -32,7 +33,7 @@ LEAST_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not wort
 
 def explain_unreached_target(*, request: PlanRequest, target: int, organisation: Organisation) -> dict[str, Any]:
     """target is its place in the request. Raises InvalidRequest or NoGraph."""
-    scene = current_scene(request)
+    scene = current_scene(request, is_by_length=True)  # what is out of reach on the shortest ways is so on all
     found, _ = places_of([request.targets[target]])
     said: dict[str, Any] = {
         "target": target,
@@ -55,11 +56,11 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     network_m = _network_m(place, scene)
     said |= {"height_m": height_m, "needed_height_m": height_m + scene.flight.clearance_m}
     said |= {"network_m": network_m if np.isfinite(network_m) else None}
+    if is_above_limit(height_m, scene.flight):
+        return said | {"reason": "above_height_limit"}
     zones = _zones_at(place, scene)
     if zones:
         return said | {"reason": "inside_zone", "zones": zones, "stretches": _stretches_outside(place, scene)}
-    if is_above_limit(height_m, scene.flight):
-        return said | {"reason": "above_height_limit"}
     asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
     on_the_ground = groundings(asked, scene)
     grounded = [number in on_the_ground for number in range(len(asked))]
@@ -117,7 +118,7 @@ def _zones_at(place: Place, scene: Scene) -> list[dict[str, Any]]:
     if not len(polygons):
         return []
     near = shapely.intersects(widen(polygons, scene.access.zone_clearance_m), shape)
-    return [{"id": int(scene.zones.ids[zone]), "name": scene.zones.names[zone]} for zone in np.flatnonzero(near).tolist()]
+    return [_told(zone, scene) for zone in np.flatnonzero(near).tolist()]
 
 
 def _zones_around(place: Place, scene: Scene) -> list[dict[str, Any]]:
@@ -130,7 +131,13 @@ def _zones_around(place: Place, scene: Scene) -> list[dict[str, Any]]:
         away_m = float(distance_m(here, np.array([[nearest.x, nearest.y]]))[0])
         if away_m <= scene.access.access_leg_m:
             found.append((away_m, zone))
-    return [{"id": int(scene.zones.ids[zone]), "name": scene.zones.names[zone]} for _, zone in sorted(found)[:3]]
+    return [_told(zone, scene) for _, zone in sorted(found)[:3]]
+
+
+def _told(zone: int, scene: Scene) -> dict[str, Any]:
+    """What cannot be flown over counts as a zone and is none: it has no id."""
+    key = int(scene.zones.ids[zone])
+    return {"id": None if key == NO_ZONE else key, "name": scene.zones.names[zone]}
 
 
 def _stretches_outside(place: Place, scene: Scene) -> list[list[list[float]]]:

@@ -11,19 +11,22 @@ from missions.services.requests import PlanRequest
 
 @dataclass(frozen=True, order=True)
 class Worth:
-    """Less is better: targets left out, the high priorities first; then what the objective counts, in its own unit.
+    """Less is better: targets left out, the high priorities first; then ways near infrastructure before the shortest; then the value.
+
+    That is what the objective counts, in its own unit.
 
     Ways away from infrastructure count as they do in the choice of ways: a short cut across country is not the better plan.
     """
 
     left_out: tuple[int, ...]
+    is_by_length: bool
     value: float
 
 
 def worth_of(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute]) -> Worth:
     left_out = [request.targets[item.target].priority for item in found.left_out]
     by_priority = tuple(sum(priority is level for priority in left_out) for level in sorted(Priority, reverse=True))
-    return Worth(by_priority, value_of(request.objective, routes, found.weights(request)))
+    return Worth(by_priority, found.scene.is_by_length, value_of(request.objective, routes, found.weights(request)))
 
 
 def value_of(objective: Objective, routes: Sequence[PlannedRoute], weights: Sequence[float] | None = None) -> float:

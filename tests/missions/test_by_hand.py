@@ -150,6 +150,22 @@ def test_a_dragged_leg_is_told_what_it_meets(here: World, client: Client) -> Non
     assert (above["is_clear"], above["zone"]) == (False, None)
 
 
+@pytest.mark.parametrize(("height_m", "words"), [(90.0, "fly at 105 m above ground"), (110.0, "cannot be flown over below 120 m")])
+def test_a_dragged_leg_over_wires_is_told_how_high_to_fly(here: World, client: Client, height_m: float, words: str) -> None:
+    power_line([ground.tower((lon, 55.9942), height_m=height_m) for lon in (9.999, 10.005)])
+    rebuild()
+
+    def leg(north: float) -> dict[str, Any]:
+        ends = ([10.002, 55.9935], [10.002, north])
+        start, end = ({"position": position, "altitude_agl_m": 70.0, "arrival_s": 0.0} for position in ends)
+        return {"start": start, "end": end}
+
+    short, over = post(client, "leg-checks", {"legs": [leg(55.9938), leg(55.995)]}).json()["legs"]
+    assert short["is_clear"]
+    assert not over["is_clear"]
+    assert words in over["message"]
+
+
 def planned_with(here: World, client: Client, **wishes: Any) -> dict[str, Any]:
     """One UAV of 12 m/s that may fly 14 m/s through the air, with a battery."""
     body = mission_body(here.towers[3], here.towers[5]) | {"plan": True} | wishes
@@ -281,3 +297,32 @@ def test_from_where_a_lost_link_goes_wrong_is_told_of_the_changed_route(here: Wo
     assert {(one["route"], one["zone"]) for one in failed} == {(0, "Hospital")}
     assert behind in {one["waypoint"] for one in failed}
     assert undo(client, changed).json()["plan"]["lost_link"]["failed"] == []
+
+
+def test_a_route_of_which_points_were_only_taken_out_is_not_proven(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    kinds = [waypoint["kind"] for waypoint in mission["plan"]["routes"][0]["waypoints"]]
+    changed = put(client, mission, [point for point, kind in zip(as_wished(mission), kinds, strict=True) if kind != "pass"]).json()
+    assert changed["plan"]["total_length_m"] < mission["plan"]["total_length_m"]
+    assert (mission["plan"]["is_proven"], changed["plan"]["is_proven"]) == (True, False)
+
+
+def test_the_range_is_of_each_flight_of_a_route(here: World, client: Client) -> None:
+    body = mission_body(here.towers[0], here.towers[5], return_to_start=True) | {"plan": True}
+    body["uavs"] = [{"name": "Tern", "position": [10.010, 55.995], "max_range_m": 1_900.0, "sorties": 4, "end_action": "return"}]
+    mission = post(client, "missions", body).json()
+    assert mission["plan"]["routes"][0]["length_m"] > 1_900.0
+    assert put(client, mission, as_wished(mission)).status_code == 200
+
+
+def test_a_stretch_within_one_span_is_flown_over_its_wires_and_not_put_lower(here: World, client: Client) -> None:
+    """The towers at its ends are 90 m tall, and none of them is a vertex of it."""
+    line = power_line([ground.tower((lon, 55.998), height_m=90.0) for lon in (10.006, 10.011)], voltages_v=[110_000])
+    rebuild()
+    mission = post(
+        client, "missions", mission_body({"asset": line.pk, "stretch": [[10.008, 55.998], [10.009, 55.998]]}) | {"plan": True}
+    ).json()
+    own = [waypoint["altitude_agl_m"] for waypoint in mission["plan"]["routes"][0]["waypoints"] if waypoint["kind"] == "target"]
+    assert own and min(own) == 105.0
+    lower = [point | {"altitude_agl_m": min(point["altitude_agl_m"], 70.0)} for point in as_wished(mission)]
+    assert error_of(put(client, mission, lower), 400)

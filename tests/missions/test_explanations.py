@@ -67,9 +67,10 @@ def test_a_target_out_of_range_says_what_each_uav_needs_and_who_of_the_fleet_cou
     said = why_target(client, body)
     assert said["reason"] == "beyond_range"
     own, *others = said["uavs"]
-    free = post(client, "plans", body | {"uavs": [TERN | {"max_range_m": None}]}).json()
     assert own["is_in_mission"] and not own["is_enough"]
-    assert own["needed_m"] == pytest.approx(free["total_length_m"], rel=1e-6)
+    for more_m, left_out in ((0.1, 0), (-0.1, 1)):  # on the shortest way, which is tried before it is refused
+        just = post(client, "plans", body | {"uavs": [TERN | {"max_range_m": own["needed_m"] + more_m}]}).json()
+        assert len(just["unassigned"]) == left_out
     assert {uav["name"]: uav["is_enough"] for uav in others} == {"Kite": True}  # Wren's range does not even reach there straight
     assert others[0]["uav_id"] == spare
     assert post(client, "plans", body | {"uavs": [TERN | {"max_range_m": 900.0}, {"id": spare}]}).json()["unassigned"] == []
@@ -230,3 +231,23 @@ def test_what_binds_a_route_is_said(here: World, client: Client) -> None:
     windy, _ = why_route(client, body | {"conditions": wind})
     assert "wind" in windy["binds"]
     assert windy["wind_s"] > 10.0
+
+
+def test_a_mast_too_tall_is_told_as_such_and_not_as_a_zone(here: World, client: Client) -> None:
+    mast = ground.tower((10.006, 56.004), height_m=200.0)
+    power_line([mast, ground.tower((10.010, 56.004))])
+    rebuild()
+    body = plan_body(mast, here.towers[3])
+    assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "above_height_limit"
+    said = post(client, "plans/why-target", body | {"target": 0}).json()
+    assert (said["reason"], said["zones"]) == ("above_height_limit", [])
+
+
+def test_what_the_shortest_way_reaches_nothing_calls_out_of_range(here: World, client: Client) -> None:
+    body = plan_body(here.towers[5])
+    body["uavs"] = [body["uavs"][0] | {"position": [10.001, 55.995], "max_range_m": 1_400.0}]
+    plan = post(client, "plans", body).json()
+    assert (plan["unassigned"], [warning["code"] for warning in plan["warnings"]]) == ([], ["shortest_ways"])
+    reached = post(client, "reachability", {"uavs": body["uavs"]}).json()["assets"]
+    assert reached["code"][reached["ids"].index(here.towers[5].pk)] == 0
+    assert post(client, "plans/why-target", body | {"target": 0}).json()["reason"] == "not_with_the_others"

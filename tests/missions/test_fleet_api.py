@@ -92,7 +92,9 @@ def test_a_hover_that_no_rotors_manage_is_told_with_its_bounds(client: Client) -
 
 
 def test_a_uav_without_a_type_has_a_battery_of_its_own(client: Client) -> None:
-    uav = uav_of(client, battery_wh=56.6)
+    refused = post(client, "uavs", {"name": "Wren", "position": [10.0, 56.0], "battery_wh": 56.6})
+    assert (refused.status_code, [*refused.json()["error"]["details"]]) == (400, ["mass_kg"])
+    uav = uav_of(client, battery_wh=56.6, mass_kg=1.6)
     (flown,) = made(client, "missions", mission_body() | {"uavs": [{"id": uav["id"]}]})["uavs"]
     assert (flown["battery_wh"], flown["reserve_percent"]) == (56.6, 20.0)
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from django.test import Client
 
-from tests.missions.api import mission_body, post
+from tests.missions.api import mission_body, plan_body, post
 from tests.missions.worlds import world
 from tests.workspace.people import client_of, somebody
 
@@ -47,3 +47,11 @@ def test_of_many_unknown_fields_a_few_are_told() -> None:
     told = details(client, "missions", mission_body(here.towers[1]) | many)
     assert max(map(len, told)) == 80
     assert len(told) <= 10
+
+
+def test_of_a_long_list_the_nearest_names_are_looked_for_a_few_times_only() -> None:
+    here, client = world(), client_of(somebody())
+    wrong = [{f"positio{number}": 1 for number in range(10)} for _ in range(300)]
+    told = details(client, "plans", plan_body(here.towers[1]) | {"targets": wrong})
+    meant = [words for words in told.values() if "is position meant" in str(words)]
+    assert 1 <= len(meant) <= 10

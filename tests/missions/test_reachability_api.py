@@ -6,7 +6,7 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.test import Client
 
-from inspection.models import NoFlyZone
+from inspection.models import Asset, NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Base, Uav, UavState
 from tests.missions.api import TERN, post
@@ -65,13 +65,21 @@ def test_a_short_range_tells_what_is_missing(here: World, client: Client) -> Non
 
 
 def test_what_is_reached_is_what_a_plan_flies_to(here: World, client: Client) -> None:
-    """Each tower planned alone: its length is the range that is just enough."""
+    """Each tower planned alone, with ranges on both sides of what the preferred way and the shortest one take."""
     operator = client_of(somebody(Role.OPERATOR))
+
+    def planned(tower: Asset, max_range_m: float | None) -> dict[str, Any]:
+        return post(operator, "plans", {"uavs": [TERN | {"max_range_m": max_range_m}], "targets": [{"asset": tower.pk}]}).json()
+
+    told = set()
     for tower in here.towers:
-        plan = post(operator, "plans", {"uavs": [TERN], "targets": [{"asset": tower.pk}]}).json()
-        needed_m = plan["routes"][0]["length_m"]
-        assert codes(asked(client, uavs=[TERN | {"max_range_m": needed_m + 1.0}]))[tower.pk] == "reachable"
-        assert codes(asked(client, uavs=[TERN | {"max_range_m": needed_m - 1.0}]))[tower.pk] == "beyond_range"
+        needed_m = planned(tower, None)["routes"][0]["length_m"]
+        for range_m in (needed_m + 1.0, needed_m - 1.0, 0.9 * needed_m, 0.5 * needed_m):
+            is_flown = not planned(tower, range_m)["unassigned"]
+            told.add(is_flown)
+            code = codes(asked(client, uavs=[TERN | {"max_range_m": range_m}]))[tower.pk]
+            assert code == ("reachable" if is_flown else "beyond_range"), range_m / needed_m
+    assert told == {True, False}
 
 
 def test_a_small_battery_tells_what_is_missing_and_a_storm_that_it_is_one(here: World, client: Client) -> None:

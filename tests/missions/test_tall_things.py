@@ -2,6 +2,7 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,11 @@ import pytest
 from inspection.geodesy import distance_m
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_heights_m
-from inspection.services import build_graph, import_osm, mark_ground_changed
+from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
+from missions.flight_plan.performance import Performance
 from missions.services import make_plan
 from tests.inspection import ground
+from tests.inspection.terrain.tiffs import write_geotiff
 from tests.missions.ground_judge import Hills
 from tests.missions.random_flights import ASSETS, HILLY, cut_out
 from tests.missions.random_missions import Region, put_random_zones
@@ -24,6 +27,7 @@ from tests.missions.worlds import power_line, rebuild, request, uav, world
 
 pytestmark = pytest.mark.django_db
 ZONES = 10
+AMPLE = Performance(battery_wh=2_000.0)
 A_TUESDAY = datetime(2026, 11, 24, 9, tzinfo=UTC)
 
 
@@ -53,6 +57,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:
     region, judge, seen = Region(), WireJudge(ground_heights_m if path.name in HILLY else None), Counter[str]()
     for _ in range(missions):
         asked = region.mission(draw)
+        asked = replace(asked, uavs=tuple(replace(one, performance=AMPLE) for one in asked.uavs))
         plan = make_plan(request=asked)
         assert judge.faults(plan) == [], asked
         heights_m = [waypoint["altitude_agl_m"] for route in plan["routes"] for waypoint in route["waypoints"]]
@@ -135,3 +140,46 @@ def test_a_leg_does_not_rise_into_a_zone() -> None:
     ]
     assert all(height_m <= 60.0 for height_m in inside)
     assert WireJudge().faults(plan) == []
+
+
+def valley(path: Path) -> None:
+    """Ground at 100 m above the sea along 10.001° east, and 50 m higher 260 m to both sides of it."""
+    step = 0.0005
+    lons = 9.985 + step * (np.arange(90) + 0.5)
+    heights = 100.0 + 50.0 * np.minimum(np.abs(lons - 10.001) / 0.004, 1.0)
+    import_terrain(path=write_geotiff(path, np.tile(heights, (90, 1)).astype("f4"), srid=9707, origin=(9.985, 56.02), step=step))
+
+
+def test_over_a_valley_a_leg_rises_over_where_the_wire_hangs(tmp_path: Path) -> None:
+    here = world()
+    valley(tmp_path / "valley.tif")
+    crossing(45.0)
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),)))
+    assert plan["unassigned"] == []
+    assert 100.0 < max(waypoint["altitude_agl_m"] for waypoint in plan["routes"][0]["waypoints"]) <= 120.0
+    assert WireJudge(ground_heights_m).faults(plan) == []
+
+
+def test_what_would_rise_into_a_zone_over_a_valley_goes_round_it(tmp_path: Path) -> None:
+    here = world()
+    valley(tmp_path / "valley.tif")
+    crossing(45.0)
+    zone = ground.zone((10.001, 55.9975), 0.0012, name="Approach")
+    NoFlyZone.objects.filter(pk=zone.pk).update(lower_limit_m=125.0, lower_reference="AGL")
+    rebuild()
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9961)),)))
+    assert plan["unassigned"] == []
+    places = np.array([waypoint["position"] for waypoint in plan["routes"][0]["waypoints"]])
+    assert not ((np.abs(places - (10.001, 55.9975)) < 0.0012).all(axis=1)).any()
+    assert WireJudge(ground_heights_m).faults(plan) == []
+
+
+def test_a_wire_too_high_over_a_valley_is_gone_round_or_the_target_left_out(tmp_path: Path) -> None:
+    here = world()
+    valley(tmp_path / "valley.tif")
+    crossing(70.0)
+    plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.9965)),)))
+    assert WireJudge(ground_heights_m).faults(plan) == []
+    assert all(waypoint["altitude_agl_m"] <= 120.0 for route in plan["routes"] for waypoint in route["waypoints"])
+    assert plan["unassigned"] == []
+    assert plan["total_length_m"] > 500.0  # straight it is some 400 m

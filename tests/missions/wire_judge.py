@@ -30,7 +30,7 @@ class WireJudge:
         self.ground = ground
         rows = list(Asset.objects.filter(is_flyable=True, vanished_at=None).order_by("pk"))
         tops = {tuple(row.centre.coords): self._height(row) for row in reversed(rows) if row.kind == "tower"}
-        wires = [(place, place, top, top) for place, top in tops.items()]
+        wires, hung = [], set()
         for row in rows:
             if row.kind == "bridge":
                 wires.append((tuple(row.centre.coords), tuple(row.centre.coords), self._height(row), self._height(row)))
@@ -38,8 +38,10 @@ class WireJudge:
                 shape = shapely.from_wkb(bytes(row.geometry.wkb))
                 for part in shapely.get_parts(shape):
                     course = [tuple(place[:2]) for place in part.coords]
+                    hung.update(course)
                     for start, end in pairwise(course):
                         wires.append((start, end, *(self._top(row, place, tops) for place in (start, end))))
+        wires += [(place, place, top, top) for place, top in tops.items() if place not in hung]  # else a wire ends at its top
         self.origin = np.array([wires[0][0][0], wires[0][0][1]])
         self.start, self.end = (self._metres(np.array([wire[side] for wire in wires])) for side in (0, 1))
         self.top_m = np.array([wire[2:] for wire in wires])

@@ -2,7 +2,13 @@
 
 import { language, t } from "../text.js";
 
-const zoneOf = (words) => (/^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words);
+const WALL = /^the \S+ m around a mast or wires that cannot be flown over$/;
+
+/** A zone's name in the reader's language, where it is no name but a description. */
+export function zoneOf(words) {
+  if (WALL.test(words)) return t("the surroundings of a mast or wires that cannot be flown over");
+  return /^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words;
+}
 const SENTENCES = [
   [/^It stands inside (.+)\.$/, (zone) => t("It stands inside {zones}.", { zones: zoneOf(zone) })],
   [/^It runs through (.+)\.$/, (zone) => t("It runs through {zones}.", { zones: zoneOf(zone) })],

@@ -156,6 +156,7 @@ export default {
   "That is too much for one request.": "Das ist zu viel für eine Anfrage.",
   "The job failed.": "Die Aufgabe ist fehlgeschlagen.",
   "the margin round a no-fly zone": "dem Rand um eine Flugverbotszone",
+  "the surroundings of a mast or wires that cannot be flown over": "der Umgebung eines Mastes oder von Leiterseilen, die nicht zu überfliegen sind",
   "The server answered with {status}.": "Der Server hat mit {status} geantwortet.",
   "The server cannot be reached.": "Der Server ist nicht erreichbar.",
   "The server did not answer in time.": "Der Server hat nicht rechtzeitig geantwortet.",

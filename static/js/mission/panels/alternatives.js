@@ -60,7 +60,7 @@ export function alternatives(state, actions, canPlan) {
     h(
       "div",
       { class: "ways-place" },
-      h("table", { class: "why-table ways", "aria-busy": String(isBusy) }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("Plan")), COLUMNS.map(({ words }) => h("th", { scope: "col" }, words)))), h("tbody", {}, ways.map(row))),
+      h("table", { class: "why-table ways", "aria-busy": String(isBusy) }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("Plan|noun")), COLUMNS.map(({ words }) => h("th", { scope: "col" }, words)))), h("tbody", {}, ways.map(row))),
     ),
     isBusy && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.stopAlternatives }, t("Stop"))),
     canAsk && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.planAlternatives }, t("Plan the others"))),

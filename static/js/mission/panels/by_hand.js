@@ -33,7 +33,7 @@ export function createByHand(store, actions) {
   const hint = h("p", { class: "quiet-text" }, t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."));
   const undo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Undo"), title: t("Undo (Ctrl+Z)"), onclick: actions.undoByHand }, icon("undo-2", "small"));
   const redo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Redo"), title: t("Redo (Ctrl+Shift+Z)"), onclick: actions.redoByHand }, icon("redo-2", "small"));
-  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Keep"));
+  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Keep|route"));
   const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Drop the changes"));
   const takeBack = h("button", { type: "button", class: "button", onclick: actions.takeBackByHand }, icon("undo-2", "small"), t("Take back the last change"));
   const backSaid = h("p", { class: "quiet-text" });

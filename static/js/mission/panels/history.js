@@ -31,6 +31,8 @@ export function wordsOfEntry(entry) {
   if (action === "create") return { title: t("Created"), detail: [tn(after?.targets ?? 0, "{count} target", "{count} targets"), tn(after?.uavs ?? 0, "{count} UAV", "{count} UAVs")].join(", ") };
   if (action === "duplicate") return { title: t("Copied from “{name}”", { name: after?.of ?? "" }), detail: "" };
   if (action === "plan") return { title: t("Planned"), detail: [lengthText(after?.total_length_m), after?.unassigned ? tn(after.unassigned, "{count} target is not reached", "{count} targets are not reached") : ""].filter(Boolean).join(", ") };
+  if (action === "by-hand") return { title: t("Changed by hand"), detail: t("the route of {name}", { name: after?.uav }) };
+  if (action === "by-hand-undone") return { title: t("Change by hand taken back"), detail: t("the route of {name}", { name: after?.uav }) };
   if (action === "delete") return { title: t("Deleted"), detail: "" };
   if (action === "restore") return { title: t("Brought back"), detail: "" };
   if (action === "rename") return { title: t("Renamed"), detail: t("from “{before}” to “{after}”", { before: entry.before?.name, after: after?.name }) };

@@ -16,10 +16,7 @@ import { targetExplanation } from "./why_target.js";
 /** What the server is asked: the plan as it was made, whatever has been picked since. */
 function questionOf({ result, targets, uavs, charging_w }) {
   const { objective, return_to_start, departs_at, conditions } = result;
-  return {
-    ...requestOf({ targets, uavs, objective, return_to_start, departs_at, conditions, charging_w }),
-    routes: result.routes.map((route) => route.targets),
-  };
+  return requestOf({ targets, uavs, objective, return_to_start, departs_at, conditions, charging_w });
 }
 
 export function mountWhy(store, actions, { canPlan }) {
@@ -94,7 +91,7 @@ export function mountWhy(store, actions, { canPlan }) {
     } else {
       const route = plan.result.routes[why.route];
       if (!route?.geometry) store.update({ why: null });
-      else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
+      else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route, routes: plan.result.routes.map(({ targets }) => targets) }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
     }
     const sequence = why.route ?? why.byHand;
     panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;

@@ -3,7 +3,7 @@
 import { h } from "../../dom.js";
 import { t, tn } from "../../text.js";
 import { heightText, lengthText } from "../../units.js";
-import { inWords } from "../plan_words.js";
+import { inWords, zoneOf } from "../plan_words.js";
 
 /** said: see TargetExplanationSerializer; entry: of the plan's unassigned. */
 export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {
@@ -28,7 +28,7 @@ function sharedWords(said, full) {
 
 /** full: see fullUavs. */
 export function reasonWords(said, full = []) {
-  const zones = said.zones.map(({ name }) => name).join(", ");
+  const zones = said.zones.map(({ name }) => zoneOf(name)).join(", ");
   const lengths = { reach: lengthText(said.access_limit_m), distance: lengthText(said.network_m) };
   const words = {
     asset_gone: () => t("It has been deleted from the data since it was picked."),
