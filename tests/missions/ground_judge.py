@@ -89,6 +89,11 @@ class TallThings:
         degree_m = np.radians(1.0) * EARTH_M
         return (np.asarray(places) - self.origin) * (degree_m * np.cos(np.radians(self.origin[1])), degree_m)
 
+    def tallest_m(self, course: Any) -> float:
+        """Of what stands on a course in lon/lat."""
+        on = self.tree.query(shapely.transform(course, self.metres), predicate="dwithin", distance=5.0)
+        return float(self.heights[on].max(initial=0.0))
+
     def beside(self, start: Any, end: Any, beside_m: float) -> Any:
         """Their numbers."""
         return self.tree.query(shapely.linestrings(self.metres([start, end])), predicate="dwithin", distance=beside_m)

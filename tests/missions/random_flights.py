@@ -3,6 +3,7 @@
 import random
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
+from inspection.selectors import current_graph
 from inspection.services import build_graph, import_osm, mark_ground_changed
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.lost_link import LostLink
@@ -23,8 +25,9 @@ from tests.missions.random_missions import Region, put_random_zones
 from workspace.models import User
 
 HILLY = ("columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf")  # elsewhere limits above sea level cannot be compared
-ASSETS = 250  # of each region
+ASSETS = 300  # of each region
 ZONES = 12
+FEWEST_NODES = 100  # that zones leave of a network
 TALL_SHARE = 0.06  # of its towers stick out above what is cleared between targets
 APPROVED = 2  # missions of each departure
 AIRS = 8  # conditions that are drawn from: what they make of a network is worked out once
@@ -62,8 +65,15 @@ def _make_tall(draw: random.Random) -> None:
 
 
 def put_zones(seed: int, draw: random.Random) -> None:
-    """Random zones, of which those stay that a small network leaves room for, with random heights and times."""
-    put_random_zones(seed)
+    """Random zones, as few as a small network leaves room for, with random heights and times."""
+    for number in count():
+        put_random_zones(seed + 1_000 * number)
+        _give_heights_and_times(draw)
+        if len(current_graph().position) >= FEWEST_NODES:
+            return
+
+
+def _give_heights_and_times(draw: random.Random) -> None:
     zones = draw.sample(list(NoFlyZone.objects.order_by("pk")), ZONES)
     NoFlyZone.objects.exclude(pk__in=[zone.pk for zone in zones]).delete()
     for zone in zones:
@@ -124,9 +134,9 @@ def _text(moment: datetime) -> str:
     return f"{moment:%Y-%m-%dT%H:%M:%SZ}"
 
 
-def departures(draw: random.Random, count: int) -> list[datetime | None]:
+def departures(draw: random.Random, number: int) -> list[datetime | None]:
     """At any time, and so many times: for each the network is cleared anew of the zones that apply then."""
-    return [None, *(A_MONDAY + timedelta(minutes=draw.randrange(7 * 24 * 60)) for _ in range(count))]
+    return [None, *(A_MONDAY + timedelta(minutes=draw.randrange(7 * 24 * 60)) for _ in range(number))]
 
 
 def airs(draw: random.Random) -> list[Conditions]:

@@ -5,7 +5,7 @@ A way that the planner finds cheaper, along infrastructure, may be up to twice a
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from datetime import timedelta
 from typing import Any
@@ -20,7 +20,7 @@ from missions.services import PlanRequest
 from tests.missions.air import CLIMB_MPS, density, speeds_mps, watts, wind_mps
 from tests.missions.ground_judge import TALLEST_M, TallThings
 from tests.missions.plane import apart_m
-from tests.missions.zone_judge import ZoneJudge
+from tests.missions.zone_judge import WIDER, ZoneJudge
 
 DIRECT_M = 4_900.0  # of the 5 km that a UAV may fly straight
 ACCESS_M = 9_800.0  # of the 10 km that it may fly to the network
@@ -40,10 +40,10 @@ class RefusalJudge:
         self._free_towers: dict[tuple[float, float], bool] = {}
 
     def untrue(self, request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
-        grounded = {warning["uav"] for warning in plan["warnings"] if warning["code"] == "uav_inside_zone"}
-        for uav in grounded:
-            if not self._bars(shapely.Point(request.uavs[uav].position), request):
-                yield f"{request.uavs[uav].name} stands in no zone"
+        grounded = {warning["uav"]: warning["message"] for warning in plan["warnings"] if warning["code"] == "uav_inside_zone"}
+        for uav, message in grounded.items():
+            if not self._is_barred(shapely.Point(request.uavs[uav].position), request, message):
+                yield f"{request.uavs[uav].name} stands in no zone: {message}"
         for item in plan["unassigned"]:
             course = course_of(request, item["target"])
             yield from (f"target {item['target']} is not {item['reason']}: {why}" for why in self._untrue_reason(request, item, course))
@@ -52,11 +52,11 @@ class RefusalJudge:
 
     def _untrue_reason(self, request: PlanRequest, item: dict[str, Any], course: Any) -> Iterator[str]:
         reason, message = item["reason"], item["message"]
-        if reason == "inside_zone" and not ("mast" in message and self._is_at_what_is_too_tall(course)) and not self._bars(course, request):
-            yield "no zone is there"
+        if reason == "inside_zone" and not self._is_barred(course, request, message):
+            yield f"no zone is there: {message}"
         elif reason == "beyond_range" and all(uav.max_range_m is None for uav in request.uavs):
             yield "no UAV has a range"
-        elif reason == "above_height_limit" and _tallest_m(request, item["target"]) <= TALLEST_M:
+        elif reason == "above_height_limit" and max(_tallest_m(request, item["target"]), self.tall.tallest_m(course)) <= TALLEST_M:
             yield "it is not that tall"
         elif reason == "too_far_from_network" and course.geom_type == "Point" and self._network_near(course):
             yield "there is a free tower near it"
@@ -72,14 +72,19 @@ class RefusalJudge:
         """Whether a zone that a flight could meet there lies within its clearance, at some time of the flight."""
         begin = request.departs_at
         return any(
-            self.zones.is_at_height(self.zones.zones[zone], (0.0, HIGHEST_AGL_M), None)
-            and (begin is None or self.zones.applies_between(zone, begin, begin + timedelta(seconds=LONGEST_FLIGHT_S)))
-            for zone in self.zones.lie_near(course, 5.5)
+            self.zones.is_at_height(self.zones.zones[zone], (0.0, HIGHEST_AGL_M), None, WIDER)
+            and (begin is None or self.zones.applies_between(zone, begin, begin + timedelta(seconds=LONGEST_FLIGHT_S), WIDER))
+            for zone in self.zones.lie_near(course, WIDER.lateral_m)
         )
+
+    def _is_barred(self, course: Any, request: PlanRequest, message: str) -> bool:
+        """By a zone, or by what cannot be flown over, where that is said."""
+        return ("mast" in message and self._is_at_what_is_too_tall(course)) or self._bars(course, request)
 
     def _is_at_what_is_too_tall(self, course: Any) -> bool:
         """Whether a mast stands there that cannot be flown over, or wires hang there that may hang too high."""
-        lines = Asset.objects.filter(kind="line", geometry__dwithin=(GEOSGeometry(course.wkt, srid=4326), 0.0005), vanished_at=None)
+        near = {"geometry__dwithin": (GEOSGeometry(course.wkt, srid=4326), 0.0005), "vanished_at": None}
+        lines = Asset.objects.filter(kind__in=["line", "railway"], **near)
         towers = self.tall.beside(course.coords[0], course.coords[-1], 30.0)
         return lines.exists() or any(self.tall.heights[tower] > TALLEST_M for tower in towers)
 
@@ -100,7 +105,7 @@ class RefusalJudge:
         return self._free_towers[lon, lat]
 
     def _could_be_done(
-        self, request: PlanRequest, plan: dict[str, Any], course: Any, item: dict[str, Any], grounded: set[int]
+        self, request: PlanRequest, plan: dict[str, Any], course: Any, item: dict[str, Any], grounded: Collection[int]
     ) -> Iterator[str]:
         """A UAV with nothing to do, or a flight to spare, could fly there straight, free of all zones, and back where it has to."""
         place = np.array([course.x, course.y])

