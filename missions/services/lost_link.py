@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 
-from inspection.graph.flyable import node_heights_m
 from inspection.graph.network import Network
+from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import has_terrain_at, planning_read
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.lost_link import LostLink, LostLinkPlan, Obstacles, failed_returns
+from missions.flight_plan.lost_link import LostLink, LostLinkPlan, failed_returns
 from missions.flight_plan.zone_facts import zones_near
 from missions.models import Mission
 from missions.services.plan_json import PlannedRoute
@@ -20,15 +19,13 @@ from missions.services.requests import PlanRequest, lost_link_to_json
 from missions.services.stored_routes import stored_routes
 from missions.zone_selectors import zone_margins
 
-BESIDE_DEG = 0.01
-
 
 def lost_link_check(
     request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, network: Network, *, has_terrain: bool
 ) -> dict[str, Any]:
     """The wish, and every waypoint from which it fails, in the shape of the API; who goes on flies what was checked already.
 
-    The nodes of the network are what stands in the way.
+    What stands and hangs on the network is in the way.
     """
     wished = request.lost_link
     failed: list[dict[str, Any]] = []
@@ -72,7 +69,7 @@ def _failed(
         margins=margins,
         departs_s=departs_s,
         ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
-        obstacles=_obstacles(network, positions),
+        spans=spans_of(network),
     )
     return [
         {
@@ -87,10 +84,3 @@ def _failed(
         }
         for one in found
     ]
-
-
-def _obstacles(network: Network, positions: FloatArray) -> Obstacles:
-    """What stands in the box of the positions."""
-    low, high = positions.min(axis=0) - BESIDE_DEG, positions.max(axis=0) + BESIDE_DEG
-    near = np.flatnonzero(((network.position >= low) & (network.position <= high)).all(axis=1))
-    return Obstacles(network.position[near], node_heights_m(network, near))

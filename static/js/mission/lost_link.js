@@ -110,6 +110,7 @@ export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_
     wind: t("the wind is too strong for the way back"),
     zone: zone ? t("the way back meets {zone}", { zone }) : t("the way back meets a no-fly zone"),
     too_high: t("the way back would be {height} above the greatest height", { height: exactHeightText(over_m) }),
+    obstacle: t("a mast or wires are in the way: over them it would be {height} above the greatest height", { height: exactHeightText(over_m) }),
     unknown_ground: t("the ground under the way back is not known"),
   }[trouble];
   return { where, why };

@@ -7,6 +7,7 @@ import pytest
 import shapely
 
 from inspection.geodesy import LonLat
+from inspection.graph.spans import spans_between
 from missions.flight_plan.charging import ChargingStop, with_stops
 from missions.flight_plan.clearance import Margins, ZoneFacts
 from missions.flight_plan.conditions import Conditions, WindLayer
@@ -14,7 +15,6 @@ from missions.flight_plan.lost_link import (
     FailedReturn,
     LostLink,
     LostLinkPlan,
-    Obstacles,
     Trouble,
     failed_returns,
 )
@@ -157,12 +157,59 @@ def test_ground_that_is_not_known_is_no_ground_to_fly_over():
     assert found == [FailedReturn(2, 0, Trouble.UNKNOWN_GROUND)]
 
 
+def mast(km, beside_km, height_m):
+    return hung([(km, beside_km, height_m, km, beside_km, height_m)])
+
+
+def hung(wires):
+    """Wires from km east, km north, top [m] to the same."""
+    columns = np.array(wires, dtype=np.float64)
+    return spans_between(columns[:, :2] * KM_DEG, columns[:, 3:5] * KM_DEG, columns[:, 2], columns[:, 5])
+
+
 def test_a_mast_beside_the_way_counts_and_one_away_from_it_does_not():
-    beside, away = [[1.5 * KM_DEG, 0.02 * KM_DEG]], [[1.5 * KM_DEG, 0.2 * KM_DEG]]
-    [found] = failed(route(0, 1, 2), obstacles=Obstacles(np.array(beside), np.array([130.0])))
-    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.TOO_HIGH, pytest.approx(130.0 + 15.0 - 120.0))
-    assert failed(route(0, 1, 2), obstacles=Obstacles(np.array(away), np.array([130.0]))) == []
-    assert failed(route(0, 1, 2), obstacles=Obstacles(np.array(beside), np.array([90.0]))) == []
+    [found] = failed(route(0, 1, 2), spans=mast(1.5, 0.02, 130.0))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(130.0 + 15.0 - 120.0))
+    assert failed(route(0, 1, 2), spans=mast(1.5, 0.2, 130.0)) == []
+    assert failed(route(0, 1, 2), spans=mast(1.5, 0.02, 90.0)) == []
+
+
+def test_a_wire_far_from_both_its_towers_is_cleared_like_a_tower():
+    """Between towers of 90 m the way is flown at 105 m, where a zone is that a way at 60 m would pass below; 110 m are too many."""
+    aloft = ZoneFacts.of([box(0.2, 0.8)], [(90.0, "AGL", None, "")], [None])
+    waypoints = route(0, 1, 2)
+    assert failed(waypoints, zones=aloft) == []
+    assert [one.trouble for one in failed(waypoints, zones=aloft, spans=hung([(1.5, -0.2, 90.0, 1.5, 0.2, 90.0)]))] == [Trouble.ZONE]
+    [found] = failed(waypoints, spans=hung([(1.5, -0.2, 110.0, 1.5, 0.2, 110.0)]))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(5.0))
+
+
+def test_a_sloping_wire_counts_as_high_as_it_is_beside_the_way():
+    """From 100 m, 190 m north of the way, up to 140 m, 210 m south of it: 30 m south of the way it is at 122 m."""
+    [found] = failed(route(0, 1, 2), spans=hung([(1.5, 0.19, 100.0, 1.5, -0.21, 140.0)]))
+    assert found.over_m == pytest.approx(122.0 + 15.0 - 120.0, abs=0.05)
+
+
+def test_a_wire_hangs_from_the_ground_under_its_towers():
+    """Both stand 60 m above the ground of the way, on hills beside it that the way itself does not cross."""
+
+    def hills(position):
+        return 400.0 + np.where(np.abs(position[:, 1]) > 0.1 * KM_DEG, 60.0, 0.0)
+
+    waypoints = route(0, 1, 2, ground_m=400.0)
+    wire = hung([(1.5, -0.2, 50.0, 1.5, 0.2, 50.0)])
+    assert failed(waypoints, ground_heights_m=lambda position: np.full(len(position), 400.0), spans=wire) == []
+    [found] = failed(waypoints, ground_heights_m=hills, spans=wire)
+    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(5.0))
+
+
+def test_a_wire_over_ground_that_is_not_known_hangs_nobody_knows_how_high():
+    def known_on_the_way(position):
+        return np.where(np.abs(position[:, 1]) > 0.1 * KM_DEG, np.nan, 400.0)
+
+    waypoints = route(0, 1, 2, ground_m=400.0)
+    found = failed(waypoints, ground_heights_m=known_on_the_way, spans=hung([(1.5, -0.2, 20.0, 1.5, 0.2, 20.0)]))
+    assert found == [FailedReturn(2, 0, Trouble.UNKNOWN_GROUND)]
 
 
 def test_against_a_wind_that_is_too_strong_nobody_comes_home():

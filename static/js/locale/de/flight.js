@@ -1,6 +1,7 @@
 /** When and in what air a mission is flown, and when it is legal. English → German; [one, other] where there is a plural. */
 
 export default {
+  "a mast or wires are in the way: over them it would be {height} above the greatest height": "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten Höhe",
   "A mission has at most {most} rally points.": "Eine Mission hat höchstens {most} Sammelpunkte.",
   "A plan with a departure counts it at its times, any other plan at all times.": "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",
   "A route is changed by hand once its plan is saved.": "Eine Route lässt sich von Hand ändern, sobald ihr Plan gespeichert ist.",
