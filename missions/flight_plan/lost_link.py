@@ -69,6 +69,17 @@ class FailedReturn:
     over_m: float | None = None
 
 
+@dataclass(frozen=True)
+class Returns:
+    """What the check of a route finds. highest_m: at which height above its start a UAV returns where it returns highest.
+
+    Ways that are too high do not count. None where none is left, where it does not return, or where the ground is not known.
+    """
+
+    failed: list[FailedReturn]
+    highest_m: float | None
+
+
 @dataclass(frozen=True, eq=False)
 class _Return:
     """One straight way: samples of the ground under it (m,), from the waypoint to the haven, 0 where flat ground is assumed.
@@ -86,7 +97,7 @@ class _Return:
     is_known: bool
 
 
-def failed_returns(
+def checked_returns(
     waypoints: Waypoints,
     clock: Timing,
     plan: LostLinkPlan,
@@ -100,7 +111,7 @@ def failed_returns(
     departs_s: float | None = None,
     ground_heights_m: GroundHeights | None = None,
     spans: Spans = NOTHING_STANDS,
-) -> list[FailedReturn]:
+) -> Returns:
     """Every waypoint from which holding and returning would not go well, and each reason for it, in the order of the route.
 
     The UAV climbs where it is, flies straight to the nearest of its start and the rally points at one height above the sea, and lands
@@ -110,7 +121,7 @@ def failed_returns(
     without it zones count at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than longest_leg_m.
     """
     if plan.behaviour is LostLink.GO_ON or not len(waypoints):
-        return []
+        return Returns([], None)
     hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
     air = _Air(performance, cruise_speed_mps, conditions, rules)
     taken_wh = _taken_wh(clock, performance)
@@ -119,6 +130,7 @@ def failed_returns(
     known = ground_heights_m if returns[0].is_known else None
     tops_m = tops_below(starts, ends, spans, known, rules.transit_agl_m - rules.clearance_m)
     failed = []
+    levels_m = []
     for one, top_m in zip(returns, tops_m.tolist(), strict=True):
         if waypoints.points.kind[one.waypoint] == BASE:  # it stands there, with a new battery
             continue
@@ -131,6 +143,8 @@ def failed_returns(
         if level_m > most_m:
             trouble = Trouble.TOO_HIGH if over_ground_m > most_m else Trouble.OBSTACLE
             failed.append(FailedReturn(one.waypoint, one.haven, trouble, over_m=level_m - most_m + HEIGHT_ROUNDING_M))
+        else:
+            levels_m.append(level_m)
         taken = air.taken(one, waypoints, level_m, hold_s)
         if math.isinf(taken[-1][0]):
             failed.append(FailedReturn(one.waypoint, one.haven, Trouble.WIND))
@@ -142,7 +156,8 @@ def failed_returns(
         flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
         met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
         failed += [FailedReturn(one.waypoint, one.haven, Trouble.ZONE, zone=zone) for zone in met]
-    return failed
+    highest_m = max(levels_m, default=math.nan) - float(returns[0].ground_m[0])
+    return Returns(failed, None if math.isnan(highest_m) else highest_m)
 
 
 def _taken_wh(clock: Timing, performance: Performance) -> FloatArray | None:

@@ -11,7 +11,7 @@ from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import has_terrain_at, planning_read
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.lost_link import LostLink, LostLinkPlan, failed_returns
+from missions.flight_plan.lost_link import LostLink, LostLinkPlan, checked_returns
 from missions.flight_plan.zone_facts import zones_near
 from missions.models import Mission
 from missions.services.plan_json import PlannedRoute
@@ -25,14 +25,18 @@ def lost_link_check(
 ) -> dict[str, Any]:
     """The wish, and every waypoint from which it fails, in the shape of the API; who goes on flies what was checked already.
 
+    highest_m: for each route at which height above its start a UAV returns where it returns highest, but not too high.
+
     What stands and hangs on the network is in the way.
     """
     wished = request.lost_link
     failed: list[dict[str, Any]] = []
+    highest_m: list[float | None] = [None] * len(routes)
     if wished.behaviour is not LostLink.GO_ON:
         for number, route in enumerate(routes):
-            failed += _failed(request, number, route, table, network, has_terrain=has_terrain)
-    return {**lost_link_to_json(wished), "failed": failed}
+            own, highest_m[number] = _checked(request, number, route, table, network, has_terrain=has_terrain)
+            failed += own
+    return {**lost_link_to_json(wished), "failed": failed, "highest_m": highest_m}
 
 
 def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any] | None:
@@ -47,17 +51,17 @@ def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any
     return lost_link_check(request, routes, ground.table, ground.network(), has_terrain=has_terrain_at(ground.edition))
 
 
-def _failed(
+def _checked(
     request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, network: Network, *, has_terrain: bool
-) -> list[dict[str, Any]]:
+) -> tuple[list[dict[str, Any]], float | None]:
     if route.waypoints is None or route.timing is None:
-        return []
+        return [], None
     asked, margins = request.uavs[number], zone_margins()
     departs_s = None if request.departs_at is None else request.departs_at.timestamp() + route.departs_s
     window = None if departs_s is None else (departs_s, departs_s + route.duration_s + settings.FLIGHT_RULES.longest_flight_s)
     positions = np.concatenate([route.waypoints.points.position, np.array(request.lost_link.rally_points, dtype=np.float64).reshape(-1, 2)])
     near, facts = zones_near(table, positions, margins, window)
-    found = failed_returns(
+    found = checked_returns(
         route.waypoints,
         route.timing,
         LostLinkPlan(request.lost_link.behaviour, request.lost_link.rally_points, request.lost_link.hold_s),
@@ -71,7 +75,7 @@ def _failed(
         ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
         spans=spans_of(network),
     )
-    return [
+    failed = [
         {
             "route": number,
             "waypoint": one.waypoint,
@@ -82,5 +86,6 @@ def _failed(
             "zone_id": None if one.zone is None else int(near.ids[one.zone]),
             "over_m": None if one.over_m is None else round(one.over_m, 1),
         }
-        for one in found
+        for one in found.failed
     ]
+    return failed, None if found.highest_m is None else round(found.highest_m, 1)

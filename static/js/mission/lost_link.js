@@ -141,6 +141,12 @@ export function uncountedText(plan) {
   return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";
 }
 
+/** Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before. */
+export function heightsText(plan) {
+  const heights = (plan.result.lost_link.highest_m ?? []).map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav })).filter(({ height_m }) => height_m !== null);
+  return heights.length ? t("It is counted on ways back at up to this height above the start: {heights}.", { heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", ") }) : "";
+}
+
 /** For the map: [{ key, from, to }], each waypoint that fails and where it would return to; key: of its group. */
 export function returnLinesOf(plan) {
   const { rally_points } = plan.result.lost_link;

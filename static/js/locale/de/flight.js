@@ -97,6 +97,7 @@ export default {
   "How the flight of {name} ends": "Wie der Flug von {name} endet",
   "If the link is lost": "Wenn die Verbindung abreißt",
   "If the link is lost:": "Wenn die Verbindung abreißt:",
+  "It is counted on ways back at up to this height above the start: {heights}.": "Gerechnet ist mit Rückwegen bis in diese Höhe über dem Start: {heights}.",
   "It is being checked for energy and zones.": "Energie und Zonen werden gerade geprüft.",
   "It is checked for energy and zones once there is a plan.": "Energie und Zonen werden geprüft, sobald es einen Plan gibt.",
   "Its rally point is kept, and not used.": ["Der Sammelpunkt bleibt und wird nicht genutzt.", "Die {count} Sammelpunkte bleiben und werden nicht genutzt."],
