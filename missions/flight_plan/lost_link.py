@@ -6,23 +6,23 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.graph.spans import Spans, spans_between
 from missions.flight_plan.clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
 from missions.flight_plan.conditions import Conditions, air_density
 from missions.flight_plan.heights import SAMPLE_SPACING_M, GroundHeights
 from missions.flight_plan.leg_taken import J_PER_WH, hold_taken, leg_taken, speeds, table_of
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.spans_below import tops_below
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import BASE, Waypoints
 
 FloatArray = NDArray[np.float64]
 
-BESIDE_M = 30.0  # an obstacle this near to the way counts as on it
 HEIGHT_ROUNDING_M = 1e-6
 
 
@@ -36,19 +36,12 @@ class Trouble(StrEnum):
     BATTERY = "battery"
     WIND = "wind"
     ZONE = "zone"
-    TOO_HIGH = "too_high"  # what clears ground and obstacles is above the greatest height somewhere on the way
+    TOO_HIGH = "too_high"  # what clears the ground is above the greatest height somewhere on the way
+    OBSTACLE = "obstacle"  # what clears a mast or wires is, and would not be without them
     UNKNOWN_GROUND = "unknown_ground"
 
 
-@dataclass(frozen=True, eq=False)
-class Obstacles:
-    """position (k, 2), columns lon, lat [deg]; height_m (k,) above the ground."""
-
-    position: FloatArray
-    height_m: FloatArray
-
-
-NO_OBSTACLES = Obstacles(np.empty((0, 2)), np.empty(0))
+NOTHING_STANDS = spans_between(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -65,7 +58,7 @@ class FailedReturn:
     """A waypoint from which the return is no way home.
 
     haven: 0 for the start, n for the n-th rally point; missing_wh with BATTERY, zone (a row of the zones) with ZONE, over_m, by how much it
-    is too high, with TOO_HIGH.
+    is too high, with TOO_HIGH and OBSTACLE.
     """
 
     waypoint: int
@@ -74,6 +67,17 @@ class FailedReturn:
     missing_wh: float | None = None
     zone: int | None = None
     over_m: float | None = None
+
+
+@dataclass(frozen=True)
+class Returns:
+    """What the check of a route finds. highest_m: at which height above its start a UAV returns where it returns highest.
+
+    Ways that are too high do not count. None where none is left, where it does not return, or where the ground is not known.
+    """
+
+    failed: list[FailedReturn]
+    highest_m: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +97,7 @@ class _Return:
     is_known: bool
 
 
-def failed_returns(
+def checked_returns(
     waypoints: Waypoints,
     clock: Timing,
     plan: LostLinkPlan,
@@ -106,33 +110,41 @@ def failed_returns(
     margins: Margins,
     departs_s: float | None = None,
     ground_heights_m: GroundHeights | None = None,
-    obstacles: Obstacles = NO_OBSTACLES,
-) -> list[FailedReturn]:
+    spans: Spans = NOTHING_STANDS,
+) -> Returns:
     """Every waypoint from which holding and returning would not go well, and each reason for it, in the order of the route.
 
     The UAV climbs where it is, flies straight to the nearest of its start and the rally points at one height above the sea, and lands
-    there. That height clears the ground by transit_agl_m and obstacles by clearance_m, and is not lower than where it is; it must not be
-    above max_agl_m anywhere. The battery has to do with its reserve left, after what is done at the waypoint. Without ground_heights_m
-    flat ground is assumed, as the route then does. departs_s: when the route begins, in seconds since the epoch; without it zones count
-    at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than longest_leg_m.
+    there. That height clears the ground by transit_agl_m and what stands or hangs beside the way by clearance_m, and is not lower than
+    where it is; it must not be above max_agl_m anywhere. The battery has to do with its reserve left, after what is done at the waypoint.
+    Without ground_heights_m flat ground is assumed, as the route then does. departs_s: when the route begins, in seconds since the epoch;
+    without it zones count at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than longest_leg_m.
     """
     if plan.behaviour is LostLink.GO_ON or not len(waypoints):
-        return []
+        return Returns([], None)
     hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
     air = _Air(performance, cruise_speed_mps, conditions, rules)
     taken_wh = _taken_wh(clock, performance)
-    tree = shapely.STRtree(np.asarray(shapely.points(obstacles.position), dtype=object).reshape(-1))
+    returns = _returns(waypoints, plan.rally_points, ground_heights_m)
+    starts, ends = (np.stack([one.line[side] for one in returns]) for side in (0, -1))
+    known = ground_heights_m if returns[0].is_known else None
+    tops_m = tops_below(starts, ends, spans, known, rules.transit_agl_m - rules.clearance_m)
     failed = []
-    for one in _returns(waypoints, plan.rally_points, ground_heights_m):
+    levels_m = []
+    for one, top_m in zip(returns, tops_m.tolist(), strict=True):
         if waypoints.points.kind[one.waypoint] == BASE:  # it stands there, with a new battery
             continue
-        if np.isnan(one.ground_m).any():
+        if np.isnan(one.ground_m).any() or top_m == math.inf:
             failed.append(FailedReturn(one.waypoint, one.haven, Trouble.UNKNOWN_GROUND))
             continue
-        level_m = _level_m(one, waypoints, obstacles, tree, rules)
-        over_m = level_m - float(one.ground_m.min()) - rules.max_agl_m
-        if over_m > HEIGHT_ROUNDING_M:
-            failed.append(FailedReturn(one.waypoint, one.haven, Trouble.TOO_HIGH, over_m=over_m))
+        over_ground_m = max(_amsl_m(one, waypoints), float(one.ground_m.max()) + rules.transit_agl_m)
+        level_m = max(over_ground_m, top_m + rules.clearance_m)
+        most_m = float(one.ground_m.min()) + rules.max_agl_m + HEIGHT_ROUNDING_M
+        if level_m > most_m:
+            trouble = Trouble.TOO_HIGH if over_ground_m > most_m else Trouble.OBSTACLE
+            failed.append(FailedReturn(one.waypoint, one.haven, trouble, over_m=level_m - most_m + HEIGHT_ROUNDING_M))
+        else:
+            levels_m.append(level_m)
         taken = air.taken(one, waypoints, level_m, hold_s)
         if math.isinf(taken[-1][0]):
             failed.append(FailedReturn(one.waypoint, one.haven, Trouble.WIND))
@@ -144,7 +156,8 @@ def failed_returns(
         flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
         met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
         failed += [FailedReturn(one.waypoint, one.haven, Trouble.ZONE, zone=zone) for zone in met]
-    return failed
+    highest_m = max(levels_m, default=math.nan) - float(returns[0].ground_m[0])
+    return Returns(failed, None if math.isnan(highest_m) else highest_m)
 
 
 def _taken_wh(clock: Timing, performance: Performance) -> FloatArray | None:
@@ -184,23 +197,6 @@ def _returns(waypoints: Waypoints, rally_points: Sequence[LonLat], ground_height
 def _amsl_m(one: _Return, waypoints: Waypoints) -> float:
     """Of the waypoint, over the ground that the return knows."""
     return float(one.ground_m[0] + waypoints.points.agl_m[one.waypoint])
-
-
-def _level_m(one: _Return, waypoints: Waypoints, obstacles: Obstacles, tree: shapely.STRtree, rules: FlightRules) -> float:
-    """The height above the sea at which it is flown."""
-    level_m = max(_amsl_m(one, waypoints), float(one.ground_m.max()) + rules.transit_agl_m)
-    if not len(obstacles.height_m):
-        return level_m
-    frame = LocalFrame.around(*one.line[0].tolist())
-    beside_deg = BESIDE_M / min(frame.metres_per_degree_east, frame.metres_per_degree_north)
-    way = shapely.linestrings(one.line) if one.length_m > 0.0 else shapely.points(one.line[0])
-    near = np.sort(tree.query(way, predicate="dwithin", distance=2.0 * beside_deg))
-    for place, height_m in zip(obstacles.position[near], obstacles.height_m[near].tolist(), strict=True):
-        metres = distance_m(one.line, np.broadcast_to(place, one.line.shape))
-        under = int(metres.argmin())
-        around = one.ground_m[max(0, under - 1) : under + 2].max()  # the higher of the samples beside it
-        level_m = max(level_m, float(around) + height_m + rules.clearance_m)
-    return level_m
 
 
 class _Air:

@@ -37,7 +37,7 @@ def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundH
     if len(points) < 2 or not len(spans):
         return set()
     is_known = waypoints.amsl_m is not None and ground_heights_m is not None
-    near = _rows_near(spans, points.position, 0.0 if is_known else float(points.agl_m.min()) - rules.clearance_m + SHORT_M)
+    near = spans_near(spans, points.position, 0.0 if is_known else float(points.agl_m.min()) - rules.clearance_m + SHORT_M)
     if not len(near):
         return set()
     frame = LocalFrame.around(*points.position.mean(axis=0).tolist())
@@ -62,12 +62,12 @@ def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundH
     return found
 
 
-def _rows_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
+def spans_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
     """Spans that are higher, and of which the box comes near that of the route."""
     if spans not in _by_west:
         west = np.minimum(spans.start[:, 0], spans.end[:, 0])
         order = np.argsort(west, kind="stable")
-        _by_west[spans] = order, west[order], float(np.abs(spans.end[:, 0] - spans.start[:, 0]).max())
+        _by_west[spans] = order, west[order], float(np.abs(spans.end[:, 0] - spans.start[:, 0]).max(initial=0.0))
     order, west, widest = _by_west[spans]
     low, high = position.min(axis=0), position.max(axis=0)
     stretch = max(np.cos(np.radians(np.abs(position[:, 1]).max())), 0.01)
@@ -83,11 +83,11 @@ def _rows_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
 
 def _pairs(line: FloatArray, start: FloatArray, end: FloatArray) -> tuple[IntArray, IntArray]:
     """Legs and spans that come near each other across the ground."""
-    span, leg = shapely.STRtree(_drawn(line[:-1], line[1:])).query(_drawn(start, end), predicate="dwithin", distance=BESIDE_M)
+    span, leg = shapely.STRtree(lines_between(line[:-1], line[1:])).query(lines_between(start, end), predicate="dwithin", distance=BESIDE_M)
     return leg.astype(np.int64), span.astype(np.int64)
 
 
-def _drawn(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
+def lines_between(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:
     """Lines, and points where one would have no length."""
     drawn: NDArray[np.object_] = np.array(shapely.points(start), dtype=object)
     moves = (start != end).any(axis=1)
@@ -131,4 +131,4 @@ def _is_inspected(points: RoutePoints, line: FloatArray, leg: int, start: FloatA
         return False
     places = line[points.target == target]
     hangs = min(float(np.hypot(*(places - place).T).min()) for place in (start, end)) <= SAME_M
-    return hangs or bool((shapely.distance(shapely.points(line[leg : leg + 2]), _drawn(start[None], end[None])[0]) <= SAME_M).all())
+    return hangs or bool((shapely.distance(shapely.points(line[leg : leg + 2]), lines_between(start[None], end[None])[0]) <= SAME_M).all())

@@ -177,6 +177,12 @@ class LostLinkOutputSerializer(serializers.Serializer):
 
 class LostLinkCheckSerializer(LostLinkOutputSerializer):
     failed = FailedReturnSerializer(many=True)
+    highest_m = serializers.ListField(
+        child=serializers.FloatField(allow_null=True),
+        required=False,
+        help_text="for each route the height above its start at which the UAV returns where it returns highest; null where it does not "
+        "or the ground is not known; not there in checks of before",
+    )
 
 
 class PlanSerializer(QualitySerializer):

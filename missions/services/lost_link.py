@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 
-from inspection.graph.flyable import node_heights_m
 from inspection.graph.network import Network
+from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import has_terrain_at, planning_read
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.lost_link import LostLink, LostLinkPlan, Obstacles, failed_returns
+from missions.flight_plan.lost_link import LostLink, LostLinkPlan, checked_returns
 from missions.flight_plan.zone_facts import zones_near
 from missions.models import Mission
 from missions.services.plan_json import PlannedRoute
@@ -20,22 +19,24 @@ from missions.services.requests import PlanRequest, lost_link_to_json
 from missions.services.stored_routes import stored_routes
 from missions.zone_selectors import zone_margins
 
-BESIDE_DEG = 0.01
-
 
 def lost_link_check(
     request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, network: Network, *, has_terrain: bool
 ) -> dict[str, Any]:
     """The wish, and every waypoint from which it fails, in the shape of the API; who goes on flies what was checked already.
 
-    The nodes of the network are what stands in the way.
+    highest_m: for each route at which height above its start a UAV returns where it returns highest, but not too high.
+
+    What stands and hangs on the network is in the way.
     """
     wished = request.lost_link
     failed: list[dict[str, Any]] = []
+    highest_m: list[float | None] = [None] * len(routes)
     if wished.behaviour is not LostLink.GO_ON:
         for number, route in enumerate(routes):
-            failed += _failed(request, number, route, table, network, has_terrain=has_terrain)
-    return {**lost_link_to_json(wished), "failed": failed}
+            own, highest_m[number] = _checked(request, number, route, table, network, has_terrain=has_terrain)
+            failed += own
+    return {**lost_link_to_json(wished), "failed": failed, "highest_m": highest_m}
 
 
 def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any] | None:
@@ -50,17 +51,17 @@ def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any
     return lost_link_check(request, routes, ground.table, ground.network(), has_terrain=has_terrain_at(ground.edition))
 
 
-def _failed(
+def _checked(
     request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, network: Network, *, has_terrain: bool
-) -> list[dict[str, Any]]:
+) -> tuple[list[dict[str, Any]], float | None]:
     if route.waypoints is None or route.timing is None:
-        return []
+        return [], None
     asked, margins = request.uavs[number], zone_margins()
     departs_s = None if request.departs_at is None else request.departs_at.timestamp() + route.departs_s
     window = None if departs_s is None else (departs_s, departs_s + route.duration_s + settings.FLIGHT_RULES.longest_flight_s)
     positions = np.concatenate([route.waypoints.points.position, np.array(request.lost_link.rally_points, dtype=np.float64).reshape(-1, 2)])
     near, facts = zones_near(table, positions, margins, window)
-    found = failed_returns(
+    found = checked_returns(
         route.waypoints,
         route.timing,
         LostLinkPlan(request.lost_link.behaviour, request.lost_link.rally_points, request.lost_link.hold_s),
@@ -72,9 +73,9 @@ def _failed(
         margins=margins,
         departs_s=departs_s,
         ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
-        obstacles=_obstacles(network, positions),
+        spans=spans_of(network),
     )
-    return [
+    failed = [
         {
             "route": number,
             "waypoint": one.waypoint,
@@ -85,12 +86,6 @@ def _failed(
             "zone_id": None if one.zone is None else int(near.ids[one.zone]),
             "over_m": None if one.over_m is None else round(one.over_m, 1),
         }
-        for one in found
+        for one in found.failed
     ]
-
-
-def _obstacles(network: Network, positions: FloatArray) -> Obstacles:
-    """What stands in the box of the positions."""
-    low, high = positions.min(axis=0) - BESIDE_DEG, positions.max(axis=0) + BESIDE_DEG
-    near = np.flatnonzero(((network.position >= low) & (network.position <= high)).all(axis=1))
-    return Obstacles(network.position[near], node_heights_m(network, near))
+    return failed, None if found.highest_m is None else round(found.highest_m, 1)

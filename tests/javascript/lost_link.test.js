@@ -90,6 +90,14 @@ test("energy that nobody counts is not taken for enough", () => {
   assert.equal(link.uncountedText(planWith({ ...back, failed: [] })), "");
 });
 
+test("how high UAVs have to climb for the way back is told, and a mast in the way", () => {
+  assert.equal(spaces(link.heightsText(planWith({ ...back, failed: [], highest_m: [105] }))), "It is counted on ways back at up to this height above the start: Heron 105 m.");
+  assert.equal(link.heightsText(planWith({ ...back, failed: [], highest_m: [null] })), "");
+  assert.equal(link.heightsText(planWith({ ...back, failed: [] })), "");
+  const [barred] = link.failuresOf(planWith({ ...back, failed: [failed(1, "obstacle", { over_m: 5 })] }));
+  assert.equal(spaces(link.failureText(barred).why), "a mast or wires are in the way: over them it would be 5 m above the greatest height");
+});
+
 test("places of waypoints are counted from 1 and run together", () => {
   assert.equal(link.placesText([4, 2, 3, 11]), "3–5, 12");
 });

@@ -27,7 +27,7 @@ class Judge:
         self.zones, self.tall = ZoneJudge(), TallThings()
         self.wires = WireJudge(None if hills is None else hills.metres)
         self.refusals = RefusalJudge(self.zones, self.tall, 0.0 if hills is None else hills.steepest)
-        self.returns = ReturnJudge(self.zones, hills, self.tall)
+        self.returns = ReturnJudge(self.zones, hills, self.wires)
 
     def faults(self, request: PlanRequest, plan: dict[str, Any]) -> list[str]:
         """All that is wrong with a plan."""

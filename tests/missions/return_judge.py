@@ -13,8 +13,9 @@ import numpy as np
 
 from missions.services import PlanRequest
 from tests.missions.air import CLIMB_MPS, density, speeds_mps, watts, wind_mps
-from tests.missions.ground_judge import CLEARANCE_M, Hills, TallThings, along
+from tests.missions.ground_judge import CLEARANCE_M, Hills, along
 from tests.missions.plane import apart_m, east_north
+from tests.missions.wire_judge import WireJudge
 from tests.missions.zone_judge import Leg, Margins, ZoneJudge
 
 TRANSIT_M, HIGHEST_M = 60.0, 120.0
@@ -24,8 +25,8 @@ SHARE, WH = 0.015, 0.1
 
 
 class ReturnJudge:
-    def __init__(self, zones: ZoneJudge, hills: Hills | None, tall: TallThings) -> None:
-        self.zones, self.hills, self.tall = zones, hills, tall
+    def __init__(self, zones: ZoneJudge, hills: Hills | None, wires: WireJudge) -> None:
+        self.zones, self.hills, self.wires = zones, hills, wires
         self.seen = 0  # failures that were told, and are true
 
     def faults(self, request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
@@ -67,9 +68,10 @@ class ReturnJudge:
         ground_m = self.hills.metres(under) if is_known and self.hills is not None else np.zeros(len(under))
         least_m, most_m = self._levels_m(here, havens[haven], ground_m, point["altitude_agl_m"])
         troubles = {item["trouble"] for item in told}
-        if least_m - ground_m.min() > HIGHEST_M + CLEARLY_M and "too_high" not in troubles:
+        is_too_high = bool(troubles & {"too_high", "obstacle"})
+        if least_m - ground_m.min() > HIGHEST_M + CLEARLY_M and not is_too_high:
             yield f"it would fly {least_m - ground_m.min():.0f} m above ground"
-        if most_m - ground_m.min() < HIGHEST_M - CLEARLY_M and "too_high" in troubles:
+        if most_m - ground_m.min() < HIGHEST_M - CLEARLY_M and is_too_high:
             yield f"it would fly no more than {most_m - ground_m.min():.0f} m above ground"
         taken = [self._taken(request, uav, point, havens[haven], ground_m, level_m, is_known) for level_m in (least_m, most_m)]
         if None in taken or "wind" in troubles:
@@ -82,17 +84,8 @@ class ReturnJudge:
     def _levels_m(self, here: Any, haven: Any, ground_m: Any, agl_m: float) -> tuple[float, float]:
         """The height above the sea of the way, at least and at most: nobody knows to the metre what stands beside it."""
         least_m = max(float(ground_m[0]) + agl_m, float(ground_m.max()) + TRANSIT_M)
-        most_m = least_m
-        under, _ = along(here, haven)
-        for beside_m in (20.0, 100.0):
-            for thing in self.tall.beside(here, haven, beside_m):
-                top_m = self.tall.heights[thing] + CLEARANCE_M
-                nearest = int(np.hypot(*(self.tall.metres(under) - self.tall.metres(self.tall.places[thing])).T).argmin())
-                around = ground_m[max(0, nearest - 4) : nearest + 5]
-                most_m = max(most_m, float(around.max()) + top_m)
-                if beside_m == 20.0:
-                    least_m = max(least_m, float(around.min()) + top_m)
-        return least_m, most_m
+        near_m, far_m = (self.wires.highest_m(here, haven, beside_m, least_m - CLEARANCE_M) for beside_m in (20.0, 100.0))
+        return max(least_m, near_m + CLEARANCE_M), max(least_m, far_m + CLEARANCE_M)
 
     def _taken(
         self, request: PlanRequest, uav: Any, point: dict[str, Any], haven: Any, ground_m: Any, level_m: float, is_known: bool

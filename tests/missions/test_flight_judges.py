@@ -18,12 +18,13 @@ from missions.models import EndAction, Mission, MissionState
 from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, make_plan
 from missions.services.requests import LostLinkRequest
+from tests.inspection import ground
 from tests.missions.flight_judge import Judge
 from tests.missions.ground_judge import Hills
 from tests.missions.hand_judge import HandJudge
 from tests.missions.random_flights import A_MONDAY, period, stored
 from tests.missions.schedule_judge import applies_at, sun
-from tests.missions.worlds import request, uav, world, zone_around
+from tests.missions.worlds import power_line, rebuild, request, uav, world, zone_around
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
@@ -294,6 +295,21 @@ def test_what_is_said_of_a_lost_link_is_counted_anew() -> None:
     assert any("from nowhere" in fault for fault in told([*failed, failed[0] | {"waypoint": 999}]))
     on = replace(asked, lost_link=replace(home, behaviour=LostLink.GO_ON))
     assert Judge().faults(on, plan) == ["a UAV that goes on is said to fail to return"]
+
+
+def test_a_return_through_wires_has_to_be_told() -> None:
+    """Wires of 110 m that the route goes round and the straight way back does not: it would be 5 m above the greatest height."""
+    here = world()
+    elsewhere()
+    power_line([ground.tower((lon, 55.9975), height_m=110.0) for lon in (9.997, 10.005)])
+    rebuild()
+    asked = request(here.towers[0], uavs=(uav((10.001, 55.9965)),), lost_link=LostLinkRequest(LostLink.RETURN))
+    plan = make_plan(request=asked)
+    failed = plan["lost_link"]["failed"]
+    assert {(item["trouble"], item["over_m"]) for item in failed} == {("obstacle", 5.0)}
+    assert Judge().faults(asked, plan) == []
+    silent = Judge().faults(asked, plan | {"lost_link": plan["lost_link"] | {"failed": []}})
+    assert any("it would fly 125 m above ground" in fault for fault in silent)
 
 
 def test_a_return_that_the_battery_does_not_allow_has_to_be_told() -> None:

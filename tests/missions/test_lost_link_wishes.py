@@ -9,8 +9,9 @@ from inspection.models import NoFlyZone
 from missions.models import Mission
 from missions.services import make_plan, request_of_mission, request_to_json
 from missions.services.mission_plans import PLANNING_TASK
+from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
-from tests.missions.worlds import World, world, zone_around
+from tests.missions.worlds import World, power_line, rebuild, world, zone_around
 from tests.workspace.people import client_of, somebody
 from workspace.models import Job, JobState
 
@@ -36,7 +37,7 @@ def checked(client: Client, here: World, **wished: Any) -> dict[str, Any]:
 
 def test_who_goes_on_has_nothing_to_be_checked(here: World, client: Client) -> None:
     plan = post(client, "plans", plan_body(here.towers[5])).json()
-    assert plan["lost_link"] == {"behaviour": "go_on", "rally_points": [], "hold_s": 0.0, "failed": []}
+    assert plan["lost_link"] == {"behaviour": "go_on", "rally_points": [], "hold_s": 0.0, "failed": [], "highest_m": [None]}
 
 
 def test_a_zone_between_the_route_and_its_start_bars_the_return_and_a_rally_point_mends_it(here: World, client: Client) -> None:
@@ -50,11 +51,20 @@ def test_a_zone_between_the_route_and_its_start_bars_the_return_and_a_rally_poin
     assert len(mended) < len(failed)
 
 
+def test_over_wires_between_tall_towers_it_returns_higher_and_says_how_high(here: World, client: Client) -> None:
+    power_line([ground.tower((lon, 55.998), height_m=90.0) for lon in (10.006, 10.011)])
+    rebuild()
+    start = IRIS | {"position": [10.009, 55.995]}
+    plan = post(client, "plans", plan_body(here.towers[2], uavs=[start], lost_link={"behaviour": "return"})).json()
+    assert plan["lost_link"]["failed"] == []
+    assert plan["lost_link"]["highest_m"] == [105.0]
+
+
 def test_the_wish_is_stored_with_the_mission_and_checked_with_its_plan(here: World, client: Client) -> None:
     wish = {"behaviour": "hold", "rally_points": [[10.021, 56.0005]], "hold_s": 60.0}
     mission = post(client, "missions", mission_body(here.towers[5], uavs=[IRIS], lost_link=wish) | {"plan": True}).json()
     assert mission["lost_link"] == wish
-    assert mission["plan"]["lost_link"] == wish | {"failed": []}
+    assert mission["plan"]["lost_link"] == wish | {"failed": [], "highest_m": [60.0]}
     again = post(client, f"missions/{mission['id']}/plan").json()
     assert again["plan"]["lost_link"] == mission["plan"]["lost_link"]
 

@@ -53,6 +53,23 @@ class WireJudge:
     def faults(self, plan: dict[str, Any]) -> list[str]:
         return [fault for route in plan["routes"] for fault in self._faults(route)]
 
+    def highest_m(self, start: Any, end: Any, beside_m: float, over_m: float) -> float:
+        """The highest point so near to the straight way from start to end, lon, lat; -inf where none is above over_m. Step by step."""
+        here, there = self._metres([start, end])
+        highest_m = -math.inf
+        line = shapely.LineString([here, there]) if (here != there).any() else shapely.Point(here)
+        for wire in self.tree.query(line, predicate="dwithin", distance=beside_m).tolist():
+            if self.top_m[wire].max() <= max(over_m, highest_m):
+                continue
+            share = np.linspace(0.0, 1.0, int(math.dist(self.start[wire], self.end[wire]) / STEP_M) + 2)[:, None]
+            off = self.start[wire] + share * (self.end[wire] - self.start[wire]) - here
+            along = there - here
+            where = np.clip(off @ along / max(float(along @ along), 1e-9), 0.0, 1.0)
+            top_m = self.top_m[wire, 0] + share[:, 0] * (self.top_m[wire, 1] - self.top_m[wire, 0])
+            near = np.hypot(*(off - where[:, None] * along).T) <= beside_m
+            highest_m = max(highest_m, float(top_m[near].max(initial=-math.inf)))
+        return highest_m if highest_m > over_m else -math.inf
+
     def _faults(self, route: dict[str, Any]) -> Iterator[str]:
         waypoints = route["waypoints"]
         if not waypoints:

@@ -110,6 +110,7 @@ export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_
     wind: t("the wind is too strong for the way back"),
     zone: zone ? t("the way back meets {zone}", { zone }) : t("the way back meets a no-fly zone"),
     too_high: t("the way back would be {height} above the greatest height", { height: exactHeightText(over_m) }),
+    obstacle: t("a mast or wires are in the way: over them it would be {height} above the greatest height", { height: exactHeightText(over_m) }),
     unknown_ground: t("the ground under the way back is not known"),
   }[trouble];
   return { where, why };
@@ -138,6 +139,12 @@ export function checkText(state, plan) {
 export function uncountedText(plan) {
   const names = uncountedOf(plan);
   return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";
+}
+
+/** Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before. */
+export function heightsText(plan) {
+  const heights = (plan.result.lost_link.highest_m ?? []).map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav })).filter(({ height_m }) => height_m !== null);
+  return heights.length ? t("It is counted on ways back at up to this height above the start: {heights}.", { heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", ") }) : "";
 }
 
 /** For the map: [{ key, from, to }], each waypoint that fails and where it would return to; key: of its group. */

@@ -7,6 +7,7 @@ import pytest
 import shapely
 
 from inspection.geodesy import LonLat
+from inspection.graph.spans import spans_between
 from missions.flight_plan.charging import ChargingStop, with_stops
 from missions.flight_plan.clearance import Margins, ZoneFacts
 from missions.flight_plan.conditions import Conditions, WindLayer
@@ -14,9 +15,8 @@ from missions.flight_plan.lost_link import (
     FailedReturn,
     LostLink,
     LostLinkPlan,
-    Obstacles,
     Trouble,
-    failed_returns,
+    checked_returns,
 )
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
@@ -43,10 +43,14 @@ def route(*kms, agl_m=60.0, ground_m=None, hold_s=0.0):
     return Waypoints(columns, None if ground_m is None else columns.agl_m + ground_m, columns.agl_m)
 
 
-def failed(waypoints, plan=GO_HOME, *, performance=Performance(), conditions=CALM, zones=NOWHERE, **more):  # noqa: B008 (frozen)
+def checked(waypoints, plan=GO_HOME, *, performance=Performance(), conditions=CALM, zones=NOWHERE, **more):  # noqa: B008 (frozen)
     asked = {"cruise_speed_mps": 10.0, "performance": performance, "conditions": conditions, "rules": RULES}
     clock = timing(waypoints, lands=False, **asked)
-    return failed_returns(waypoints, clock, plan, **asked, zones=zones, margins=Margins(5.0, 10.0, 300.0, 10.0), **more)
+    return checked_returns(waypoints, clock, plan, **asked, zones=zones, margins=Margins(5.0, 10.0, 300.0, 10.0), **more)
+
+
+def failed(waypoints, plan=GO_HOME, **more):
+    return checked(waypoints, plan, **more).failed
 
 
 def box(west_km, east_km, half_km=0.1):
@@ -65,9 +69,9 @@ def test_what_was_charged_on_the_way_is_there_for_the_return():
     performance = Performance(battery_wh=battery_wh)
     clock = timing(waypoints, lands=True, performance=performance, **asked)
     around = {"zones": NOWHERE, "margins": Margins(5.0, 10.0, 300.0, 10.0), "performance": performance, **asked}
-    assert [one.waypoint for one in failed_returns(waypoints, clock, GO_HOME, **around)] == [1, 2]
+    assert [one.waypoint for one in checked_returns(waypoints, clock, GO_HOME, **around).failed] == [1, 2]
     stop = ChargingStop(place=1, charging_s=1800.0, charged_wh=0.7 * battery_wh, stopped_s=1900.0, used_wh=1.0)
-    assert [one.waypoint for one in failed_returns(waypoints, with_stops(clock, [stop], battery_wh), GO_HOME, **around)] == [1]
+    assert [one.waypoint for one in checked_returns(waypoints, with_stops(clock, [stop], battery_wh), GO_HOME, **around).failed] == [1]
 
 
 def test_between_two_flights_it_stands_at_its_base_with_a_new_battery():
@@ -76,7 +80,7 @@ def test_between_two_flights_it_stands_at_its_base_with_a_new_battery():
     performance = Performance(battery_wh=56.6)
     asked = {"cruise_speed_mps": 10.0, "performance": performance, "conditions": CALM, "rules": RULES}
     clock = timing_of_route(joined, lands=True, **asked)
-    assert failed_returns(joined, clock, GO_HOME, **asked, zones=NOWHERE, margins=Margins(5.0, 10.0, 300.0, 10.0)) == []
+    assert checked_returns(joined, clock, GO_HOME, **asked, zones=NOWHERE, margins=Margins(5.0, 10.0, 300.0, 10.0)).failed == []
 
 
 def test_without_a_battery_a_zone_or_a_hill_every_return_is_a_way_home():
@@ -157,12 +161,68 @@ def test_ground_that_is_not_known_is_no_ground_to_fly_over():
     assert found == [FailedReturn(2, 0, Trouble.UNKNOWN_GROUND)]
 
 
+def mast(km, beside_km, height_m):
+    return hung([(km, beside_km, height_m, km, beside_km, height_m)])
+
+
+def hung(wires):
+    """Wires from km east, km north, top [m] to the same."""
+    columns = np.array(wires, dtype=np.float64)
+    return spans_between(columns[:, :2] * KM_DEG, columns[:, 3:5] * KM_DEG, columns[:, 2], columns[:, 5])
+
+
 def test_a_mast_beside_the_way_counts_and_one_away_from_it_does_not():
-    beside, away = [[1.5 * KM_DEG, 0.02 * KM_DEG]], [[1.5 * KM_DEG, 0.2 * KM_DEG]]
-    [found] = failed(route(0, 1, 2), obstacles=Obstacles(np.array(beside), np.array([130.0])))
-    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.TOO_HIGH, pytest.approx(130.0 + 15.0 - 120.0))
-    assert failed(route(0, 1, 2), obstacles=Obstacles(np.array(away), np.array([130.0]))) == []
-    assert failed(route(0, 1, 2), obstacles=Obstacles(np.array(beside), np.array([90.0]))) == []
+    [found] = failed(route(0, 1, 2), spans=mast(1.5, 0.02, 130.0))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(130.0 + 15.0 - 120.0))
+    assert failed(route(0, 1, 2), spans=mast(1.5, 0.2, 130.0)) == []
+    assert failed(route(0, 1, 2), spans=mast(1.5, 0.02, 90.0)) == []
+
+
+def test_a_wire_far_from_both_its_towers_is_cleared_like_a_tower():
+    """Between towers of 90 m the way is flown at 105 m, where a zone is that a way at 60 m would pass below; 110 m are too many."""
+    aloft = ZoneFacts.of([box(0.2, 0.8)], [(90.0, "AGL", None, "")], [None])
+    waypoints = route(0, 1, 2)
+    assert failed(waypoints, zones=aloft) == []
+    assert [one.trouble for one in failed(waypoints, zones=aloft, spans=hung([(1.5, -0.2, 90.0, 1.5, 0.2, 90.0)]))] == [Trouble.ZONE]
+    [found] = failed(waypoints, spans=hung([(1.5, -0.2, 110.0, 1.5, 0.2, 110.0)]))
+    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(5.0))
+
+
+def test_how_high_above_its_start_a_uav_returns_is_told():
+    wire = hung([(1.5, -0.2, 90.0, 1.5, 0.2, 90.0)])
+    assert checked(route(0, 1, 2)).highest_m == pytest.approx(60.0)
+    assert checked(route(0, 1, 2), spans=wire).highest_m == pytest.approx(105.0)
+    level = {"ground_heights_m": lambda position: np.full(len(position), 400.0)}
+    assert checked(route(0, 1, 2, ground_m=400.0), spans=wire, **level).highest_m == pytest.approx(105.0)
+    assert checked(route(0, 1, 2), LostLinkPlan(LostLink.GO_ON), spans=wire).highest_m is None
+
+
+def test_a_sloping_wire_counts_as_high_as_it_is_beside_the_way():
+    """From 100 m, 190 m north of the way, up to 140 m, 210 m south of it: 30 m south of the way it is at 122 m."""
+    [found] = failed(route(0, 1, 2), spans=hung([(1.5, 0.19, 100.0, 1.5, -0.21, 140.0)]))
+    assert found.over_m == pytest.approx(122.0 + 15.0 - 120.0, abs=0.05)
+
+
+def test_a_wire_hangs_from_the_ground_under_its_towers():
+    """Both stand 60 m above the ground of the way, on hills beside it that the way itself does not cross."""
+
+    def hills(position):
+        return 400.0 + np.where(np.abs(position[:, 1]) > 0.1 * KM_DEG, 60.0, 0.0)
+
+    waypoints = route(0, 1, 2, ground_m=400.0)
+    wire = hung([(1.5, -0.2, 50.0, 1.5, 0.2, 50.0)])
+    assert failed(waypoints, ground_heights_m=lambda position: np.full(len(position), 400.0), spans=wire) == []
+    [found] = failed(waypoints, ground_heights_m=hills, spans=wire)
+    assert (found.waypoint, found.trouble, found.over_m) == (2, Trouble.OBSTACLE, pytest.approx(5.0))
+
+
+def test_a_wire_over_ground_that_is_not_known_hangs_nobody_knows_how_high():
+    def known_on_the_way(position):
+        return np.where(np.abs(position[:, 1]) > 0.1 * KM_DEG, np.nan, 400.0)
+
+    waypoints = route(0, 1, 2, ground_m=400.0)
+    found = failed(waypoints, ground_heights_m=known_on_the_way, spans=hung([(1.5, -0.2, 20.0, 1.5, 0.2, 20.0)]))
+    assert found == [FailedReturn(2, 0, Trouble.UNKNOWN_GROUND)]
 
 
 def test_against_a_wind_that_is_too_strong_nobody_comes_home():

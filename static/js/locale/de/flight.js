@@ -1,6 +1,7 @@
 /** When and in what air a mission is flown, and when it is legal. English → German; [one, other] where there is a plural. */
 
 export default {
+  "a mast or wires are in the way: over them it would be {height} above the greatest height": "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten Höhe",
   "A mission has at most {most} rally points.": "Eine Mission hat höchstens {most} Sammelpunkte.",
   "A plan with a departure counts it at its times, any other plan at all times.": "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",
   "A route is changed by hand once its plan is saved.": "Eine Route lässt sich von Hand ändern, sobald ihr Plan gespeichert ist.",
@@ -96,6 +97,7 @@ export default {
   "How the flight of {name} ends": "Wie der Flug von {name} endet",
   "If the link is lost": "Wenn die Verbindung abreißt",
   "If the link is lost:": "Wenn die Verbindung abreißt:",
+  "It is counted on ways back at up to this height above the start: {heights}.": "Gerechnet ist mit Rückwegen bis in diese Höhe über dem Start: {heights}.",
   "It is being checked for energy and zones.": "Energie und Zonen werden gerade geprüft.",
   "It is checked for energy and zones once there is a plan.": "Energie und Zonen werden geprüft, sobald es einen Plan gibt.",
   "Its rally point is kept, and not used.": ["Der Sammelpunkt bleibt und wird nicht genutzt.", "Die {count} Sammelpunkte bleiben und werden nicht genutzt."],

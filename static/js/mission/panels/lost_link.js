@@ -148,10 +148,11 @@ function tell(input, element, words) {
 /** The check in words; each group of waypoints that fails is a row that shows itself on the map. It follows the store. */
 function checkOf(store, { showPlaces }) {
   const said = h("p", { class: "link-said", role: "status" });
+  const heights = h("p", { class: "caption" });
   const uncounted = h("p", { class: "caption" });
   const rows = h("ul", { class: "link-failures", "aria-label": t("From where a UAV would not get home") });
   const more = h("button", { type: "button", class: "text-button", onclick: () => ((showsAll = true), draw(store.state)) });
-  const element = h("div", { class: "link-check" }, said, rows, more, uncounted);
+  const element = h("div", { class: "link-check" }, said, rows, more, heights, uncounted);
   let showsAll = false;
   let held = null; // the group that was clicked stays lit while its row has focus
 
@@ -190,6 +191,8 @@ function checkOf(store, { showPlaces }) {
     rows.replaceChildren(...shown.map((group) => row(plan, group)));
     more.hidden = shown.length === groups.length;
     more.textContent = tn(groups.length - shown.length, "Show {count} more", "Show {count} more");
+    heights.textContent = isChecked ? link.heightsText(plan) : "";
+    heights.hidden = !heights.textContent;
     uncounted.textContent = isChecked ? link.uncountedText(plan) : "";
     uncounted.hidden = !uncounted.textContent;
   }
