@@ -1,5 +1,6 @@
 """Whether finished routes keep to their batteries."""
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -100,11 +101,18 @@ def _too_much_for(uav: int, request: PlanRequest, found: Attempt, ground: Ground
         alone = [[] if other != start else [visits] for other in range(len(found.uavs))]
         return found.drawing.routes(found.uavs, alone, ground)[uav]
 
+    def has_way(visits: Sequence[int]) -> bool:
+        """Some targets are come to from others only."""
+        return math.isfinite(found.problem.route_length_m(start, visits))
+
     target_of = {visit: found.drawing.places[found.problem.visits[visit].target].target for visit in order}
-    hopeless = frozenset(target_of[visit] for visit in order if drawn([visit]).lacks_wh > 0.0)
+    hopeless = frozenset(target_of[visit] for visit in order if has_way([visit]) and drawn([visit]).lacks_wh > 0.0)
     if hopeless:
         return hopeless
-    without = [(visit, drawn([other for other in order if other != visit])) for visit in order]
+    rests = [(visit, [other for other in order if other != visit]) for visit in order]
+    without = [(visit, drawn(rest)) for visit, rest in rests if has_way(rest)]
+    if not without:
+        return frozenset(target_of.values())
 
     def merit(one: tuple[int, PlannedRoute]) -> tuple[bool, int, float]:
         visit, rest = one

@@ -199,3 +199,13 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     assert reasons(plan) == {0: "beyond_energy"}
     said = "As drawn, over the ground and what stands tall, a route with it takes 0.7 Wh more than the battery of Tern may give."
     assert plan["unassigned"][0]["message"] == said
+
+
+def test_of_targets_that_are_come_to_one_from_the_other_the_farther_is_left_out_if_charging_does_not_suffice() -> None:
+    """18 km from the line and 3.7 km from one to the next, of which a UAV flies 5 km at most away from it."""
+    world()
+    near, far = (TargetRequest(None, LonLat(lon, 56.0)) for lon in (10.41, 10.47))
+    small = iris((10.35, 56.0), battery_wh=30.0, speed_mps=12.0)
+    plan = make_plan(request=request(near, far, uavs=(small,), charging_w=100.0))
+    assert reasons(plan).keys() == {1}
+    assert plan["routes"][0]["targets"] == [0]
