@@ -8,8 +8,11 @@ from typing import Any
 DAYS = ("MON", "TUE", "WED", "THU", "FRI", "SAT", "SUN")
 
 
-def applies_at(schedule: list[dict[str, Any]], when: datetime, lon: float, lat: float) -> bool:
-    """Whether a zone applies at a moment; where the sun bounds it, not within 4 min of that, which another formula may see otherwise."""
+def applies_at(schedule: list[dict[str, Any]], when: datetime, lon: float, lat: float, *, is_wide: bool = False) -> bool:
+    """Whether a zone applies at a moment; where the sun bounds it, not within 4 min of that, which another formula may see otherwise.
+
+    is_wide: a day that the sun opens or closes may also begin and end at the sun's midnight.
+    """
     for period in schedule:
         begin, end = (None if period[name] is None else datetime.fromisoformat(period[name]) for name in ("startDateTime", "endDateTime"))
         if (begin is not None and when < begin) or (end is not None and when >= end):
@@ -19,13 +22,19 @@ def applies_at(schedule: list[dict[str, Any]], when: datetime, lon: float, lat: 
         for entry in period["schedule"]:
             for back in (0, 1):
                 day = when.date() - timedelta(days=back)
-                if ("ANY" in entry["day"] or DAYS[day.weekday()] in entry["day"]) and _is_in_entry(entry, day, when, lon, lat):
+                if ("ANY" in entry["day"] or DAYS[day.weekday()] in entry["day"]) and _is_in_entry(
+                    entry, day, when, lon, lat, is_wide=is_wide
+                ):
                     return True
     return False
 
 
-def _is_in_entry(entry: dict[str, Any], day: date, when: datetime, lon: float, lat: float) -> bool:
+def _is_in_entry(entry: dict[str, Any], day: date, when: datetime, lon: float, lat: float, *, is_wide: bool) -> bool:
     starts, ends = _moments(entry, "start", day, lon, lat), _moments(entry, "end", day, lon, lat)
+    if is_wide and (entry["startEvent"] or entry["endEvent"]):
+        solar = timedelta(hours=lon / 15.0)
+        starts += [] if entry["startEvent"] or entry["startTime"] else [start - solar for start in starts]
+        ends = ends if entry["endEvent"] or entry["endTime"] else [max(end, end - solar) for end in ends]
     early, late = (timedelta(minutes=4 if entry[f"{side}Event"] else 0) for side in ("start", "end"))
     for start in starts:
         after = [end for end in ends if end > start]

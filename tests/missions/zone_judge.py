@@ -55,7 +55,7 @@ class ZoneJudge:
         self.centres = [(shape.centroid.x, shape.centroid.y) for shape in shapes]
         self.seen_beside_height = 0
         self.seen_beside_time = 0
-        self._applies: dict[tuple[int, int], bool] = {}
+        self._applies: dict[tuple[int, int, bool], bool] = {}
 
     def metres(self, places: Any) -> Any:
         degree_m = math.radians(1.0) * EARTH_M
@@ -90,17 +90,18 @@ class ZoneJudge:
         if schedule is None:
             return True
         first, last = begin - timedelta(seconds=margins.time_s), end + timedelta(seconds=margins.time_s)
-        if any(applies_at(schedule, moment, *self.centres[zone]) for moment in (first, last)):
+        is_wide = margins.time_s > KEPT.time_s
+        if any(applies_at(schedule, moment, *self.centres[zone], is_wide=is_wide) for moment in (first, last)):
             return True
         halves = range(math.ceil(first.timestamp() / STEP_S), math.floor(last.timestamp() / STEP_S) + 1)
-        return any(self._applies_at_half(zone, half) for half in halves)
+        return any(self._applies_at_half(zone, half, is_wide) for half in halves)
 
-    def _applies_at_half(self, zone: int, half: int) -> bool:
+    def _applies_at_half(self, zone: int, half: int, is_wide: bool) -> bool:
         """The same of a half minute since the epoch, kept."""
-        found = self._applies.get((zone, half))
+        found = self._applies.get((zone, half, is_wide))
         if found is None:
             moment = datetime.fromtimestamp(half * STEP_S, UTC)
-            found = self._applies[zone, half] = applies_at(self.zones[zone].schedule, moment, *self.centres[zone])
+            found = self._applies[zone, half, is_wide] = applies_at(self.zones[zone].schedule, moment, *self.centres[zone], is_wide=is_wide)
         return found
 
     def lie_near(self, shape: Any, distance_m: float) -> list[int]:
