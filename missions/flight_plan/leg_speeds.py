@@ -36,17 +36,17 @@ def speeds_out_of_range(
 
 
 def _range(waypoints: Waypoints, place: int, cruise_speed_mps: float, max_airspeed_mps: float | None, conditions: Conditions) -> SpeedRange:
-    if max_airspeed_mps is None:
-        return SpeedRange(LEAST_HEADWAY_MPS, cruise_speed_mps)
+    limit_mps = cruise_speed_mps if max_airspeed_mps is None else max_airspeed_mps
     points = waypoints.points
     start, end = points.position[max(place - 1, 0)], points.position[place]
     east_m, north_m = short_vector_m(start[0], start[1], end[0], end[1])
     length_m = math.hypot(east_m, north_m)
     if length_m == 0.0:
-        return SpeedRange(LEAST_HEADWAY_MPS, max_airspeed_mps)
+        return SpeedRange(LEAST_HEADWAY_MPS, limit_mps)
     east, north = east_m / length_m, north_m / length_m
     middle_m = 0.5 * (float(points.agl_m[max(place - 1, 0)]) + float(points.agl_m[place]))
     east_mps, north_mps = wind_in_table(conditions.wind_table, middle_m)
     along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
-    spare_mps = math.sqrt(max(max_airspeed_mps**2 - across_mps**2, 0.0))
-    return SpeedRange(max(LEAST_HEADWAY_MPS, along_mps - spare_mps), along_mps + spare_mps)
+    spare_mps = math.sqrt(max(limit_mps**2 - across_mps**2, 0.0))
+    most_mps = along_mps + spare_mps
+    return SpeedRange(max(LEAST_HEADWAY_MPS, along_mps - spare_mps), most_mps if max_airspeed_mps is not None else min(most_mps, limit_mps))

@@ -19,7 +19,7 @@ NO_TABLE = np.zeros((0, 0, 0))  # in place of a table of power: without a batter
 
 
 class Speeds(NamedTuple):
-    """Of a UAV on a plan, m/s: wanted over ground, most through the air (inf: not limited), straight up, straight down."""
+    """Of a UAV on a plan, m/s: wanted over ground, most through the air, straight up, straight down."""
 
     cruise_mps: float
     limit_mps: float
@@ -32,7 +32,7 @@ def speeds(performance: Performance, cruise_speed_mps: float, rules: FlightRules
     limit, up, down = performance.max_airspeed_mps, performance.climb_speed_mps, performance.descent_speed_mps
     return Speeds(
         float(cruise_speed_mps),
-        math.inf if limit is None else float(limit),
+        float(cruise_speed_mps if limit is None else limit),  # of an airspeed that is not stated it is known to fly its speed
         float(rules.climb_speed_mps if up is None else up),
         float(rules.climb_speed_mps if down is None else down),
     )

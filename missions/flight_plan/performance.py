@@ -40,7 +40,7 @@ class Performance:
     battery_wh         energy of a full battery; None: seconds can be told, watt-hours left cannot
     mass_kg            at take-off
     reserve_percent    of the battery that no plan uses
-    max_airspeed_mps   the fastest it flies through the air; None: not limited
+    max_airspeed_mps   the fastest it flies through the air; None: its cruising speed, which it is known to fly
     climb_speed_mps    straight up; None: as the plan's rules have it; likewise descent_speed_mps
     rotor_disk_m2      the circles of all rotors together
     hover_power_w      measured in a hover in calm air of 1.225 kg/m3; None: worked out with the efficiency

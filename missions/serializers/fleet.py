@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
@@ -24,7 +25,7 @@ class UavTypeSerializer(serializers.Serializer):
     battery_wh = AboveZeroField(allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery")
     mass_kg = AboveZeroField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off")
     reserve_percent = FiniteFloatField(required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses")
-    max_airspeed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: not limited")
+    max_airspeed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: its cruise speed")
     rotor_disk_m2 = AboveZeroField(
         allow_null=True, required=False, max_value=LARGEST_DISK_M2, help_text="area swept by all rotors; null: the Iris's"
     )
@@ -39,8 +40,11 @@ class UavTypeSerializer(serializers.Serializer):
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         """Figures that go together: the power of a hover and the mass and rotors that it holds up."""
         stored = {} if self.instance is None else {key: getattr(self.instance, key) for key in PERFORMANCE_KEYS}
+        figures = stored | {key: attrs[key] for key in PERFORMANCE_KEYS if key in attrs}
+        if figures.get("battery_wh") and not figures.get("mass_kg") and not {"battery_wh", "mass_kg"}.isdisjoint(attrs):
+            raise serializers.ValidationError({"mass_kg": _("With a battery its mass is needed: what a flight takes follows from it.")})
         try:
-            performance_from_json(stored | {key: attrs[key] for key in PERFORMANCE_KEYS if key in attrs})
+            performance_from_json(figures)
         except InvalidPerformance as error:
             raise serializers.ValidationError({error.place: fault_words(error)}) from error
         return attrs

@@ -98,7 +98,7 @@ class PerformanceFieldsSerializer(KnownFieldsSerializer):
     reserve_percent = FiniteFloatField(
         required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="of the battery, that no plan uses"
     )
-    max_airspeed_mps = AboveZeroField(required=False, allow_null=True, max_value=FASTEST_MPS, help_text="null: not limited")
+    max_airspeed_mps = AboveZeroField(required=False, allow_null=True, max_value=FASTEST_MPS, help_text="null: its cruise speed")
     rotor_disk_m2 = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_DISK_M2, help_text="null: the Iris's")
     hover_power_w = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="as measured; null: worked out")
 

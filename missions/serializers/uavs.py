@@ -42,7 +42,7 @@ class UavPropertiesSerializer(serializers.Serializer):
         allow_null=True, required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses; null: the type's"
     )
     max_airspeed_mps = AboveZeroField(
-        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="through the air; null: the type's, else not limited"
+        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="through the air; null: the type's, else its cruise speed"
     )
     heading_deg = FiniteFloatField(
         allow_null=True, required=False, min_value=0, max_value=359.999999, help_text="degrees from true north, clockwise; null: not known"
@@ -90,7 +90,7 @@ class UavFlatSerializer(UavPropertiesSerializer):
         uav_type = attrs["uav_type"] if "uav_type" in attrs else getattr(stored, "uav_type", None)
         own = {name: attrs[name] if name in attrs else getattr(stored, name, None) for name in OWN_PERFORMANCE_KEYS}
         if own["battery_wh"] is not None and own["mass_kg"] is None and getattr(uav_type, "mass_kg", None) is None:
-            return {"mass_kg": _("A UAV with a battery of its own needs a mass: what a flight takes follows from it.")}
+            return {"mass_kg": _("With a battery its mass is needed: what a flight takes follows from it.")}
         try:
             performance_with(uav_type, own)
         except InvalidPerformance as error:

@@ -99,9 +99,8 @@ def _flights(request: PlanRequest, starts: Sequence[BaseRequest], scene: Scene) 
 
 
 def _class_of(uav: UavRequest, request: PlanRequest) -> FlightClass | None:
-    """None for a UAV whose battery is not known and which no wind can stop."""
-    is_stopped = uav.performance.max_airspeed_mps is not None and not request.conditions.is_calm
-    if uav.performance.battery_wh is None and not is_stopped:
+    """None for a UAV whose battery is not known and which there is no wind to stop."""
+    if uav.performance.battery_wh is None and request.conditions.is_calm:
         return None
     return FlightClass(uav.performance, uav.cruise_speed_mps)
 

@@ -15,7 +15,7 @@ def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_b
         found.append({"code": "shortest_ways", "uav": None, "message": SHORTEST_WAYS})
     if request.conditions.is_calm:
         return found
-    unknown = "%s states no top airspeed: it is taken to keep its speed over ground in any wind."
+    unknown = "%s states no top airspeed: it is taken to fly no faster than its speed, through the air."
     return found + [
         {"code": "airspeed_not_stated", "uav": number, "message": unknown % uav.name}
         for number, uav in enumerate(request.uavs)

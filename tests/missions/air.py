@@ -39,9 +39,9 @@ def speeds_mps(uav: Any, way: tuple[float, float], wind: tuple[float, float]) ->
     length = math.hypot(*way)
     along = (way[0] * wind[0] + way[1] * wind[1]) / length
     across = (way[0] * wind[1] - way[1] * wind[0]) / length
-    wanted, limit = uav.cruise_speed_mps, uav.performance.max_airspeed_mps
+    wanted, limit = uav.cruise_speed_mps, uav.performance.max_airspeed_mps or uav.cruise_speed_mps
     air_mps = math.hypot(wanted - along, across)
-    if limit is None or air_mps <= limit:
+    if air_mps <= limit:
         return wanted, air_mps
     if math.hypot(*wind) > limit:
         return None

@@ -130,9 +130,9 @@ class RefusalJudge:
 
     def _most_wh(self, request: PlanRequest, uav: Any, start: Any, place: Any, needed_m: float) -> float | None:
         """What such a flight takes at most, whatever its course and height; None where the wind may be too strong for one of them."""
-        limit_mps = uav.performance.max_airspeed_mps
+        limit_mps = uav.performance.max_airspeed_mps or uav.cruise_speed_mps
         winds = [wind_mps(request, height_m) for height_m in np.linspace(0.0, HIGHEST_AGL_M, 13)]
-        if limit_mps is not None and max(math.hypot(*wind) for wind in winds) > limit_mps - 1.0:
+        if max(math.hypot(*wind) for wind in winds) > limit_mps - 1.0:
             return None
         if uav.performance.battery_wh is None:
             return 0.0

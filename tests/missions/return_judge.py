@@ -104,7 +104,7 @@ class ReturnJudge:
         joules += down_s * power(down_m / 2, 0.0, air)
         length_m = apart_m(point["position"], haven)
         across = [(0.0, 0.0)]
-        limit_mps = uav.performance.max_airspeed_mps or math.inf
+        limit_mps = uav.performance.max_airspeed_mps or uav.cruise_speed_mps
         heights = [agl_m, up_agl_m, level_m - float(ground_m.min()), level_m - float(ground_m.max()), down_m, *np.linspace(0.0, down_m, 7)]
         if any(math.hypot(*wind_mps(request, height_m)) > limit_mps for height_m in heights):
             return None

@@ -109,9 +109,9 @@ function typeFields(type) {
   const range = numberField("max_range_m", t("Range"), type.max_range_m, { factor: LONG_UNIT.metres, unit: LONG_UNIT.unit, min: 0.1, hint: t("On one battery; empty: not limited.") });
   const speed = numberField("cruise_speed_mps", t("Speed"), type.cruise_speed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, min: 0.5, required: true });
   const battery = numberField("battery_wh", t("Battery"), type.battery_wh, { unit: "Wh", ...BOUNDS.battery_wh, hint: t("When full; empty: no energy is counted.") });
-  const mass = numberField("mass_kg", t("Mass"), type.mass_kg, { unit: "kg", ...BOUNDS.mass_kg, usual: IRIS.mass_kg, hint: t("At take-off; empty: that of a PX4 Iris, in grey.") });
+  const mass = numberField("mass_kg", t("Mass"), type.mass_kg, { unit: "kg", ...BOUNDS.mass_kg, hint: t("At take-off; needed with a battery.") });
   const reserve = numberField("reserve_percent", t("Kept in reserve"), type.reserve_percent, { unit: "%", ...BOUNDS.reserve_percent, digits: 1, required: true, hint: t("Of the battery; a plan does not use it.") });
-  const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, ...AIRSPEED_BOUNDS, hint: t("Against the wind; empty: not limited.") });
+  const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, { factor: SPEED_UNIT.mps, unit: SPEED_UNIT.unit, ...AIRSPEED_BOUNDS, hint: t("Against the wind; empty: its speed.") });
   const disk = numberField("rotor_disk_m2", t("Rotor area"), type.rotor_disk_m2, { unit: "m²", ...BOUNDS.rotor_disk_m2, digits: 4, usual: IRIS.rotor_disk_m2, hint: t("Circles of all rotors together; empty: those of a PX4 Iris, in grey.") });
   const hover = numberField("hover_power_w", t("Power in a hover"), type.hover_power_w, { unit: "W", ...BOUNDS.hover_power_w, digits: 1, hint: t("As measured in still air, with this mass; empty: worked out from mass and rotors.") });
   const sensors = textField("sensors", t("Sensors"), type.sensors.join(", "), { maxlength: 600, hint: t("Divided by commas.") });

@@ -11,7 +11,7 @@ export default {
   "Add by coordinates": "Nach Koordinaten setzen",
   "Add on the map": "Auf der Karte setzen",
   "after {start}": "nach {start}",
-  "Against the wind; empty: not limited.": "Gegen den Wind; leer: nicht begrenzt.",
+  "Against the wind; empty: its speed.": "Gegen den Wind; leer: seine Geschwindigkeit.",
   "All UAVs together as few minutes in the air as possible": "Alle UAVs zusammen so wenige Minuten wie möglich in der Luft",
   "All UAVs together with as little of their batteries as possible": "Alle UAVs zusammen mit so wenig Akkuladung wie möglich",
   "and more": "und weitere",
@@ -266,4 +266,5 @@ export default {
   "Zones count {time} before and after their times and {height} below and above their limits.": "Zonen zählen {time} vor und nach ihren Zeiten und {height} unter und über ihren Grenzen.",
   "Zones that force a detour": "Zonen, die zu einem Umweg zwingen",
   "Zones: {zones}.": "Zonen: {zones}.",
+  "{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.": "{name} nennt keine höchste Fluggeschwindigkeit: Es wird angenommen, dass es durch die Luft nicht schneller als seine Geschwindigkeit fliegt.",
 };
