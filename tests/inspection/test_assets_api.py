@@ -6,6 +6,7 @@ import pytest
 from django.test import Client
 from django.utils import timezone
 
+from inspection.graph.snapshot_file import LAYOUT
 from inspection.models import Asset, DataImport, GraphSnapshot, TerrainTile, ZoneSet
 from inspection.selectors import asset_detail, asset_label
 from inspection.services import mark_ground_changed
@@ -277,7 +278,7 @@ def test_the_ground_is_summed_up(client: Client) -> None:
     revision = mark_ground_changed()
     none = dict.fromkeys(["edges", "excluded_nodes", "excluded_edges"], 0)
     graph = GraphSnapshot.objects.create(
-        ground_revision=revision, rules={}, nodes=2, components=2, arrays=b"", arrays_sha256="", build_s=0.1, **none
+        ground_revision=revision, rules={"layout": LAYOUT}, nodes=2, components=2, arrays=b"", arrays_sha256="", build_s=0.1, **none
     )
     summary = client.get("/api/v1/ground").json()
     assert summary.pop("graph").items() >= {"version": graph.version, "nodes": 2, "edges": 0, "is_current": True}.items()
