@@ -175,8 +175,16 @@ class LostLinkOutputSerializer(serializers.Serializer):
     hold_s = serializers.FloatField()
 
 
+class RallyPointInZoneSerializer(serializers.Serializer):
+    rally_point = serializers.IntegerField(help_text="n: the n-th")
+    zone = serializers.CharField(allow_blank=True, help_text="its name; empty: it lies in the margin round one")
+
+
 class LostLinkCheckSerializer(LostLinkOutputSerializer):
     failed = FailedReturnSerializer(many=True)
+    rally_points_in_zones = RallyPointInZoneSerializer(
+        many=True, required=False, help_text="in which nothing may land, whether a UAV would now return to them or not"
+    )
     highest_m = serializers.ListField(
         child=serializers.FloatField(allow_null=True),
         required=False,

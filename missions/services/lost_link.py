@@ -9,6 +9,7 @@ from django.conf import settings
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
+from inspection.selectors.graph import zones_of_table
 from inspection.selectors.planning import has_terrain_at, planning_read
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.lost_link import LostLink, LostLinkPlan, checked_returns
@@ -17,6 +18,7 @@ from missions.models import Mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest, lost_link_to_json
 from missions.services.stored_routes import stored_routes
+from missions.services.zone_choice import zone_choice
 from missions.zone_selectors import zone_margins
 
 
@@ -36,7 +38,20 @@ def lost_link_check(
         for number, route in enumerate(routes):
             own, highest_m[number] = _checked(request, number, route, table, network, has_terrain=has_terrain)
             failed += own
-    return {**lost_link_to_json(wished), "failed": failed, "highest_m": highest_m}
+    in_zones = [] if wished.behaviour is LostLink.GO_ON else _rally_points_in_zones(request, table)
+    return {**lost_link_to_json(wished), "failed": failed, "highest_m": highest_m, "rally_points_in_zones": in_zones}
+
+
+def _rally_points_in_zones(request: PlanRequest, table: ZoneTable) -> list[dict[str, Any]]:
+    """Those that lie in a zone that can be in force during the flight, between the ground and the heights of flights; from 1 on."""
+    flight, clearance_m = settings.FLIGHT_RULES, settings.GRAPH_RULES.zone_clearance_m
+    zones = zones_of_table(table, zone_choice(table, request.departs_at, flight).widest)
+    found = []
+    for number, place in enumerate(request.lost_link.rally_points, start=1):
+        if len(zones) and zones.contains([place], clearance_m, 0.0, flight.transit_agl_m)[0]:
+            zone = zones.zone_at(place, 0.0, flight.transit_agl_m)
+            found.append({"rally_point": number, "zone": "" if zone is None else zone[1]})
+    return found
 
 
 def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any] | None:

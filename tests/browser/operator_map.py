@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 from typing import Any
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, TimeoutError, expect
 
 CLOSE_ZOOM = 16
+MOST_MOVES, MOVE_TIMEOUT_MS = 4, 15_000
+A_HAIR = 1e-5  # of a level: another address for the same place
 STANDS_STILL_AT = """(position) => {
     const map = document.getElementById("map");
     const { x, y } = map.project(position);
@@ -34,17 +36,22 @@ def asks(page: Page, path: str) -> Any:
 
 
 def look_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> dict[str, float]:
-    """Moves the map there by its address; the place on the screen."""
-    page.evaluate(
-        """async ([longitude, latitude, zoom]) => {
-            const map = document.getElementById("map");
-            delete map.dataset.idle;
-            location.hash = `map=${zoom}/${latitude}/${longitude}`;
-        }""",
-        [*position, zoom],
-    )
-    page.wait_for_function(STANDS_STILL_AT, arg=position)
-    return place_of(page, position)
+    """Moves the map there by its address; the place on the screen. A panel that is still growing moves the map away: then once more."""
+    for number in range(MOST_MOVES):
+        page.evaluate(
+            """async ([longitude, latitude, zoom]) => {
+                const map = document.getElementById("map");
+                delete map.dataset.idle;
+                location.hash = `map=${zoom}/${latitude}/${longitude}`;
+            }""",
+            [*position, zoom + number * A_HAIR],
+        )
+        try:
+            page.wait_for_function(STANDS_STILL_AT, arg=position, timeout=MOVE_TIMEOUT_MS)
+        except TimeoutError:
+            continue
+        return place_of(page, position)
+    raise AssertionError(f"the map does not come to {position}")
 
 
 def place_of(page: Page, position: list[float]) -> dict[str, float]:

@@ -37,7 +37,8 @@ def checked(client: Client, here: World, **wished: Any) -> dict[str, Any]:
 
 def test_who_goes_on_has_nothing_to_be_checked(here: World, client: Client) -> None:
     plan = post(client, "plans", plan_body(here.towers[5])).json()
-    assert plan["lost_link"] == {"behaviour": "go_on", "rally_points": [], "hold_s": 0.0, "failed": [], "highest_m": [None]}
+    wished = {"behaviour": "go_on", "rally_points": [], "hold_s": 0.0}
+    assert plan["lost_link"] == wished | {"failed": [], "highest_m": [None], "rally_points_in_zones": []}
 
 
 def test_a_zone_between_the_route_and_its_start_bars_the_return_and_a_rally_point_mends_it(here: World, client: Client) -> None:
@@ -64,7 +65,7 @@ def test_the_wish_is_stored_with_the_mission_and_checked_with_its_plan(here: Wor
     wish = {"behaviour": "hold", "rally_points": [[10.021, 56.0005]], "hold_s": 60.0}
     mission = post(client, "missions", mission_body(here.towers[5], uavs=[IRIS], lost_link=wish) | {"plan": True}).json()
     assert mission["lost_link"] == wish
-    assert mission["plan"]["lost_link"] == wish | {"failed": [], "highest_m": [60.0]}
+    assert mission["plan"]["lost_link"] == wish | {"failed": [], "highest_m": [60.0], "rally_points_in_zones": []}
     again = post(client, f"missions/{mission['id']}/plan").json()
     assert again["plan"]["lost_link"] == mission["plan"]["lost_link"]
 
@@ -131,3 +132,9 @@ def test_the_plan_of_a_job_is_taken_though_the_wish_came_after_it(here: World, c
     taken = patch(client, f"missions/{draft['id']}", {"plan": True, "plan_of": str(job.pk)}).json()
     assert taken["plan"]["lost_link"]["behaviour"] == "hold"
     assert {one["trouble"] for one in taken["plan"]["lost_link"]["failed"]} == {"battery"}
+
+
+def test_a_rally_point_in_a_zone_is_told_though_no_uav_would_return_to_it(here: World, client: Client) -> None:
+    zone_around((10.3, 56.3), name="Heliport")
+    found = checked(client, here, behaviour="return", rally_points=[[10.021, 56.0005], [10.3, 56.3]])
+    assert (found["failed"], found["rally_points_in_zones"]) == ([], [{"rally_point": 2, "zone": "Heliport"}])

@@ -141,6 +141,12 @@ export function uncountedText(plan) {
   return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";
 }
 
+/** Rally points in which nothing may land, whether a UAV would now return to them or not. */
+export function inZonesText(plan) {
+  const found = plan.result.lost_link.rally_points_in_zones ?? [];
+  return found.map(({ rally_point, zone }) => t("{name} lies inside {zone}: nothing may land there.", { name: rallyName(rally_point - 1), zone: zone || t("the margin round a no-fly zone") })).join(" ");
+}
+
 /** Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before. */
 export function heightsText(plan) {
   const heights = (plan.result.lost_link.highest_m ?? []).map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav })).filter(({ height_m }) => height_m !== null);

@@ -266,5 +266,6 @@ export default {
   "Zones count {time} before and after their times and {height} below and above their limits.": "Zonen zählen {time} vor und nach ihren Zeiten und {height} unter und über ihren Grenzen.",
   "Zones that force a detour": "Zonen, die zu einem Umweg zwingen",
   "Zones: {zones}.": "Zonen: {zones}.",
+  "{name} lies inside {zone}: nothing may land there.": "{name} liegt in {zone}: Dort darf nichts landen.",
   "{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.": "{name} nennt keine höchste Fluggeschwindigkeit: Es wird angenommen, dass es durch die Luft nicht schneller als seine Geschwindigkeit fliegt.",
 };

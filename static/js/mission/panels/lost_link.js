@@ -152,7 +152,8 @@ function checkOf(store, { showPlaces }) {
   const uncounted = h("p", { class: "caption" });
   const rows = h("ul", { class: "link-failures", "aria-label": t("From where a UAV would not get home") });
   const more = h("button", { type: "button", class: "text-button", onclick: () => ((showsAll = true), draw(store.state)) });
-  const element = h("div", { class: "link-check" }, said, rows, more, heights, uncounted);
+  const barred = h("p", { class: "field-error", role: "alert" });
+  const element = h("div", { class: "link-check" }, said, barred, rows, more, heights, uncounted);
   let showsAll = false;
   let held = null; // the group that was clicked stays lit while its row has focus
 
@@ -183,8 +184,12 @@ function checkOf(store, { showPlaces }) {
     const isChecked = now === "home" || now === "lost";
     const words = link.checkText(now, plan);
     element.hidden = now === "go-on";
-    element.dataset.state = now;
-    said.replaceChildren(...(ICONS[now] ? [icon(ICONS[now], "small")] : []), h("span", {}, words));
+    const inZones = isChecked ? link.inZonesText(plan) : "";
+    const seen = inZones ? "lost" : now; // no tick over a place where nothing may land
+    element.dataset.state = seen;
+    said.replaceChildren(...(ICONS[seen] ? [icon(ICONS[seen], "small")] : []), h("span", {}, words));
+    barred.hidden = !inZones;
+    barred.replaceChildren(icon("circle-alert", "small"), inZones);
     const groups = now === "lost" ? link.failuresOf(plan) : [];
     const shown = showsAll ? groups : groups.slice(0, SHOWN_FIRST);
     rows.hidden = !groups.length;
