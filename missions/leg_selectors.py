@@ -55,8 +55,11 @@ class LegFlyer(NamedTuple):
 
 def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegFlyer | None = None) -> list[dict[str, Any]]:
     """What is wrong with each; flyer: who flies them, needed where one has a speed."""
-    table, has_ground = zone_table(), has_terrain()
-    return [_faults(leg.start, leg.end, departs_at, table, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT for leg in legs]
+    table, has_ground, spans = zone_table(), has_terrain(), _all_spans()
+    return [
+        _faults(leg.start, leg.end, departs_at, table, spans, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT
+        for leg in legs
+    ]
 
 
 def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
@@ -80,7 +83,9 @@ def _speed_fault(leg: Leg, flyer: LegFlyer | None) -> dict[str, Any] | None:
     return _fault(None, speed_words(found[1], flyer)) if found else None
 
 
-def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, *, has_ground: bool) -> dict[str, Any] | None:
+def _faults(
+    start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, *, has_ground: bool
+) -> dict[str, Any] | None:
     """The first thing that is wrong with a leg; the columns down to the ground at its ends are not looked at."""
     flight = settings.FLIGHT_RULES
     if max(start.agl_m, end.agl_m) > flight.max_agl_m:
@@ -97,7 +102,7 @@ def _faults(start: LegEnd, end: LegEnd, departs_at: datetime | None, table: Zone
     for meeting in zones_met([leg], table)[0]:
         if 0 <= meeting.breach.leg < len(position) - 1:
             return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
-    low = too_low(flown, _spans_elsewhere(position), ground_heights_m if has_ground else None, flight)
+    low = too_low(flown, _spans_elsewhere(spans, position), ground_heights_m if has_ground else None, flight)
     return None if low is None else _fault(None, too_low_text(float(low.agl_m.max())))
 
 
@@ -112,12 +117,16 @@ def too_low_text(agl_m: float) -> str:
     return _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
 
 
-def _spans_elsewhere(position: FloatArray) -> Spans:
-    """Near a leg all but what hangs at its ends: whether these are inspected is not known while it is dragged."""
+def _all_spans() -> Spans:
+    """None where there is no network."""
     try:
-        spans = spans_of(planning_read().ground().network())
+        return spans_of(planning_read().ground().network())
     except NoGraph:
         return spans_between(*(np.zeros((0, 2)),) * 2, *(np.zeros(0),) * 2)
+
+
+def _spans_elsewhere(spans: Spans, position: FloatArray) -> Spans:
+    """Near a leg all but what hangs at its ends: whether these are inspected is not known while it is dragged."""
     low, high = position.min(axis=0) - NEAR_DEG, position.max(axis=0) + NEAR_DEG
     near = ((np.maximum(spans.start, spans.end) >= low) & (np.minimum(spans.start, spans.end) <= high)).all(axis=1)
     for at in (position[0], position[-1]):
