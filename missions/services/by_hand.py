@@ -13,8 +13,9 @@ from django.db.models import Q
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
-from inspection.models import Asset
+from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
 from missions.flight_plan.clearance import TAKE_OFF
@@ -183,12 +184,12 @@ def _shape_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) ->
     if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
         return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": f"{LONGEST_M / 1_000:.0f}"}}
     faults: dict[str, str] = {}
-    flight = settings.FLIGHT_RULES
+    flight, network = settings.FLIGHT_RULES, planning_read().ground().network()
     for number, point in enumerate(points):
         waypoint = None if point.was is None else until_now[point.was]
         if waypoint is not None and waypoint.kind != WaypointKind.PASS and _apart_m(point, waypoint) > MOVED_M:
             faults[f"waypoints.{number}.position"] = _("Start, end and targets stay where they are.")
-        low_m = _least_agl_m(waypoint, is_moved=waypoint is None or _apart_m(point, waypoint) > MOVED_M)
+        low_m = _least_agl_m(waypoint, network, is_moved=waypoint is None or _apart_m(point, waypoint) > MOVED_M)
         if not low_m - HIGHER_M <= point.agl_m <= flight.max_agl_m + HIGHER_M:
             limits = {"low": f"{low_m:.0f}", "high": f"{flight.max_agl_m:.0f}"}
             faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
@@ -222,7 +223,7 @@ def _wire_faults(flown: PlannedRoute) -> dict[str, str]:
     return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
 
 
-def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:
+def _least_agl_m(waypoint: Waypoint | None, network: Network, *, is_moved: bool) -> float:
     """How low a point may be: with clearance above what is there, and where that is not known as high as between targets."""
     flight = settings.FLIGHT_RULES
     if waypoint is None or is_moved:
@@ -232,7 +233,9 @@ def _least_agl_m(waypoint: Waypoint | None, *, is_moved: bool) -> float:
         height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
         if waypoint.target is not None and waypoint.target.stretch is not None:
             course = [LonLat(*vertex) for vertex in waypoint.target.stretch.coords]
-            height_m = max(height_m, tallest_support_m(planning_read().ground().network(), asset.pk, course))
+            height_m = max(height_m, tallest_support_m(network, asset.pk, course))
+        elif asset.kind in {AssetKind.TOWER, AssetKind.BRIDGE}:  # by its line's voltage it may be taken to be taller
+            height_m = float(np.fmax.reduce(network.node_height_m[network.node_asset == asset.pk], initial=height_m))
         least_m = height_m + flight.clearance_m
         return least_m if waypoint.target_id is not None else max(least_m, flight.transit_agl_m)
     return min(waypoint.altitude_agl_m, flight.transit_agl_m)

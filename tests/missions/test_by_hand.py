@@ -326,3 +326,13 @@ def test_a_stretch_within_one_span_is_flown_over_its_wires_and_not_put_lower(her
     assert own and min(own) == 105.0
     lower = [point | {"altitude_agl_m": min(point["altitude_agl_m"], 70.0)} for point in as_wished(mission)]
     assert error_of(put(client, mission, lower), 400)
+
+
+def test_a_tower_of_the_highest_voltages_is_not_inspected_lower_by_hand(here: World, client: Client) -> None:
+    """No height is tagged: 60 m by its line's voltage, and 15 m above it."""
+    towers = [ground.tower((lon, 55.998)) for lon in (10.006, 10.011)]
+    power_line(towers, voltages_v=[380_000])
+    rebuild()
+    mission = post(client, "missions", mission_body(towers[0]) | {"plan": True}).json()
+    lower = [point | {"altitude_agl_m": min(point["altitude_agl_m"], 62.0)} for point in as_wished(mission)]
+    assert "Between 75 and" in str(error_of(put(client, mission, lower), 400))
