@@ -1,6 +1,7 @@
 """The compiled look at what a route passes: which spans are near which legs, and where these pass them too low."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,18 +18,31 @@ GENTLE = 0.25  # so steeply a UAV may come to a tower over whose top it is high 
 BoolArray = NDArray[np.bool_]
 
 
+class _Columns(NamedTuple):
+    """Spans as compiled code reads them; see Spans."""
+
+    start: FloatArray
+    stop: FloatArray
+    highest_m: FloatArray
+    low: FloatArray
+    step: FloatArray
+    shape: IntArray
+    first: NDArray[np.int32]
+    member: NDArray[np.int32]
+
+
 def legs_beside(position: FloatArray, level_m: FloatArray, own: IntArray, clearance_m: float, spans: Spans) -> tuple[IntArray, IntArray]:
     """Legs, by the places of their starts, and the spans within BESIDE_M of each that may be too high for it.
 
     position (n, 2), level_m (n,), own (n,): the target that is inspected at each point, NONE for none. With a clearance levels count
     from flat ground, and what they clear everywhere is left out; with inf all heights may be too high.
     """
-    return _legs_beside(position, level_m, own, clearance_m, *_columns(spans))
+    return _legs_beside(position, level_m, own, clearance_m, _columns(spans))
 
 
 def points_beside(position: FloatArray, level_m: FloatArray, own: IntArray, clearance_m: float, spans: Spans) -> tuple[IntArray, IntArray]:
     """The same for points over or under which the route goes straight up or down."""
-    return _points_beside(position, level_m, own, clearance_m, *_columns(spans))
+    return _points_beside(position, level_m, own, clearance_m, _columns(spans))
 
 
 def stretches_too_low(
@@ -41,10 +55,8 @@ def stretches_too_low(
     return _stretches_too_low(position, level_m, place, is_leg, span, least_m, spans.start, spans.end)
 
 
-def _columns(
-    spans: Spans,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray, NDArray[np.int32], NDArray[np.int32]]:
-    return spans.start, spans.end, spans.highest_m, spans.low, spans.step, spans.shape, spans.first, spans.member
+def _columns(spans: Spans) -> _Columns:
+    return _Columns(spans.start, spans.end, spans.highest_m, spans.low, spans.step, spans.shape, spans.first, spans.member)
 
 
 @njit(cache=True, nogil=True)
@@ -128,17 +140,11 @@ def _beside(
     level_m: FloatArray,
     own: IntArray,
     clearance_m: float,
-    start: FloatArray,
-    stop: FloatArray,
-    highest_m: FloatArray,
-    low: FloatArray,
-    step: FloatArray,
-    shape: IntArray,
-    first: NDArray[np.int32],
-    member: NDArray[np.int32],
+    on: _Columns,
     found: list[int],
 ) -> None:
     """Puts the spans beside the leg between two points, or at one, behind those found."""
+    start, stop, low, step, shape = on.start, on.stop, on.low, on.step, on.shape
     lat = 0.5 * (position[begin, 1] + position[end, 1])
     east_m = _metres_east(lat)
     wide, tall = BESIDE_M / max(east_m, 1.0), BESIDE_M / METRES_PER_DEGREE_LAT
@@ -152,9 +158,9 @@ def _beside(
     for own_row in range(row, last_row + 1):
         for own_column in range(column, last_column + 1):
             cell = own_row * shape[0] + own_column
-            for number in range(first[cell], first[cell + 1]):
-                span = int(member[number])
-                if highest_m[span] + clearance_m <= lowest_m + SLACK_M:
+            for number in range(on.first[cell], on.first[cell + 1]):
+                span = int(on.member[number])
+                if on.highest_m[span] + clearance_m <= lowest_m + SLACK_M:
                     continue
                 span_west, span_south = min(start[span, 0], stop[span, 0]), min(start[span, 1], stop[span, 1])
                 if span_west > east or span_south > north or max(start[span, 0], stop[span, 0]) < west:
@@ -184,20 +190,13 @@ def _legs_beside(
     level_m: FloatArray,
     own: IntArray,
     clearance_m: float,
-    start: FloatArray,
-    stop: FloatArray,
-    highest_m: FloatArray,
-    low: FloatArray,
-    step: FloatArray,
-    shape: IntArray,
-    first: NDArray[np.int32],
-    member: NDArray[np.int32],
+    on: _Columns,
 ) -> tuple[IntArray, IntArray]:
     legs, found = [0 for _ in range(0)], [0 for _ in range(0)]
     for leg in range(len(position) - 1):
         if position[leg, 0] == position[leg + 1, 0] and position[leg, 1] == position[leg + 1, 1]:
             continue
-        _beside(leg, leg + 1, position, level_m, own, clearance_m, start, stop, highest_m, low, step, shape, first, member, found)
+        _beside(leg, leg + 1, position, level_m, own, clearance_m, on, found)
         while len(legs) < len(found):
             legs.append(leg)
     return np.array(legs, dtype=np.int64), np.array(found, dtype=np.int64)
@@ -209,14 +208,7 @@ def _points_beside(
     level_m: FloatArray,
     own: IntArray,
     clearance_m: float,
-    start: FloatArray,
-    stop: FloatArray,
-    highest_m: FloatArray,
-    low: FloatArray,
-    step: FloatArray,
-    shape: IntArray,
-    first: NDArray[np.int32],
-    member: NDArray[np.int32],
+    on: _Columns,
 ) -> tuple[IntArray, IntArray]:
     points, found = [0 for _ in range(0)], [0 for _ in range(0)]
     for point in range(len(position)):
@@ -225,7 +217,7 @@ def _points_beside(
             if 0 <= other < len(position):
                 is_column = is_column or (position[point, 0] == position[other, 0] and position[point, 1] == position[other, 1])
         if is_column:
-            _beside(point, point, position, level_m, own, clearance_m, start, stop, highest_m, low, step, shape, first, member, found)
+            _beside(point, point, position, level_m, own, clearance_m, on, found)
         while len(points) < len(found):
             points.append(point)
     return np.array(points, dtype=np.int64), np.array(found, dtype=np.int64)
