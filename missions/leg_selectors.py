@@ -118,7 +118,7 @@ def too_low_text(agl_m: float) -> str:
 
 
 def _all_spans() -> Spans:
-    """None where there is no network."""
+    """Of the network; empty where there is none."""
     try:
         return spans_of(planning_read().ground().network())
     except NoGraph:
