@@ -89,6 +89,7 @@ INSTALLED_APPS = [
     "workspace",
     "inspection",
     "missions",
+    "telemetry",
 ]
 
 MIDDLEWARE = [

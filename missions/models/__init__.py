@@ -1,6 +1,15 @@
 """What is to be flown, by whom, in which order."""
 
-from missions.models.fleet import Base, CredentialKind, EndAction, Uav, UavCredential, UavState, UavType
+from missions.models.commands import (
+    OPEN_COMMANDS,
+    Approval,
+    CommandKind,
+    CommandPriority,
+    CommandState,
+    UavCommand,
+    UavCommandEvent,
+)
+from missions.models.fleet import Base, CredentialKind, EndAction, LinkKind, Uav, UavCredential, UavState, UavType
 from missions.models.missions import (
     InspectionTarget,
     Mission,
@@ -16,10 +25,16 @@ from missions.models.missions import (
 )
 
 __all__ = [
+    "OPEN_COMMANDS",
+    "Approval",
     "Base",
+    "CommandKind",
+    "CommandPriority",
+    "CommandState",
     "CredentialKind",
     "EndAction",
     "InspectionTarget",
+    "LinkKind",
     "Mission",
     "MissionState",
     "MissionUav",
@@ -29,6 +44,8 @@ __all__ = [
     "TargetPriority",
     "TargetState",
     "Uav",
+    "UavCommand",
+    "UavCommandEvent",
     "UavCredential",
     "UavState",
     "UavType",

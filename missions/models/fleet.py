@@ -78,6 +78,13 @@ class UavState(models.TextChoices):
     RETIRED = "retired", "Retired"
 
 
+class LinkKind(models.TextChoices):
+    """The door by which a UAV is told what to do."""
+
+    MAVLINK = "mavlink", "MAVLink"
+    HTTP = "http", "Companion computer over HTTP"
+
+
 class Uav(models.Model):
     """An uncrewed aircraft of an organisation.
 
@@ -93,6 +100,11 @@ class Uav(models.Model):
     state = models.CharField(max_length=12, choices=UavState.choices, default=UavState.ACTIVE)
     serial_number = models.CharField(max_length=100, blank=True)
     mavlink_system_id = models.PositiveSmallIntegerField(null=True, blank=True, unique=True, help_text="1 to 254; one vehicle each")
+    link = models.CharField(max_length=10, choices=LinkKind.choices, default=LinkKind.MAVLINK, db_default=LinkKind.MAVLINK)
+    allows_unsigned = models.BooleanField(
+        default=False, db_default=False, help_text="MAVLink without a signature is taken for this UAV's: only on a closed network"
+    )
+    is_simulated = models.BooleanField(default=False, db_default=False, help_text="no real aircraft; may fly without terrain data")
     location = models.PointField(srid=4326)
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
     max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")
@@ -126,6 +138,7 @@ class Uav(models.Model):
             models.CheckConstraint(condition=Q(heading_deg=None) | Q(heading_deg__gte=0, heading_deg__lt=360), name="uav_heading_degrees"),
             models.CheckConstraint(condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="uav_battery_percent"),
             models.CheckConstraint(condition=Q(state__in=UavState.values), name="uav_state_known"),
+            models.CheckConstraint(condition=Q(link__in=LinkKind.values), name="uav_link_known"),
             models.CheckConstraint(condition=Q(mavlink_system_id=None) | Q(mavlink_system_id__range=(1, 254)), name="uav_system_id_range"),
         ]
 

@@ -1,0 +1,79 @@
+"""What a vehicle is given to fly: lists of mission items, a fence and rally points, and the hash that names them."""
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class MissionType(IntEnum):
+    """MAV_MISSION_TYPE: three lists that a vehicle keeps apart."""
+
+    MISSION = 0
+    FENCE = 1
+    RALLY = 2
+
+
+@dataclass(frozen=True)
+class MissionItem:
+    """One MISSION_ITEM_INT without its place in the list.
+
+    `command` is a MAV_CMD, `frame` a MAV_FRAME, `parameters` the first four, NaN where the autopilot is to choose. `longitude_e7` and
+    `latitude_e7` are 1e-7 degrees; `altitude_m` is what the frame says. `waypoint` is the waypoint of the route that it belongs to.
+    """
+
+    command: int
+    frame: int
+    parameters: tuple[float, float, float, float]
+    longitude_e7: int = 0
+    latitude_e7: int = 0
+    altitude_m: float = 0.0
+    waypoint: int | None = None
+
+
+@dataclass(frozen=True)
+class FlightLoad:
+    """All that one flight of one UAV is flown from. The first mission item is flown: home, where a flavour wants it, is not among them."""
+
+    mission: tuple[MissionItem, ...]
+    fence: tuple[MissionItem, ...] = ()
+    rally: tuple[MissionItem, ...] = ()
+
+    def of(self, kind: MissionType) -> tuple[MissionItem, ...]:
+        return {MissionType.MISSION: self.mission, MissionType.FENCE: self.fence, MissionType.RALLY: self.rally}[kind]
+
+    @property
+    def content_sha256(self) -> str:
+        """Names exactly this load; NaN is written as null."""
+        return hashlib.sha256(json.dumps(load_to_json(self), sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def load_to_json(load: FlightLoad) -> dict[str, list[list[int | float | None]]]:
+    """By list, each item as [command, frame, p1, p2, p3, p4, longitude_e7, latitude_e7, altitude_m, waypoint]."""
+    return {kind.name.lower(): [_item_to_json(item) for item in load.of(kind)] for kind in MissionType}
+
+
+def load_from_json(stored: dict[str, list[list[int | float | None]]]) -> FlightLoad:
+    return FlightLoad(*(tuple(_item_from_json(row) for row in stored[kind.name.lower()]) for kind in MissionType))
+
+
+def _item_to_json(item: MissionItem) -> list[int | float | None]:
+    parameters = [None if math.isnan(value) else float(value) for value in item.parameters]
+    return [item.command, item.frame, *parameters, item.longitude_e7, item.latitude_e7, float(item.altitude_m), item.waypoint]
+
+
+def _item_from_json(row: list[int | float | None]) -> MissionItem:
+    command, frame, *parameters, longitude_e7, latitude_e7, altitude_m, waypoint = row
+    assert command is not None and frame is not None and longitude_e7 is not None  # noqa: S101 - as it was written
+    assert latitude_e7 is not None and altitude_m is not None  # noqa: S101
+    one, two, three, four = (math.nan if value is None else float(value) for value in parameters)
+    return MissionItem(
+        command=int(command),
+        frame=int(frame),
+        parameters=(one, two, three, four),
+        longitude_e7=int(longitude_e7),
+        latitude_e7=int(latitude_e7),
+        altitude_m=float(altitude_m),
+        waypoint=None if waypoint is None else int(waypoint),
+    )

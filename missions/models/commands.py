@@ -1,0 +1,140 @@
+"""What UAVs are told: approvals, which freeze what may be flown, and the outbox of commands."""
+
+import uuid
+
+from django.conf import settings
+from django.contrib.gis.db import models
+from django.db.models import Q
+from django.db.models.functions import Now
+
+from missions.models.fleet import LinkKind, Uav
+from missions.models.missions import Mission
+from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
+
+
+class Approval(models.Model):
+    """A plan as somebody approved it. `document` is never changed: what is sent to a UAV is read from it and from nothing else."""
+
+    id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="approvals")
+    document = models.JSONField(help_text="routes, items, zones, conditions and terrain; see services/approval.py")
+    content_sha256 = models.CharField(max_length=64, help_text="of the document in its canonical form")
+    approved_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")
+    approved_at = models.DateTimeField(db_default=Now(), editable=False)
+    revoked_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    revoked_at = models.DateTimeField(null=True, blank=True)
+    revoke_reason = models.CharField(max_length=300, blank=True)
+
+    class Meta:
+        ordering = ["-approved_at"]
+        constraints = [models.UniqueConstraint(fields=["mission"], condition=Q(revoked_at=None), name="approval_one_in_force")]
+
+    def __str__(self) -> str:
+        return f"{self.mission} {self.content_sha256[:12]}"
+
+
+class CommandPriority(models.IntegerChoices):
+    """The smaller goes first."""
+
+    SAFETY = 0, "Safety"
+    PAUSE = 1, "Pause"
+    MISSION = 2, "Mission"
+    PARAMETER = 3, "Parameter"
+
+
+class CommandKind(models.TextChoices):
+    UPLOAD_MISSION = "upload-mission", "Send the mission"
+    CLEAR_MISSION = "clear-mission", "Take the mission off the UAV"
+    ARM = "arm", "Arm"
+    TAKE_OFF = "take-off", "Take off"
+    START = "start", "Start the mission"
+    PAUSE = "pause", "Pause"
+    RESUME = "resume", "Resume"
+    HOLD = "hold", "Hold"
+    RETURN = "return", "Return"
+    LAND = "land", "Land"
+    ABORT = "abort", "Abort the mission"
+    CHANGE_SPEED = "change-speed", "Change speed"
+
+
+class CommandState(models.TextChoices):
+    QUEUED = "queued", "Queued"
+    SENT = "sent", "Sent"
+    ACKNOWLEDGED = "acknowledged", "Acknowledged"
+    APPLIED = "applied", "Applied"
+    FAILED = "failed", "Failed"
+    EXPIRED = "expired", "Expired"
+
+
+OPEN_COMMANDS = (CommandState.QUEUED, CommandState.SENT, CommandState.ACKNOWLEDGED)
+
+
+class UavCommand(models.Model):
+    """A message to a UAV, and what became of it. The row is the truth; whoever carries it holds it by a lease.
+
+    A command sets a state, so that carrying it twice changes nothing. `sequence` counts the commands of one UAV in the order in which they
+    were given: one that is overtaken by a later command about the same thing expires, and is never carried after it.
+    """
+
+    id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uav_commands")
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="commands")
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, null=True, blank=True, related_name="commands")
+    approval = models.ForeignKey(Approval, on_delete=models.PROTECT, null=True, blank=True, related_name="commands")
+    sequence = models.BigIntegerField()
+    kind = models.CharField(max_length=20, choices=CommandKind.choices)
+    priority = models.PositiveSmallIntegerField(choices=CommandPriority.choices)
+    parameters = models.JSONField(default=dict, blank=True)
+    state = models.CharField(max_length=12, choices=CommandState.choices, default=CommandState.QUEUED)
+    link = models.CharField(max_length=10, choices=LinkKind.choices, help_text="the door by which it goes")
+    created_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    why = models.CharField(max_length=300, blank=True, help_text="as the person who gave it wrote")
+    created_at = models.DateTimeField(db_default=Now(), editable=False)
+    expires_at = models.DateTimeField(null=True, blank=True)
+    attempts = models.PositiveIntegerField(default=0)
+    holder = models.CharField(max_length=100, blank=True, help_text="the gateway that carries it")
+    lease_expires_at = models.DateTimeField(null=True, blank=True)
+    sent_at = models.DateTimeField(null=True, blank=True, help_text="first")
+    acknowledged_at = models.DateTimeField(null=True, blank=True)
+    finished_at = models.DateTimeField(null=True, blank=True)
+    progress = models.JSONField(null=True, blank=True, help_text="of an upload: items done and in all")
+    outcome_code = models.CharField(max_length=50, blank=True)
+    outcome = models.CharField(max_length=500, blank=True, help_text="why it failed or expired, in words")
+
+    class Meta:
+        ordering = ["-created_at", "-sequence"]
+        verbose_name = "UAV command"
+        constraints = [
+            models.UniqueConstraint(fields=["uav", "sequence"], name="uav_command_sequence"),
+            models.CheckConstraint(condition=Q(state__in=CommandState.values), name="uav_command_state_known"),
+            models.CheckConstraint(condition=Q(kind__in=CommandKind.values), name="uav_command_kind_known"),
+            models.CheckConstraint(
+                condition=~Q(kind=CommandKind.UPLOAD_MISSION) | Q(approval__isnull=False), name="uav_command_upload_is_approved"
+            ),
+        ]
+        indexes = [
+            models.Index(
+                fields=["priority", "created_at"], condition=Q(state__in=["queued", "sent", "acknowledged"]), name="uav_command_open_idx"
+            ),
+            models.Index(fields=["mission", "-created_at"], name="uav_command_of_mission_idx"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.get_kind_display()} to {self.uav}"
+
+
+class UavCommandEvent(models.Model):
+    """One step of a command's way. Never updated."""
+
+    command = models.ForeignKey(UavCommand, on_delete=models.CASCADE, related_name="events")
+    state = models.CharField(max_length=12, choices=CommandState.choices)
+    attempt = models.PositiveIntegerField()
+    holder = models.CharField(max_length=100, blank=True)
+    note = models.CharField(max_length=500, blank=True)
+    recorded_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["pk"]
+
+    def __str__(self) -> str:
+        return f"{self.state} {self.command_id}"

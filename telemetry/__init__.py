@@ -1,0 +1,1 @@
+"""What happens in the air: the UAV link, the log, and what it says."""

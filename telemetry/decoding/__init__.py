@@ -1,0 +1,1 @@
+"""What MAVLink messages say, in the log's terms; and whose clock says when. Pure."""

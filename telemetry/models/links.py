@@ -1,0 +1,106 @@
+"""Who is connected: UAVs and the gateways that serve them, vehicles that nobody knows, and the logs of their flights."""
+
+from django.conf import settings
+from django.contrib.gis.db import models
+from django.db.models import Q
+from django.db.models.functions import Now
+
+from missions.models import Uav
+from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
+
+
+class UavLink(models.Model):
+    """What is known of a UAV's connection. Written by the gateway that serves it, which holds it by a lease."""
+
+    uav = models.OneToOneField(Uav, on_delete=models.CASCADE, related_name="connection", primary_key=True)
+    holder = models.CharField(max_length=100, blank=True, help_text="the gateway that serves it")
+    lease_expires_at = models.DateTimeField(null=True, blank=True)
+    heard_at = models.DateTimeField(null=True, blank=True, help_text="when anything was last received, by the server's clock")
+    address = models.CharField(max_length=100, blank=True, help_text="whence it was received: transport, host and port")
+    autopilot = models.CharField(max_length=20, blank=True, help_text="px4, ardupilot or other")
+    firmware = models.CharField(max_length=50, blank=True)
+    mode = models.CharField(max_length=30, blank=True)
+    is_armed = models.BooleanField(null=True, blank=True)
+    is_in_air = models.BooleanField(null=True, blank=True)
+    home = models.PointField(srid=4326, null=True, blank=True)
+    home_amsl_m = models.FloatField(null=True, blank=True)
+    mission_item = models.IntegerField(null=True, blank=True, help_text="that is being flown, as the vehicle counts")
+    loaded_sha256 = models.CharField(
+        max_length=64, blank=True, help_text="of the approved mission found on it by reading back; empty = none"
+    )
+    loaded_approval = models.UUIDField(null=True, blank=True)
+    loaded_flight = models.PositiveSmallIntegerField(null=True, blank=True)
+    clock_offset_s = models.FloatField(null=True, blank=True, help_text="server's time at the vehicle's time since boot of 0")
+    clock_rate = models.FloatField(null=True, blank=True, help_text="vehicle's seconds a second; a simulation may run faster")
+    signing = models.JSONField(default=dict, blank=True, help_text="last timestamps by link, so that nothing is taken twice")
+    losses = models.JSONField(default=dict, blank=True, help_text="what was refused or lost, by cause")
+
+    class Meta:
+        verbose_name = "UAV's link"
+
+    def __str__(self) -> str:
+        return f"link of {self.uav}"
+
+
+class UnknownVehicleState(models.TextChoices):
+    NEW = "new", "New"
+    IGNORED = "ignored", "Ignored"
+    ADOPTED = "adopted", "Adopted"
+
+
+class UnknownVehicle(models.Model):
+    """A vehicle that spoke to a gateway and belongs to no UAV, for an administrator to adopt or ignore."""
+
+    mavlink_system_id = models.PositiveSmallIntegerField(unique=True)
+    autopilot = models.CharField(max_length=20, blank=True)
+    vehicle_type = models.CharField(max_length=50, blank=True)
+    address = models.CharField(max_length=100, blank=True)
+    is_signed = models.BooleanField(default=False)
+    location = models.PointField(srid=4326, null=True, blank=True)
+    state = models.CharField(max_length=10, choices=UnknownVehicleState.choices, default=UnknownVehicleState.NEW)
+    first_heard_at = models.DateTimeField(db_default=Now(), editable=False)
+    heard_at = models.DateTimeField()
+    settled_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    settled_at = models.DateTimeField(null=True, blank=True)
+    uav = models.ForeignKey(Uav, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+
+    class Meta:
+        ordering = ["-heard_at"]
+        constraints = [models.CheckConstraint(condition=Q(state__in=UnknownVehicleState.values), name="unknown_vehicle_state_known")]
+
+    def __str__(self) -> str:
+        return f"system {self.mavlink_system_id}"
+
+
+class FlightLog(models.Model):
+    """A tlog file: every MAVLink frame of one flight, in both directions."""
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="flight_logs")
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="flight_logs")
+    mission = models.ForeignKey("missions.Mission", on_delete=models.SET_NULL, null=True, blank=True, related_name="flight_logs")
+    path = models.CharField(max_length=200, help_text="under the folder of logs")
+    started_at = models.DateTimeField()
+    ended_at = models.DateTimeField(null=True, blank=True)
+    size_bytes = models.BigIntegerField(default=0)
+
+    class Meta:
+        ordering = ["-started_at"]
+
+    def __str__(self) -> str:
+        return self.path
+
+
+class VehicleText(models.Model):
+    """What a vehicle said in words (STATUSTEXT)."""
+
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="texts")
+    severity = models.PositiveSmallIntegerField(help_text="MAV_SEVERITY: 0 emergency to 7 debug")
+    text = models.CharField(max_length=500)
+    received_at = models.DateTimeField()
+
+    class Meta:
+        ordering = ["-received_at", "-pk"]
+        indexes = [models.Index(fields=["uav", "-received_at"], name="vehicle_text_newest_idx")]
+
+    def __str__(self) -> str:
+        return self.text

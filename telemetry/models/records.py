@@ -1,0 +1,101 @@
+"""The log: where UAVs were and how they did, measured and kept."""
+
+from django.contrib.gis.db import models
+from django.contrib.postgres.indexes import BrinIndex
+from django.db.models import Q
+from django.db.models.functions import Now
+
+from missions.models import InspectionTarget, LinkKind, Mission, Uav
+
+
+class TelemetryStream(models.Model):
+    """One run of a UAV's counter: since a boot of its autopilot, or of its companion. Within it a sequence number is one record."""
+
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="streams")
+    link = models.CharField(max_length=10, choices=LinkKind.choices)
+    key = models.CharField(max_length=64, help_text="that the sender gives, or the gateway from the vehicle's clock")
+    started_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["-started_at"]
+        constraints = [models.UniqueConstraint(fields=["uav", "link", "key"], name="telemetry_stream_once")]
+
+    def __str__(self) -> str:
+        return f"{self.uav} {self.key}"
+
+
+class TelemetryRecord(models.Model):
+    """One report of a UAV. Heights name their reference; angles are degrees, speeds metres a second in north, east, down."""
+
+    stream = models.ForeignKey(TelemetryStream, on_delete=models.CASCADE, related_name="records")
+    sequence = models.BigIntegerField(help_text="within the stream; the time since boot [ms] where the vehicle counts nothing else")
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="records", db_index=False)
+    mission = models.ForeignKey(Mission, on_delete=models.SET_NULL, null=True, blank=True, related_name="records", db_index=False)
+    measured_at = models.DateTimeField(help_text="by the UAV's clock, set right where it is known to be wrong")
+    received_at = models.DateTimeField(help_text="by the server's clock")
+    stored_at = models.DateTimeField(db_default=Now(), editable=False)
+    position = models.PointField(srid=4326, null=True, blank=True, spatial_index=False)
+    altitude_amsl_m = models.FloatField(null=True, blank=True)
+    altitude_relative_m = models.FloatField(null=True, blank=True, help_text="above take-off")
+    altitude_agl_m = models.FloatField(null=True, blank=True, help_text="above the terrain model, or as measured")
+    velocity_north_mps = models.FloatField(null=True, blank=True)
+    velocity_east_mps = models.FloatField(null=True, blank=True)
+    velocity_down_mps = models.FloatField(null=True, blank=True)
+    airspeed_mps = models.FloatField(null=True, blank=True)
+    roll_deg = models.FloatField(null=True, blank=True)
+    pitch_deg = models.FloatField(null=True, blank=True)
+    heading_deg = models.FloatField(null=True, blank=True, help_text="from true north, clockwise")
+    battery_percent = models.FloatField(null=True, blank=True)
+    battery_v = models.FloatField(null=True, blank=True)
+    battery_a = models.FloatField(null=True, blank=True)
+    mode = models.CharField(max_length=30, blank=True)
+    is_armed = models.BooleanField(null=True, blank=True)
+    is_in_air = models.BooleanField(null=True, blank=True)
+    link_quality_percent = models.FloatField(null=True, blank=True)
+    gps_fix = models.PositiveSmallIntegerField(null=True, blank=True, help_text="GPS_FIX_TYPE: 3 is a fix in space")
+    satellites = models.PositiveSmallIntegerField(null=True, blank=True)
+    hdop = models.FloatField(null=True, blank=True)
+    wind_north_mps = models.FloatField(null=True, blank=True, help_text="towards which the air moves")
+    wind_east_mps = models.FloatField(null=True, blank=True)
+    mission_item = models.IntegerField(null=True, blank=True)
+    is_from_future = models.BooleanField(default=False, db_default=False, help_text="measured more than a minute after it was received")
+    is_late = models.BooleanField(default=False, db_default=False, help_text="measured before a record that was stored earlier")
+
+    class Meta:
+        ordering = ["measured_at", "pk"]
+        constraints = [
+            models.UniqueConstraint(fields=["stream", "sequence"], name="telemetry_record_once"),
+            models.CheckConstraint(
+                condition=Q(battery_percent=None) | Q(battery_percent__range=(0, 100)), name="telemetry_battery_percent"
+            ),
+        ]
+        indexes = [
+            BrinIndex(fields=["received_at"], name="telemetry_received_brin"),
+            models.Index(fields=["uav", "-measured_at"], name="telemetry_of_uav_idx"),
+            models.Index(fields=["mission", "measured_at"], condition=Q(mission__isnull=False), name="telemetry_of_mission_idx"),
+        ]
+
+    def __str__(self) -> str:
+        return f"{self.uav_id} {self.measured_at}"
+
+
+class InspectionResult(models.Model):
+    """What a UAV found at a target, as it reported it."""
+
+    stream = models.ForeignKey(TelemetryStream, on_delete=models.CASCADE, related_name="results")
+    sequence = models.BigIntegerField()
+    uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="results")
+    mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="results")
+    target = models.ForeignKey(InspectionTarget, on_delete=models.SET_NULL, null=True, related_name="results")
+    measured_at = models.DateTimeField()
+    received_at = models.DateTimeField(db_default=Now(), editable=False)
+    outcome = models.CharField(max_length=12, help_text="complete, skipped or failed")
+    note = models.CharField(max_length=2_000, blank=True)
+    values = models.JSONField(default=dict, blank=True, help_text="as the payload measured them")
+
+    class Meta:
+        ordering = ["-measured_at"]
+        constraints = [models.UniqueConstraint(fields=["stream", "sequence"], name="inspection_result_once")]
+
+    def __str__(self) -> str:
+        return f"{self.target_id} {self.outcome}"
