@@ -55,6 +55,10 @@ class Vehicle:
     def start(self, now_s: float) -> list[Any]:
         return self.tick(now_s)
 
+    def restart(self) -> None:
+        """Its lists are kept, what was under way is forgotten."""
+        raise NotImplementedError
+
     def reports(self) -> list[Any]:
         base_mode = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | (mavlink.MAV_MODE_FLAG_SAFETY_ARMED if self.is_armed else 0)
         status = mavlink.MAV_STATE_ACTIVE if self.is_in_air else mavlink.MAV_STATE_STANDBY
