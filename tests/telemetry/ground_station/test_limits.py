@@ -10,8 +10,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from inspection.geodesy import LonLat, path_length_m
 from missions.mavlink.content import FlightLoad, MissionItem
 from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.limits import FLOWN, leg_warnings, too_many, with_points_between
-from tests.telemetry.vehicles.loads import load, mission
+from telemetry.ground_station.limits import FLOWN, count_warnings, leg_warnings, too_many, with_points_between
+from tests.telemetry.vehicles.loads import load, mission, polygon
 
 START = LonLat(9.8, 55.4)
 
@@ -73,3 +73,9 @@ def test_list_that_is_too_long_for_its_flavour_is_told():
     assert told is not None
     assert told.code == "too-many-items"
     assert too_many(FlightLoad(mission(650)), Flavour.PX4) is None
+
+
+def test_list_that_is_too_long_for_most_boards_is_warned_of():
+    whole = load(501, fence=polygon(0, 65))
+    assert [warning.words.split()[1] for warning in count_warnings(whole, Flavour.PX4)] == ["mission", "fence"]
+    assert count_warnings(load(500, fence=polygon(0, 64)), Flavour.PX4) == ()
