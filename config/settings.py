@@ -217,7 +217,10 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_METADATA_CLASS": None,
     "URL_FORMAT_OVERRIDE": None,
     "DEFAULT_SCHEMA_CLASS": "workspace.schema.SpanwiseSchema",
-    "DEFAULT_THROTTLE_RATES": {"plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second")},
+    "DEFAULT_THROTTLE_RATES": {
+        "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
+        "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
+    },
     "EXCEPTION_HANDLER": "workspace.errors.error_response",
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
 }

@@ -1,17 +1,20 @@
 """What UAVs send and get over the HTTP link, as the OpenAPI document tells it, and the envelopes of what they send."""
 
+import json
 from typing import Any
 
 from rest_framework import serializers
 
 from missions.fields import PositionField
-from missions.models import CommandKind
+from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
-from telemetry.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS
+from telemetry.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
+from telemetry.services.results import NewResult
 
 MOST_RECORDS = 1_000
 MOST_ACKNOWLEDGEMENTS = 100
 MOST_RESULTS = 100
+MOST_RESULT_BYTES = 64 * 1024
 LONGEST_STREAM = 64
 LARGEST_SEQUENCE = 2**63 - 1
 
@@ -108,6 +111,37 @@ class ResultSerializer(KnownFieldsSerializer):
     measured_at = serializers.DateTimeField(help_text="by the UAV's clock, with its zone")
     note = serializers.CharField(required=False, allow_blank=True, max_length=2_000)
     values = serializers.DictField(required=False, help_text="as the payload measured them; at most 64 kB")
+
+
+def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
+    """A result as it was sent, or what is wrong with it by field."""
+    serializer = ResultSerializer(data=sent)
+    faults: dict[str, str] = {}
+    if not serializer.is_valid():
+        faults = {str(name): " ".join(map(str, words)) for name, words in serializer.errors.items()}
+    values = sent.get("values") if isinstance(sent, dict) else None
+    try:
+        if len(json.dumps(values or {}, allow_nan=False)) > MOST_RESULT_BYTES:
+            faults["values"] = f"At most {MOST_RESULT_BYTES // 1024} kB."
+    except ValueError:
+        faults["values"] = "NaN and infinities are no values: send null."
+    try:
+        measured_at = instant(sent.get("measured_at")) if isinstance(sent, dict) else None
+    except ValueError as error:
+        faults["measured_at"] = str(error)
+    if faults or measured_at is None:
+        return None, faults
+    read = serializer.validated_data
+    result = NewResult(
+        sequence=read["sequence"],
+        mission_id=read["mission"],
+        target_id=read["target"],
+        outcome=TargetState(read["outcome"]),
+        measured_at=measured_at,
+        note=read.get("note", ""),
+        values=values or {},
+    )
+    return result, {}
 
 
 class ResultsSerializer(serializers.Serializer):
