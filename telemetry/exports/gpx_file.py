@@ -5,9 +5,9 @@ own names. Records without a place and records from the future are no part of a 
 """
 
 from collections.abc import Iterable, Iterator
-from xml.sax.saxutils import escape
 
 from telemetry.exports.logged_record import REPORTED, LoggedRecord, Value, time_text
+from telemetry.exports.xml_text import xml_text
 
 NAMESPACE = "http://www.topografix.com/GPX/1/1"
 OWN_NAMESPACE = "urn:spanwise:telemetry:1"
@@ -18,11 +18,11 @@ OUTSIDE_EXTENSIONS = {"altitude_amsl_m", "satellites", "hdop"}
 
 
 def gpx_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
-    """`records` come UAV by UAV, in the order of measurement."""
+    """`records` come UAV by UAV, stream by stream, in the order of measurement."""
     yield (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<gpx xmlns="{NAMESPACE}" xmlns:spanwise="{OWN_NAMESPACE}" version="1.1" creator="Spanwise">\n'
-        f"<metadata><name>{escape(name)}</name></metadata>\n"
+        f"<metadata><name>{xml_text(name)}</name></metadata>\n"
     )
     written: list[str] = []
     uav: int | None = None
@@ -31,7 +31,7 @@ def gpx_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
         if not record.is_on_track:
             continue
         if record.uav != uav:
-            written.append(("" if uav is None else "</trkseg></trk>\n") + f"<trk><name>{escape(record.uav_name)}</name><trkseg>\n")
+            written.append(("" if uav is None else "</trkseg></trk>\n") + f"<trk><name>{xml_text(record.uav_name)}</name><trkseg>\n")
         elif record.stream != stream:
             written.append("</trkseg><trkseg>\n")
         uav, stream = record.uav, record.stream
@@ -70,4 +70,4 @@ def _point(record: LoggedRecord) -> str:
 def _text(value: Value) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    return escape(str(value))
+    return xml_text(str(value))

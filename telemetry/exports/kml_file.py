@@ -6,9 +6,9 @@ the future are no part of a track.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from xml.sax.saxutils import escape
 
 from telemetry.exports.logged_record import LoggedRecord, Value, time_text
+from telemetry.exports.xml_text import xml_text
 
 NAMESPACE = "http://www.opengis.net/kml/2.2"
 GX_NAMESPACE = "http://www.google.com/kml/ext/2.2"
@@ -25,7 +25,7 @@ TEXTS = {"received_at", "stored_at"}
 
 
 def kml_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
-    """`records` come UAV by UAV, in the order of measurement."""
+    """`records` come UAV by UAV, stream by stream, in the order of measurement."""
     fields = "".join(
         f'<gx:SimpleArrayField name="{field}" type="{"string" if field in TEXTS else "float"}"><displayName>{field}</displayName>'
         "</gx:SimpleArrayField>"
@@ -33,7 +33,7 @@ def kml_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
     )
     yield (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
-        f'<kml xmlns="{NAMESPACE}" xmlns:gx="{GX_NAMESPACE}"><Document><name>{escape(name)}</name>\n'
+        f'<kml xmlns="{NAMESPACE}" xmlns:gx="{GX_NAMESPACE}"><Document><name>{xml_text(name)}</name>\n'
         f'<Schema id="report">{fields}</Schema>\n'
     )
     uav: int | None = None
@@ -41,23 +41,27 @@ def kml_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
         if part[0].uav != uav:
             ending = "" if uav is None else "</gx:MultiTrack></Placemark>\n"
             uav = part[0].uav
-            yield f"{ending}<Placemark><name>{escape(part[0].uav_name)}</name><gx:MultiTrack><gx:interpolate>1</gx:interpolate>\n"
+            yield f"{ending}<Placemark><name>{xml_text(part[0].uav_name)}</name><gx:MultiTrack><gx:interpolate>1</gx:interpolate>\n"
         yield _track(part)
     yield ("" if uav is None else "</gx:MultiTrack></Placemark>\n") + "</Document></kml>\n"
 
 
 def _parts(records: Iterable[LoggedRecord]) -> Iterator[list[LoggedRecord]]:
-    """Runs of one UAV whose heights have one reference; none is empty."""
+    """Runs of one UAV's stream whose heights have one reference; none is empty."""
     part: list[LoggedRecord] = []
     for record in records:
         if not record.is_on_track:
             continue
-        if part and (len(part) == POINTS_A_PART or record.uav != part[0].uav or _height(record)[0] != _height(part[0])[0]):
+        if part and (len(part) == POINTS_A_PART or _kind(record) != _kind(part[0])):
             yield part
             part = []
         part.append(record)
     if part:
         yield part
+
+
+def _kind(record: LoggedRecord) -> tuple[int, str, str]:
+    return record.uav, record.stream, _height(record)[0]
 
 
 def _height(record: LoggedRecord) -> tuple[str, Value]:

@@ -8,12 +8,15 @@ from rest_framework import serializers
 from missions.fields import PositionField
 from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.services.flying import FlightEnd
 from telemetry.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
 from telemetry.services.results import NewResult
 
 MOST_RECORDS = 1_000
 MOST_ACKNOWLEDGEMENTS = 100
 MOST_RESULTS = 100
+MOST_FLIGHTS = 10_000
+LARGEST_PLACE = 2**31 - 1
 MOST_RESULT_BYTES = 64 * 1024
 LONGEST_STREAM = 64
 LARGEST_SEQUENCE = 2**63 - 1
@@ -105,61 +108,74 @@ class ResultSerializer(KnownFieldsSerializer):
     """What the UAV found at a target."""
 
     sequence = serializers.IntegerField(min_value=0, max_value=LARGEST_SEQUENCE)
-    mission = serializers.UUIDField()
-    target = serializers.IntegerField(min_value=1, max_value=LARGEST_SEQUENCE)
+    approval = serializers.UUIDField(help_text="of the route that was flown")
+    place = serializers.IntegerField(min_value=0, max_value=LARGEST_PLACE, help_text="of the target, as the route has it")
     outcome = serializers.ChoiceField(choices=["complete", "skipped", "failed"])
     measured_at = serializers.DateTimeField(help_text="by the UAV's clock, with its zone")
     note = serializers.CharField(required=False, allow_blank=True, max_length=2_000)
-    values = serializers.DictField(required=False, help_text="as the payload measured them; at most 64 kB")
+    values = serializers.DictField(required=False, help_text=f"as the payload measured them; at most {MOST_RESULT_BYTES // 1024} kB")
+
+
+class EndedFlightSerializer(KnownFieldsSerializer):
+    """How a flight ended. May be sent again."""
+
+    approval = serializers.UUIDField()
+    flight = serializers.IntegerField(min_value=1, max_value=MOST_FLIGHTS)
+    outcome = serializers.ChoiceField(choices=[end.value for end in FlightEnd])
 
 
 def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
     """A result as it was sent, or what is wrong with it by field."""
     serializer = ResultSerializer(data=sent)
-    faults: dict[str, str] = {}
     if not serializer.is_valid():
-        faults = {str(name): " ".join(map(str, words)) for name, words in serializer.errors.items()}
-    values = sent.get("values") if isinstance(sent, dict) else None
+        return None, {str(name): " ".join(map(str, words)) for name, words in serializer.errors.items()}
+    faults: dict[str, str] = {}
+    values = sent.get("values") or {}
     try:
-        if len(json.dumps(values or {}, allow_nan=False)) > MOST_RESULT_BYTES:
+        if len(json.dumps(values, allow_nan=False)) > MOST_RESULT_BYTES:
             faults["values"] = f"At most {MOST_RESULT_BYTES // 1024} kB."
     except ValueError:
         faults["values"] = "NaN and infinities are no values: send null."
     try:
-        measured_at = instant(sent.get("measured_at")) if isinstance(sent, dict) else None
+        measured_at = instant(sent["measured_at"])
     except ValueError as error:
         faults["measured_at"] = str(error)
-    if faults or measured_at is None:
+    if faults:
         return None, faults
     read = serializer.validated_data
     result = NewResult(
         sequence=read["sequence"],
-        mission_id=read["mission"],
-        target_id=read["target"],
+        approval_id=read["approval"],
+        place=read["place"],
         outcome=TargetState(read["outcome"]),
         measured_at=measured_at,
         note=read.get("note", ""),
-        values=values or {},
+        values=values,
     )
     return result, {}
 
 
 class ResultsSerializer(serializers.Serializer):
     stream = StreamField()
-    results = ResultSerializer(many=True, min_length=1, max_length=MOST_RESULTS)
+    results = ResultSerializer(many=True, max_length=MOST_RESULTS)
+    flights = EndedFlightSerializer(many=True, required=False, max_length=MOST_RESULTS)
 
 
 class ResultsEnvelopeSerializer(KnownFieldsSerializer):
     """A batch whose results are read one by one later."""
 
     stream = StreamField()
-    results = serializers.ListField(min_length=1, max_length=MOST_RESULTS)
+    results = serializers.ListField(max_length=MOST_RESULTS)
+    flights = EndedFlightSerializer(many=True, required=False, max_length=MOST_RESULTS)
 
 
 class StoredResultsSerializer(serializers.Serializer):
+    """Every result of the batch is stored, known or refused: none of them needs to be sent again as it is."""
+
     stored = serializers.IntegerField()
     known = serializers.IntegerField()
     refused = RefusedSerializer(many=True)
+    refused_flights = serializers.ListField(child=serializers.IntegerField(), help_text="places of flights that this UAV was never sent")
 
 
 class WaitingCommandSerializer(serializers.Serializer):
@@ -182,7 +198,7 @@ class RouteTaskSerializer(serializers.Serializer):
 
 
 class RouteWaypointSerializer(serializers.Serializer):
-    sequence = serializers.IntegerField()
+    sequence = serializers.IntegerField(help_text="its place in the whole route")
     kind = serializers.CharField()
     position = PositionField()
     altitude_agl_m = serializers.FloatField(help_text="above the ground")
@@ -191,11 +207,22 @@ class RouteWaypointSerializer(serializers.Serializer):
     speed_mps = serializers.FloatField(allow_null=True, help_text="over ground on the leg to it; null: the route's")
     arrival_s = serializers.FloatField(allow_null=True, help_text="seconds after the mission's departure")
     task = RouteTaskSerializer(allow_null=True)
-    target = serializers.IntegerField(allow_null=True)
+    target = serializers.IntegerField(allow_null=True, help_text="the target's place")
+
+
+class RouteContentSerializer(serializers.Serializer):
+    """What is flown, and named by `content_sha256`."""
+
+    flight = serializers.IntegerField(help_text="which of the route's flights, from 1")
+    take_off = TakeOffSerializer()
+    cruise_speed_mps = serializers.FloatField()
+    end_action = serializers.CharField()
+    departs_s = serializers.FloatField(help_text="seconds after the mission's departure")
+    waypoints = RouteWaypointSerializer(many=True)
 
 
 class RouteTargetSerializer(serializers.Serializer):
-    id = serializers.IntegerField()
+    place = serializers.IntegerField(help_text="in the mission's list, from 0")
     label = serializers.CharField()
     kind = serializers.CharField(allow_null=True, help_text="of the asset: tower, line, railway, bridge; null: a bare position")
     task = RouteTaskSerializer()
@@ -209,19 +236,13 @@ class GivenRouteSerializer(serializers.Serializer):
     mission = serializers.UUIDField()
     mission_name = serializers.CharField()
     approval = serializers.UUIDField()
-    flight = serializers.IntegerField(help_text="which of the route's flights, from 0")
     flights = serializers.IntegerField()
-    content_sha256 = serializers.CharField(help_text="names exactly these items; see docs/uav-link.md")
-    take_off = TakeOffSerializer()
-    cruise_speed_mps = serializers.FloatField()
-    end_action = serializers.CharField()
-    waypoints = RouteWaypointSerializer(many=True)
+    content = RouteContentSerializer()
+    content_sha256 = serializers.CharField(help_text="of `content` in its canonical form, see docs/uav-link.md")
     targets = RouteTargetSerializer(many=True)
-    items = serializers.DictField(help_text="the same as MAVLink items, by list: mission, fence, rally")
 
 
 class GivenSerializer(serializers.Serializer):
     uav = serializers.IntegerField()
-    name = serializers.CharField()
     route = GivenRouteSerializer(allow_null=True)
     commands = WaitingCommandSerializer(many=True, help_text="the most urgent first")

@@ -26,9 +26,7 @@ class TakenReports:
     refused: list[RefusedReport] = field(default_factory=list)
 
 
-def take_reports(
-    *, uav_id: int, place: tuple[float, float], stream: str, sent: Sequence[Any], received_at: datetime
-) -> TakenReports:
+def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: Sequence[Any], received_at: datetime) -> TakenReports:
     """Stores the sound ones and names the others, so that one faulty record holds up none behind it.
 
     `place` is where the UAV was last: longitude, latitude [deg]. `sent` is decoded JSON.

@@ -1,15 +1,23 @@
 """The HTTP link: what a companion computer asks for and tells. A UAV gets its own data only, and tells of itself only."""
 
+import hashlib
 from typing import Any
 
 from django.utils import timezone
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from missions.given_selectors import Given, commands_by_key, given_to
+from missions.models import CommandState
+from missions.services.dispatch import load_of
+from missions.services.flying import FlightEnd
+from telemetry.serializers.given import given_json
 from telemetry.serializers.uav_link import (
-    MOST_RESULT_BYTES,
+    AcknowledgementsSerializer,
+    GivenSerializer,
+    NotedListSerializer,
     ReportsEnvelopeSerializer,
     ReportsSerializer,
     ResultsEnvelopeSerializer,
@@ -20,9 +28,11 @@ from telemetry.serializers.uav_link import (
 )
 from telemetry.services.companion_reports import take_reports
 from telemetry.services.heard import note_heard_over_http
-from telemetry.services.results import take_results
+from telemetry.services.results import EndedFlight, take_results
+from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.views.uav_authentication import UavAccess, UavRate, UavsAlone, UavTokenAuthentication
 from workspace.parsers import MeasuredJSONParser
+from workspace.renderers import FastJSONRenderer
 from workspace.sign_in_attempts import address_of
 
 
@@ -75,10 +85,10 @@ class UavResults(UavView):
 
     @extend_schema(
         operation_id="report_results",
-        summary="Report what was found at targets",
+        summary="Report what was found at targets, and how flights ended",
         description=(
-            "Of targets on the UAV's own routes alone. A result that was stored before, under the same stream and sequence, is dropped. "
-            f"The newest result of a target sets its state. `values` of one result have at most {MOST_RESULT_BYTES // 1024} kB."
+            "Of routes that this UAV was sent alone. A result that was stored before, under the same stream and sequence, is dropped. The "
+            "newest result of a target sets its state."
         ),
         request=ResultsSerializer,
         responses=StoredResultsSerializer,
@@ -93,12 +103,83 @@ class UavResults(UavView):
                 refused[index] = faults
             else:
                 read.append((index, result))
-        uav: UavAccess = request.auth
-        results = [result for _, result in read]
-        taken = take_results(uav_id=uav.uav_id, stream=envelope["stream"], results=results, received_at=received_at)
-        refused |= {read[place][0]: {"target": "It is no target that this UAV was given."} for place in taken.refused}
+        taken = take_results(
+            uav_id=request.auth.uav_id,
+            stream=envelope["stream"],
+            results=[result for _, result in read],
+            flights=[
+                EndedFlight(flight["approval"], flight["flight"], FlightEnd(flight["outcome"])) for flight in envelope.get("flights", [])
+            ],
+            received_at=received_at,
+        )
+        refused |= {read[place][0]: {"place": "It is no target that this UAV was sent to."} for place in taken.refused_results}
         told = [_refused(index, envelope["results"][index], faults) for index, faults in sorted(refused.items())]
-        return Response({"stored": taken.stored, "known": taken.known, "refused": told})
+        return Response({"stored": taken.stored, "known": taken.known, "refused": told, "refused_flights": taken.refused_flights})
+
+
+class UavRoute(UavView):
+    renderer_classes = [FastJSONRenderer]
+
+    @extend_schema(
+        operation_id="get_uav_route",
+        summary="What the UAV is to fly, and the commands that wait for it",
+        description=(
+            "Asked every few seconds, with the ETag of the answer before in If-None-Match. The route is there from when it is sent until it "
+            "is taken off or the mission is over. A command is handed over by this answer and is among `commands` until the UAV has told "
+            "its end, or it has been overtaken, or is not wanted any more: each is to be carried out once."
+        ),
+        parameters=[OpenApiParameter("If-None-Match", str, OpenApiParameter.HEADER, description="the ETag as last seen")],
+        responses={
+            200: GivenSerializer,
+            204: OpenApiResponse(description="Nothing to fly and nothing that waits."),
+            304: OpenApiResponse(description="The same as last seen."),
+        },
+    )
+    def get(self, request: Request) -> Response:
+        uav_id = request.auth.uav_id
+        given = given_to(uav_id)
+        if request.headers.get("If-None-Match") == _etag(uav_id, given):
+            return Response(status=304, headers={"ETag": _etag(uav_id, given), "Cache-Control": "private, no-cache"})
+        given = handed_to(uav_id, given)
+        headers = {"ETag": _etag(uav_id, given), "Cache-Control": "private, no-cache"}
+        if given.upload is None and not given.waiting:
+            return Response(status=204, headers=headers)
+        commands = {command.pk: command for command in commands_by_key((*given.waiting, *filter(None, [given.upload])))}
+        upload = commands.get(given.upload) if given.upload else None
+        waiting = [commands[key] for key in given.waiting if key in commands]
+        return Response(
+            given_json(uav_id=uav_id, upload=upload, load=load_of(upload) if upload else None, waiting=waiting), headers=headers
+        )
+
+
+class UavAcknowledgements(UavView):
+    @extend_schema(
+        operation_id="acknowledge_commands",
+        summary="Say what became of commands",
+        description=(
+            "`acknowledged`: it is here. `applied`: it is done. `failed`: it is not, and `reason` says why. An upload is applied only with the "
+            "`content_sha256` of what the UAV holds, and only if this is what was approved: otherwise the command fails. Asked again, nothing "
+            "changes twice."
+        ),
+        request=AcknowledgementsSerializer,
+        responses=NotedListSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        told = _envelope(AcknowledgementsSerializer, request)["acknowledgements"]
+        acknowledgements = [
+            Acknowledgement(entry["command"], CommandState(entry["state"]), entry.get("reason", ""), entry.get("content_sha256"))
+            for entry in told
+        ]
+        noted = note_acknowledgements(uav_id=request.auth.uav_id, acknowledgements=acknowledgements)
+        return Response(
+            {"results": [{"command": one.command_id, "noted": one.noted, "state": one.state, "words": one.words} for one in noted]}
+        )
+
+
+def _etag(uav_id: int, given: Given) -> str:
+    """A route is what its upload was approved with, which never changes; so are the commands."""
+    digest = hashlib.sha256(f"{uav_id} {given.upload} {' '.join(map(str, given.waiting))}".encode()).hexdigest()
+    return f'"{digest[:32]}"'
 
 
 def _envelope(serializer_class: Any, request: Request) -> dict[str, Any]:
