@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from missions.models import UavCommand
-from missions.services.dispatch import ApprovedLoad, content_of
+from missions.services.dispatch import ApprovedLoad
 
 
 def given_json(*, uav_id: int, upload: UavCommand | None, load: ApprovedLoad | None, waiting: Sequence[UavCommand]) -> dict[str, Any]:
@@ -28,7 +28,8 @@ def given_json(*, uav_id: int, upload: UavCommand | None, load: ApprovedLoad | N
 def _route(upload: UavCommand, load: ApprovedLoad) -> dict[str, Any]:
     assert upload.approval is not None  # noqa: S101 - the database keeps it
     document = upload.approval.document
-    content = content_of(load)
+    content = load.content
+    assert content is not None  # noqa: S101 - a UAV with a companion computer
     visited = {waypoint["target"] for waypoint in content["waypoints"]}
     return {
         "command": upload.pk,

@@ -124,9 +124,9 @@ class UavRoute(UavView):
         operation_id="get_uav_route",
         summary="What the UAV is to fly, and the commands that wait for it",
         description=(
-            "Asked every few seconds, with the ETag of the answer before in If-None-Match. The route is there from when it is sent until it "
-            "is taken off or the mission is over. A command is handed over by this answer and is among `commands` until the UAV has told "
-            "its end, or it has been overtaken, or is not wanted any more: each is to be carried out once."
+            "Asked every few seconds, with the ETag of the answer before in If-None-Match. The route is there from when it is sent until "
+            "it is taken off or the mission is over. A command is handed over by this answer and is among `commands` until the UAV has "
+            "told its end, or it has been overtaken, or is not wanted any more: each is to be carried out once."
         ),
         parameters=[OpenApiParameter("If-None-Match", str, OpenApiParameter.HEADER, description="the ETag as last seen")],
         responses={
@@ -157,9 +157,9 @@ class UavAcknowledgements(UavView):
         operation_id="acknowledge_commands",
         summary="Say what became of commands",
         description=(
-            "`acknowledged`: it is here. `applied`: it is done. `failed`: it is not, and `reason` says why. An upload is applied only with the "
-            "`content_sha256` of what the UAV holds, and only if this is what was approved: otherwise the command fails. Asked again, nothing "
-            "changes twice."
+            "`acknowledged`: it is here. `applied`: it is done. `failed`: it is not, and `reason` says why. An upload is applied only with "
+            "the `content_sha256` of what the UAV holds, and only if this is what was approved: otherwise the command fails. Asked again, "
+            "nothing changes twice."
         ),
         request=AcknowledgementsSerializer,
         responses=NotedListSerializer,
