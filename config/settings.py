@@ -248,6 +248,7 @@ SPECTACULAR_SETTINGS = {
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
+        "UavFigure": "missions.fleet_selectors.FIGURES",
         "CredentialKind": "missions.models.CredentialKind",
         "HeightReference": "inspection.models.HeightReference",
         "FeatureType": ["Feature"],
