@@ -3,7 +3,7 @@
 from django.urls import path
 
 from missions import views
-from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsUndo
+from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
@@ -26,6 +26,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
     path("missions/<uuid:mission_id>/legal-windows", MissionLegalWindows.as_view(), name="api-mission-legal-windows"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints", RouteWaypoints.as_view(), name="api-route-waypoints"),
+    path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/look", RouteWaypointsLook.as_view(), name="api-route-waypoints-look"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/undo", RouteWaypointsUndo.as_view(), name="api-route-waypoints-undo"),
     path("leg-checks", LegChecks.as_view(), name="api-leg-checks"),
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),

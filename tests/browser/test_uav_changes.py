@@ -21,6 +21,14 @@ def changes(page: Page, uav: dict[str, Any], values: dict[str, Any]) -> None:
     assert answer.ok, answer.text()
 
 
+def waits_for_changes(page: Page, mission: dict[str, Any], count: int) -> None:
+    """Until the server has stored what the page says."""
+    address = f"/api/v1/missions/{mission['id']}"
+    page.wait_for_function(
+        "async ([address, count]) => (await (await fetch(address)).json()).uav_changes.length === count", arg=[address, count]
+    )
+
+
 def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     battery = {"battery_wh": 700.0, "mass_kg": 4.0, "max_airspeed_mps": 15.0}
@@ -44,10 +52,10 @@ def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor
     expect(notices).not_to_contain_text("changed since")
     expect(rows).to_contain_text("480.5\xa0Wh")
     expect(page.locator("#save-state")).to_contain_text("Saved")
-    page.wait_for_function("async (address) => (await (await fetch(address)).json()).uav_changes.length === 0", arg=f"/api/v1/missions/{mission['id']}")
+    waits_for_changes(page, mission, 0)
     page.get_by_title("Undo (Ctrl+Z)").click()
     expect(notices).to_contain_text("Swift: battery 700 → 480.5\xa0Wh.")
-    page.wait_for_function("async (address) => (await (await fetch(address)).json()).uav_changes.length === 1", arg=f"/api/v1/missions/{mission['id']}")
+    waits_for_changes(page, mission, 1)
     page.goto("/")
     row = page.get_by_role("row").filter(has_text="Swift's battery")
     expect(row).to_contain_text("UAV changed since")
