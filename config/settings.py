@@ -252,6 +252,7 @@ SPECTACULAR_SETTINGS = {
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
+        "UavFigure": "missions.fleet_selectors.FIGURES",
         "CredentialKind": "missions.models.CredentialKind",
         "CommandKind": "missions.models.CommandKind",
         "CommandState": "missions.models.CommandState",
