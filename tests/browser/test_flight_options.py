@@ -148,7 +148,8 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     page.mouse.move(place["x"] + 60, place["y"] + 30, steps=4)
     page.mouse.up()
     expect(panel).to_contain_text("1 waypoint is changed.")
-    expect(panel).to_contain_text("Every changed leg is clear.")
+    expect(panel).to_contain_text("The whole route is clear.")
+    expect(panel.locator(".hand-figures")).to_contain_text(re.compile(r"km \(\+\d+\xa0m\)"))
     page.keyboard.press("Control+z")
     expect(panel).to_contain_text("Nothing is changed yet.")
     page.keyboard.press("Control+Shift+z")
@@ -160,7 +161,7 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     speed.press("Tab")
     expect(panel).to_contain_text("By hand; empty:")
     panel.get_by_role("button", name="Put one in after it").click()
-    expect(panel).to_contain_text("2 waypoints are changed. Every changed leg is clear.")
+    expect(panel).to_contain_text("2 waypoints are changed. The whole route is clear.")
     picture(page, "plan-by-hand-light")
     assert faults(page) == []
     panel.get_by_role("button", name="Keep").click()

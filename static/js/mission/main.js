@@ -100,7 +100,7 @@ startChrome({
   ],
 });
 
-watchMission(store, { editor, take: actions.take, connectedAgain: actions.connectedAgain, tellDeleted: actions.tellDeleted });
+watchMission(store, { editor, take: actions.take, connectedAgain: actions.connectedAgain, tellDeleted: actions.tellDeleted, readFleet: fleetOfOrganisation });
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
 
