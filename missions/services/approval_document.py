@@ -5,6 +5,7 @@ It is written in one canonical form, whose SHA-256 names it. What is sent to a U
 
 import hashlib
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
+from inspection.models import Asset
 from inspection.selectors import ground_revision, terrain_edition
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
@@ -49,6 +51,7 @@ def _canonical(value: Any) -> Any:
 def approval_document(mission: Mission) -> dict[str, Any]:
     """Of a planned mission, as loaded by selectors.mission_of_organisation. Raises Refused for routes that a UAV cannot be given."""
     flown = [route for route in mission.routes.all() if route.geometry is not None]
+    shapes = _shapes_of_assets([target.asset_id for target in mission.targets.all()])
     return {
         "version": VERSION,
         "mission": {
@@ -73,8 +76,11 @@ def approval_document(mission: Mission) -> dict[str, Any]:
         "zones": _zones(flown),
         "targets": [
             {
+                "id": target.pk,
                 "sequence": target.sequence,
                 "asset": target.asset_id,
+                "kind": None if target.asset is None else target.asset.kind,
+                "geometry": shapes.get(target.asset_id),
                 "label": target.label,
                 "position": None if target.position is None else list(target.position.coords),
                 "stretch": [list(end) for end in target.stretch.coords] if target.stretch else None,
@@ -116,6 +122,12 @@ def _waypoint(row: Waypoint, sequence_of: dict[int, int]) -> FrozenWaypoint:
         speed_mps=row.speed_mps,
         arrival_s=row.arrival_s,
     )
+
+
+def _shapes_of_assets(assets: Sequence[int | None]) -> dict[int, dict[str, Any]]:
+    """As GeoJSON: what a UAV is to look at, as it was when it was approved."""
+    rows = Asset.objects.filter(pk__in=set(assets) - {None}).values_list("pk", "geometry")
+    return {pk: json.loads(geometry.json) for pk, geometry in rows if geometry is not None}
 
 
 def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
