@@ -1,0 +1,17 @@
+"""Every test of telemetry has its own cache of graphs, and requests that nobody counted before."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.workspace.counters import forget_counts
+
+
+@pytest.fixture(autouse=True)
+def own_graph_cache(settings, tmp_path: Path) -> None:
+    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
+
+
+@pytest.fixture(autouse=True)
+def nobody_has_asked() -> None:
+    forget_counts()
