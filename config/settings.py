@@ -256,6 +256,7 @@ SPECTACULAR_SETTINGS = {
         "CommandKind": "missions.models.CommandKind",
         "CommandState": "missions.models.CommandState",
         "CommandPriority": ["safety", "pause", "mission", "parameter"],
+        "TargetPriority": "missions.models.TargetPriority",
         "LinkKind": "missions.models.LinkKind",
         "HeightReference": "inspection.models.HeightReference",
         "FeatureType": ["Feature"],

@@ -58,13 +58,15 @@ def is_stale(mission: Mission, revision: int, *, has_lost_base: bool) -> bool:
 
 def stale_causes(mission: Mission) -> list[StaleCause]:
     """What the changes mean for the mission, the worst first; empty if all is as it was."""
-    bases = _bases(mission)
     if not is_stale(mission, ground_revision(), has_lost_base=False):
-        return bases
-    causes = [*_zones(mission), *bases, *_vanished_targets(mission), *_passed_assets_gone(mission)]
-    if not causes:
-        causes = _terrain(mission)
-    return causes[:MOST_CAUSES] or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
+        return _bases(mission)
+    return causes_on_the_routes(mission) or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
+
+
+def causes_on_the_routes(mission: Mission) -> list[StaleCause]:
+    """What speaks against the stored routes on the ground as it is now, the worst first, whatever they were planned on."""
+    causes = [*_zones(mission), *_bases(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
+    return (causes or _terrain(mission))[:MOST_CAUSES]
 
 
 def stale_reason(causes: list[StaleCause]) -> str:
