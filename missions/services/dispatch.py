@@ -45,8 +45,8 @@ class DamagedApproval(Exception):
 class ApprovedLoad:
     """What one flight of a UAV is flown from, as it was approved.
 
-    `load` is None for a UAV with a companion computer, which has `content` instead: the flight in plain values. `flight` counts from 1 to `flights`; `waypoints` are the
-    places in the route that belong to it. `content_sha256` names exactly this load.
+    `load` is None for a UAV with a companion computer, which flies from `content`: the flight in plain values. `flight` counts from 1 to
+    `flights`; `waypoints` are the places in the route that belong to it. `content_sha256` names exactly this load.
     """
 
     approval: UUID

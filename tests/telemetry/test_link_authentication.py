@@ -82,7 +82,6 @@ def test_a_session_beside_a_uavs_token_changes_nothing() -> None:
 
 def test_a_network_that_guesses_is_slowed_down_and_a_right_token_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(uav_authentication, "WRONG_TOKENS", 3)
-    monkeypatch.setattr(uav_authentication, "GUESSING", f"guessing in a test {timezone.now()}")
     kite = linked_uav()
     wrong = [Client().get(f"{LINK}/route", headers={"Authorization": f"Bearer spu_{guess}"}) for guess in range(5)]
     assert [answer.status_code for answer in wrong] == [401, 401, 401, 429, 429]
