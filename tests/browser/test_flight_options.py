@@ -12,6 +12,7 @@ from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import opens_mission
 from tests.browser.test_planning_options import PHONE, route
+from tests.browser.test_safe_routes import in_both_themes
 
 pytestmark = pytest.mark.browser
 
@@ -72,7 +73,7 @@ def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_wha
     expect(route(page, "Kite")).to_contain_text(re.compile(r"until \d\d:\d\d"))
     expect(route(page, "Kite")).to_contain_text(re.compile(r"\d+\s% ?at landing"))
     expect(page.locator("#target-list .target-when").first).to_have_text(re.compile(r"^\d\d:\d\d$"))
-    picture(page, "plan-battery-light")
+    in_both_themes(page, picture, "plan-battery")
     is_saved(page)
     page.reload()
     wait_for_map(page)
@@ -162,7 +163,7 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     expect(panel).to_contain_text("By hand; empty:")
     panel.get_by_role("button", name="Put one in after it").click()
     expect(panel).to_contain_text("2 waypoints are changed. The whole route is clear.")
-    picture(page, "plan-by-hand-light")
+    in_both_themes(page, picture, "plan-by-hand")
     assert faults(page) == []
     panel.get_by_role("button", name="Keep").click()
     expect(panel).to_be_hidden()
@@ -193,7 +194,7 @@ def test_what_can_be_inspected_is_a_layer_with_counts_and_the_reason_of_each_ass
     page.mouse.move(place["x"] + 40, place["y"] + 40)
     page.mouse.move(place["x"], place["y"])
     expect(page.get_by_role("tooltip")).to_contain_text("Inside Greenlawn heliport.")
-    picture(page, "plan-reach-light")
+    in_both_themes(page, picture, "plan-reach")
     assert faults(page) == []
     page.get_by_role("button", name="Change Kite in this mission").click()
     page.get_by_role("dialog", name="Kite").get_by_label("Range").fill("3")
