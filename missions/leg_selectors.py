@@ -110,8 +110,10 @@ _NO_FAULT: dict[str, Any] = {"is_clear": True, "zone": None, "message": ""}
 
 
 def too_low_text(agl_m: float) -> str:
-    """What is said of a leg that has to be flown at this height above ground over something."""
+    """What is said of a leg that has to be flown at this height above ground over something; inf: nobody knows it."""
     limit_m = settings.FLIGHT_RULES.max_agl_m
+    if agl_m == np.inf:
+        return _("How high the ground is under what stands here is not known: go round it.")
     if agl_m > limit_m:
         return _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{limit_m:.0f}"}
     return _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}

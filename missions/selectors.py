@@ -6,7 +6,7 @@ from django.contrib.gis.db.models import Extent
 from django.db.models import Prefetch, Q, QuerySet
 
 from inspection.selectors import UNREAD_OF_A_LINE
-from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint
+from missions.models import Approval, InspectionTarget, Mission, MissionUav, Route, Waypoint
 from workspace.models import OPEN_STATES, AuditEntry, Job, Organisation
 
 PLAN_MISSION = "missions.tasks.plan_mission"
@@ -34,6 +34,11 @@ def open_plan_of_mission(mission: Mission) -> UUID | None:
     """The job that is planning the mission at present, the youngest if there are several."""
     jobs = Job.objects.filter(organisation=mission.organisation_id, state__in=OPEN_STATES, task=PLAN_MISSION)
     return jobs.filter(parameters__mission=str(mission.pk)).order_by("-created_at").values_list("pk", flat=True).first()
+
+
+def approval_in_force(mission: Mission) -> Approval | None:
+    """By which the mission is frozen; None for one that nobody has approved, or whose approval is revoked."""
+    return Approval.objects.select_related("approved_by", "revoked_by").filter(mission=mission, revoked_at=None).first()
 
 
 def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:

@@ -62,13 +62,15 @@ def is_stale(mission: Mission, revision: int, *, has_lost_base: bool, has_other_
 
 def stale_causes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
     """What the changes mean for the mission, the worst first; empty if all is as it was. `uavs`: its uav_changes."""
-    others = [*_uavs(mission, uavs), *_bases(mission)]
     if not is_stale(mission, ground_revision(), has_lost_base=False, has_other_uavs=False):
-        return others
-    causes = [*_zones(mission), *others, *_vanished_targets(mission), *_passed_assets_gone(mission)]
-    if not causes:
-        causes = _terrain(mission)
-    return causes[:MOST_CAUSES] or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
+        return [*_uavs(mission, uavs), *_bases(mission)]
+    return causes_on_the_routes(mission, uavs) or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
+
+
+def causes_on_the_routes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
+    """What speaks against the stored routes on the ground as it is now, the worst first, whatever they were planned on."""
+    causes = [*_zones(mission), *_uavs(mission, uavs), *_bases(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
+    return (causes or _terrain(mission))[:MOST_CAUSES]
 
 
 def stale_reason(causes: list[StaleCause]) -> str:

@@ -7,7 +7,8 @@ from missions.flight_plan.conditions import conditions_from_json, conditions_to_
 from missions.flight_plan.performance import performance_from_json, performance_to_json
 from missions.list_selectors import sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
-from missions.selectors import open_plan_of_mission
+from missions.selectors import approval_in_force, open_plan_of_mission
+from missions.serializers.commands import approval_json
 from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
 from missions.services.requests import lost_link_from_json, lost_link_to_json
 from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
@@ -45,6 +46,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "plan": _plan(mission),
         "last_plan": mission.last_plan,
         "planning_job": open_plan_of_mission(mission),
+        "approval": approval_json(approval_in_force(mission)),
     }
 
 

@@ -21,7 +21,7 @@ from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.route_points import line_of, with_short_legs
 from missions.flight_plan.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
-from missions.flight_plan.tall_clearance import spans_too_near
+from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.leg_selectors import LegFlyer, speed_words, too_low_text
@@ -158,10 +158,10 @@ def obstacle_faults(points: RoutePoints) -> dict[str, str]:
     low = too_low(waypoints, spans, ground, flight)
     if low is None:
         return {}
-    near = spans_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
+    near = legs_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
-        if span in near:
+        if (place, span) in near or (not is_leg and (place - 1, span) in near):
             faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
     return faults
 

@@ -7,7 +7,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('missions', '0016_commands_and_approvals'),
+        ('missions', '0018_approvals_taken_back'),
     ]
 
     operations = [

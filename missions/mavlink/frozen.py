@@ -1,0 +1,154 @@
+"""A route as it was approved, in plain values: what a vehicle is given to fly is made from this and from nothing else."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from inspection.geodesy import LonLat
+from missions.flight_plan.waypoints import WaypointKind
+from missions.routing.problem import Task, TaskKind
+
+RETURN, LAND, HOVER, BASE = "return", "land", "hover", "base"
+END_ACTIONS = (RETURN, LAND, HOVER, BASE)
+
+
+class NotARoute(ValueError):
+    """What was frozen cannot be a route."""
+
+
+@dataclass(frozen=True)
+class FrozenWaypoint:
+    """A point of a route.
+
+    `sequence` is its place in the stored route. `altitude_relative_m` counts from the route's first take-off. `speed_mps` is flown over
+    ground on the leg that leads here, None: the route's own. `arrival_s` counts from the mission's departure.
+    """
+
+    sequence: int
+    position: LonLat
+    kind: WaypointKind
+    altitude_agl_m: float
+    altitude_relative_m: float
+    altitude_amsl_m: float | None = None
+    task: Task | None = None
+    target: int | None = None
+    speed_mps: float | None = None
+    arrival_s: float | None = None
+
+    @property
+    def ground_relative_m(self) -> float:
+        """The ground below, above the route's first take-off."""
+        return self.altitude_relative_m - self.altitude_agl_m
+
+
+@dataclass(frozen=True)
+class TakeOff:
+    """Where a flight was planned to begin: the vehicle must stand here. `altitude_amsl_m` is the ground's, None without terrain data."""
+
+    position: LonLat
+    altitude_amsl_m: float | None
+
+
+@dataclass(frozen=True)
+class Flight:
+    """From one take-off to the next landing. The waypoints' `altitude_relative_m` counts from this take-off."""
+
+    number: int
+    take_off: TakeOff
+    waypoints: tuple[FrozenWaypoint, ...]
+    end_action: str
+
+
+@dataclass(frozen=True)
+class FrozenRoute:
+    """One UAV's route. `take_off` is where it begins; `charging_stops` are places of waypoints at which it was planned to charge."""
+
+    uav: str
+    take_off: TakeOff
+    cruise_speed_mps: float
+    end_action: str
+    waypoints: tuple[FrozenWaypoint, ...]
+    charging_stops: tuple[int, ...] = ()
+    departs_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.end_action not in END_ACTIONS:
+            raise NotARoute(f"A route cannot end by {self.end_action!r}.")
+        if not self.cruise_speed_mps > 0:
+            raise NotARoute("A route's speed must be above 0.")
+
+    @property
+    def flights(self) -> tuple[Flight, ...]:
+        """Divided at its waypoints of kind `base`, where it stands on the ground between two flights; none without waypoints."""
+        flights: list[Flight] = []
+        take_off, ground_m, begin = self.take_off, 0.0, 0
+        for place, waypoint in enumerate(self.waypoints):
+            if waypoint.kind is WaypointKind.BASE:
+                flights.append(self._flight(len(flights), take_off, ground_m, self.waypoints[begin:place]))
+                take_off, ground_m, begin = TakeOff(waypoint.position, waypoint.altitude_amsl_m), waypoint.altitude_relative_m, place + 1
+        if begin < len(self.waypoints) or flights:
+            flights.append(self._flight(len(flights), take_off, ground_m, self.waypoints[begin:]))
+        return tuple(flights)
+
+    def _flight(self, number: int, take_off: TakeOff, ground_m: float, waypoints: Sequence[FrozenWaypoint]) -> Flight:
+        if not waypoints:
+            raise NotARoute("A route stands at its base with no flight before or after it.")
+        above = tuple(replace(waypoint, altitude_relative_m=waypoint.altitude_relative_m - ground_m) for waypoint in waypoints)
+        return Flight(number, take_off, above, self.end_action)
+
+
+def route_to_json(route: FrozenRoute) -> dict[str, Any]:
+    return {
+        "uav": route.uav,
+        "take_off": {"position": list(route.take_off.position), "altitude_amsl_m": route.take_off.altitude_amsl_m},
+        "cruise_speed_mps": route.cruise_speed_mps,
+        "end_action": route.end_action,
+        "charging_stops": list(route.charging_stops),
+        "departs_s": route.departs_s,
+        "waypoints": [_waypoint_to_json(waypoint) for waypoint in route.waypoints],
+    }
+
+
+def route_from_json(stored: Mapping[str, Any]) -> FrozenRoute:
+    take_off = stored["take_off"]
+    return FrozenRoute(
+        uav=stored["uav"],
+        take_off=TakeOff(LonLat(*take_off["position"]), take_off["altitude_amsl_m"]),
+        cruise_speed_mps=stored["cruise_speed_mps"],
+        end_action=stored["end_action"],
+        waypoints=tuple(_waypoint_from_json(waypoint) for waypoint in stored["waypoints"]),
+        charging_stops=tuple(stored["charging_stops"]),
+        departs_s=stored["departs_s"],
+    )
+
+
+def _waypoint_to_json(waypoint: FrozenWaypoint) -> dict[str, Any]:
+    task = waypoint.task
+    return {
+        "sequence": waypoint.sequence,
+        "position": list(waypoint.position),
+        "kind": waypoint.kind.value,
+        "altitude_agl_m": waypoint.altitude_agl_m,
+        "altitude_amsl_m": waypoint.altitude_amsl_m,
+        "altitude_relative_m": waypoint.altitude_relative_m,
+        "task": None if task is None else {"kind": task.kind.value, "hold_s": task.hold_s},
+        "target": waypoint.target,
+        "speed_mps": waypoint.speed_mps,
+        "arrival_s": waypoint.arrival_s,
+    }
+
+
+def _waypoint_from_json(stored: Mapping[str, Any]) -> FrozenWaypoint:
+    task = stored["task"]
+    return FrozenWaypoint(
+        sequence=stored["sequence"],
+        position=LonLat(*stored["position"]),
+        kind=WaypointKind(stored["kind"]),
+        altitude_agl_m=stored["altitude_agl_m"],
+        altitude_relative_m=stored["altitude_relative_m"],
+        altitude_amsl_m=stored["altitude_amsl_m"],
+        task=None if task is None else Task(TaskKind(task["kind"]), task["hold_s"]),
+        target=stored["target"],
+        speed_mps=stored["speed_mps"],
+        arrival_s=stored["arrival_s"],
+    )
