@@ -13,6 +13,7 @@ from config.private_servers import broker_url, private_database_url, private_red
 from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.rules import LinkingRules
 from inspection.zones.rules import ZoneRules
+from missions.command_rules import CommandRules
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
 
@@ -216,7 +217,10 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_METADATA_CLASS": None,
     "URL_FORMAT_OVERRIDE": None,
     "DEFAULT_SCHEMA_CLASS": "workspace.schema.SpanwiseSchema",
-    "DEFAULT_THROTTLE_RATES": {"plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second")},
+    "DEFAULT_THROTTLE_RATES": {
+        "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
+        "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
+    },
     "EXCEPTION_HANDLER": "workspace.errors.error_response",
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
 }
@@ -248,7 +252,13 @@ SPECTACULAR_SETTINGS = {
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
+        "UavFigure": "missions.fleet_selectors.FIGURES",
         "CredentialKind": "missions.models.CredentialKind",
+        "CommandKind": "missions.models.CommandKind",
+        "CommandState": "missions.models.CommandState",
+        "CommandPriority": ["safety", "pause", "mission", "parameter"],
+        "TargetPriority": "missions.models.TargetPriority",
+        "LinkKind": "missions.models.LinkKind",
         "HeightReference": "inspection.models.HeightReference",
         "FeatureType": ["Feature"],
         "FeatureCollectionType": ["FeatureCollection"],
@@ -282,12 +292,13 @@ CELERY_BROKER_TRANSPORT_OPTIONS = {
     "interval_max": 0.1,
 }
 CELERY_TASK_DEFAULT_QUEUE = "data"
-CELERY_TASK_ROUTES = {"missions.tasks.*": {"queue": "planning"}}
+CELERY_TASK_ROUTES = {"missions.tasks.expire_commands": {"queue": "data"}, "missions.tasks.*": {"queue": "planning"}}
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
     "look for gaps in a changed ground": {"task": "inspection.tasks.find_gaps", "schedule": 10.0, "options": {"expires": 10}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 3.0, "options": {"expires": 3}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
+    "end commands to UAVs whose time is over": {"task": "missions.tasks.expire_commands", "schedule": 5.0, "options": {"expires": 5}},
     "fetch zone sets whose time has come": {
         "task": "inspection.tasks.fetch_due_subscriptions",
         "schedule": 60.0,
@@ -339,9 +350,25 @@ SEPARATION_RULES = SeparationRules(
     vertical_m=_float("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
     time_s=_float("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
 )
+COMMAND_RULES = CommandRules(
+    motion_s=_float("SPANWISE_MOTION_COMMAND_S", CommandRules.motion_s),
+    stop_s=_float("SPANWISE_STOP_COMMAND_S", CommandRules.stop_s),
+    upload_s=_float("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
+    speed_s=_float("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
+)
+# The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
+GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
+GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
+GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
+GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
+FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
+LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
+TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
+TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
+FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_FLIGHT_LOG_DIR", STATE_DIR / "flight-logs"))  # tlog files
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")

@@ -1,4 +1,4 @@
-"""Large plans, solved by a worker: with progress, and with an ear for the user who wants to stop."""
+"""Large plans, solved by a worker with an ear for the user who wants to stop; and the end of commands that nobody wants any more."""
 
 from collections.abc import Callable
 
@@ -9,7 +9,7 @@ from django.conf import settings
 from inspection.selectors import NoGraph
 from missions import services
 from missions.models import Mission
-from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
+from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands
 from missions.services.best_so_far import OnPlanProgress, PlanProgress
 from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
@@ -91,3 +91,8 @@ def plan_mission(job_id: str) -> None:
         )
 
     _work(job_id, do)
+
+
+@shared_task(time_limit=30, soft_time_limit=25)
+def expire_commands() -> None:
+    commands.expire_overdue()

@@ -3,7 +3,9 @@
 from django.urls import path
 
 from missions import views
-from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsUndo
+from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionDispatch, MissionRevoke
+from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
+from missions.views.commands import CommandDetail, MissionCommands, UavCommands
 from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
@@ -26,13 +28,22 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
     path("missions/<uuid:mission_id>/legal-windows", MissionLegalWindows.as_view(), name="api-mission-legal-windows"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints", RouteWaypoints.as_view(), name="api-route-waypoints"),
+    path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/look", RouteWaypointsLook.as_view(), name="api-route-waypoints-look"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/undo", RouteWaypointsUndo.as_view(), name="api-route-waypoints-undo"),
+    path("missions/<uuid:mission_id>/approval", MissionApproval.as_view(), name="api-mission-approval"),
+    path("missions/<uuid:mission_id>/approve", MissionApprove.as_view(), name="api-mission-approve"),
+    path("missions/<uuid:mission_id>/revoke", MissionRevoke.as_view(), name="api-mission-revoke"),
+    path("missions/<uuid:mission_id>/dispatch", MissionDispatch.as_view(), name="api-mission-dispatch"),
+    path("missions/<uuid:mission_id>/abort", MissionAbort.as_view(), name="api-mission-abort"),
+    path("missions/<uuid:mission_id>/commands", MissionCommands.as_view(), name="api-mission-commands"),
     path("leg-checks", LegChecks.as_view(), name="api-leg-checks"),
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),
     path("uavs", views.UavList.as_view(), name="api-uavs"),
     path("uavs/<int:uav_id>", views.UavDetail.as_view(), name="api-uav"),
     path("uavs/<int:uav_id>/restore", views.UavRestore.as_view(), name="api-uav-restore"),
     path("uavs/<int:uav_id>/missions", views.UavMissions.as_view(), name="api-uav-missions"),
+    path("uavs/<int:uav_id>/commands", UavCommands.as_view(), name="api-uav-commands"),
+    path("commands/<uuid:command_id>", CommandDetail.as_view(), name="api-command"),
     path("uavs/<int:uav_id>/credentials", views.UavCredentials.as_view(), name="api-uav-credentials"),
     path("uavs/<int:uav_id>/credentials/<int:credential_id>", views.UavCredentialDetail.as_view(), name="api-uav-credential"),
     path("uav-types", views.UavTypeList.as_view(), name="api-uav-types"),

@@ -3,6 +3,7 @@
 from missions.models.commands import (
     OPEN_COMMANDS,
     Approval,
+    CommandAxis,
     CommandKind,
     CommandPriority,
     CommandState,
@@ -28,6 +29,7 @@ __all__ = [
     "OPEN_COMMANDS",
     "Approval",
     "Base",
+    "CommandAxis",
     "CommandKind",
     "CommandPriority",
     "CommandState",

@@ -22,6 +22,7 @@ class Approval(models.Model):
     approved_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")
     approved_at = models.DateTimeField(db_default=Now(), editable=False)
     revoked_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
+    revoke_requested_at = models.DateTimeField(null=True, blank=True, help_text="since when UAVs are being rid of it")
     revoked_at = models.DateTimeField(null=True, blank=True)
     revoke_reason = models.CharField(max_length=300, blank=True)
 
@@ -66,6 +67,14 @@ class CommandState(models.TextChoices):
     EXPIRED = "expired", "Expired"
 
 
+class CommandAxis(models.TextChoices):
+    """What a command sets; see command_rules.py."""
+
+    FLIGHT = "flight", "Flight"
+    MISSION = "mission", "Mission"
+    SPEED = "speed", "Speed"
+
+
 OPEN_COMMANDS = (CommandState.QUEUED, CommandState.SENT, CommandState.ACKNOWLEDGED)
 
 
@@ -73,7 +82,8 @@ class UavCommand(models.Model):
     """A message to a UAV, and what became of it. The row is the truth; whoever carries it holds it by a lease.
 
     A command sets a state, so that carrying it twice changes nothing. `sequence` counts the commands of one UAV in the order in which they
-    were given: one that is overtaken by a later command about the same thing expires, and is never carried after it.
+    were given: one that is overtaken by a later command about the same thing expires, and is never carried after it. What has ended stays
+    ended, and of what one axis sets one command is open at most: so an open command is always the latest of its kind.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
@@ -84,6 +94,7 @@ class UavCommand(models.Model):
     sequence = models.BigIntegerField()
     kind = models.CharField(max_length=20, choices=CommandKind.choices)
     priority = models.PositiveSmallIntegerField(choices=CommandPriority.choices)
+    axis = models.CharField(max_length=10, choices=CommandAxis.choices, help_text="what it sets: one open command of a UAV each")
     parameters = models.JSONField(default=dict, blank=True)
     state = models.CharField(max_length=12, choices=CommandState.choices, default=CommandState.QUEUED)
     link = models.CharField(max_length=10, choices=LinkKind.choices, help_text="the door by which it goes")
@@ -106,6 +117,9 @@ class UavCommand(models.Model):
         verbose_name = "UAV command"
         constraints = [
             models.UniqueConstraint(fields=["uav", "sequence"], name="uav_command_sequence"),
+            models.UniqueConstraint(
+                fields=["uav", "axis"], condition=Q(state__in=["queued", "sent", "acknowledged"]), name="uav_command_one_open_of_an_axis"
+            ),
             models.CheckConstraint(condition=Q(state__in=CommandState.values), name="uav_command_state_known"),
             models.CheckConstraint(condition=Q(kind__in=CommandKind.values), name="uav_command_kind_known"),
             models.CheckConstraint(

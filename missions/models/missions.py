@@ -93,6 +93,13 @@ class MissionUav(models.Model):
     sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
     performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see flight_plan/performance.py")
+    own_figures = ArrayField(
+        models.CharField(max_length=20),
+        default=list,
+        db_default=[],
+        blank=True,
+        help_text="names of the figures that are said for this mission; the others were the UAV's when it was made",
+    )
 
     class Meta:
         ordering = ["sequence"]
@@ -164,6 +171,7 @@ class Route(models.Model):
     battery_percent = models.FloatField(null=True, blank=True, help_text="left at the end; empty without a battery")
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
+    flights_flown = models.PositiveSmallIntegerField(default=0, db_default=0, help_text="of its flights, since it was approved")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
     before_hand = models.JSONField(
         default=list,

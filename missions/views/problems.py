@@ -7,6 +7,7 @@ from django.utils.translation import gettext as _
 
 from inspection.selectors import NoGraph
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
+from missions.services.refused import Refused
 from workspace.errors import ApiProblem
 
 RETRY_AFTER_S = 3  # a new graph is built within seconds
@@ -33,3 +34,13 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
         raise ApiProblem(412 if has_precondition else 409, "mission_changed", message) from error
     except MissionFrozen as error:
         raise ApiProblem(409, "mission_frozen", _("Only drafts and planned missions can be changed.")) from error
+
+
+@contextmanager
+def refusals() -> Iterator[None]:
+    """409 with every reason why something is not done."""
+    try:
+        yield
+    except Refused as error:
+        reasons = [{"code": reason.code, "message": reason.message, "uav": reason.uav} for reason in error.reasons]
+        raise ApiProblem(409, error.reasons[0].code, str(error), details={"reasons": reasons}) from error

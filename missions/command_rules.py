@@ -1,0 +1,68 @@
+"""What kinds of commands there are to a UAV: how urgent, about what, and how long each is worth delivering."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+SAFETY, PAUSE, MISSION, PARAMETER = range(4)  # the smaller goes first
+
+PRIORITIES = {
+    "abort": SAFETY,
+    "hold": SAFETY,
+    "return": SAFETY,
+    "land": SAFETY,
+    "pause": PAUSE,
+    "resume": PAUSE,
+    "upload-mission": MISSION,
+    "clear-mission": MISSION,
+    "arm": MISSION,
+    "take-off": MISSION,
+    "start": MISSION,
+    "change-speed": PARAMETER,
+}
+
+
+class Axis(StrEnum):
+    """What a command sets. Of two commands about the same thing only the later one counts."""
+
+    FLIGHT = "flight"
+    MISSION = "mission"
+    SPEED = "speed"
+
+
+AXES = {"upload-mission": Axis.MISSION, "clear-mission": Axis.MISSION, "change-speed": Axis.SPEED}
+
+
+def priority_of(kind: str) -> int:
+    return PRIORITIES[kind]
+
+
+def axis_of(kind: str) -> Axis:
+    return AXES.get(kind, Axis.FLIGHT)
+
+
+def axes_overtaken_by(kind: str) -> tuple[Axis, ...]:
+    """About which an unfinished command no longer counts once one of this kind is given: an abort is about everything."""
+    return tuple(Axis) if kind == "abort" else (axis_of(kind),)
+
+
+@dataclass(frozen=True)
+class CommandRules:
+    """For how long [s] a command that was not delivered is still wanted; None: until it is overtaken.
+
+    What sets a UAV in motion is soon too old: nobody stands beside it any more. What stops it or brings it back is wanted longer, but not
+    on its next flight. A mission may wait for its UAV to be switched on, and taking one off is wanted whenever the UAV is heard again.
+    """
+
+    motion_s: float = 30.0  # arm, take off, start, resume
+    stop_s: float = 600.0  # pause, hold, return, land, abort
+    upload_s: float = 3_600.0
+    speed_s: float = 60.0
+
+    def wanted_for_s(self, kind: str) -> float | None:
+        if kind == "clear-mission":
+            return None
+        if kind == "upload-mission":
+            return self.upload_s
+        if kind == "change-speed":
+            return self.speed_s
+        return self.motion_s if kind in {"arm", "take-off", "start", "resume"} else self.stop_s

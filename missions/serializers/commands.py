@@ -1,0 +1,177 @@
+"""Approvals and commands to UAVs in the shapes of the API."""
+
+from typing import Any
+
+from django.utils.translation import gettext_lazy
+from rest_framework import serializers
+
+from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
+from missions.serializers.known_fields import KnownFieldsSerializer
+from workspace.stored_words import in_words
+
+LONGEST_WHY = 300
+MOST_FLIGHTS = 100
+# What the outbox itself ends commands with; a link says in its own words why a command failed.
+OUTCOMES = {
+    "superseded": gettext_lazy("A later command took its place."),
+    "not-delivered": gettext_lazy("It could not be delivered in time."),
+    "unconfirmed": gettext_lazy("It was sent; whether it was done is not known."),
+    "revoked": gettext_lazy("The approval was revoked."),
+}
+PRIORITIES = ("safety", "pause", "mission", "parameter")
+
+
+class ApprovalSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    content_sha256 = serializers.CharField(help_text="of the document in its canonical form: what is flown is what has this hash")
+    approved_by = serializers.CharField(allow_null=True)
+    approved_at = serializers.DateTimeField()
+    revoke_requested_at = serializers.DateTimeField(allow_null=True, help_text="since when UAVs are being rid of it")
+    revoke_requested_by = serializers.CharField(allow_null=True)
+    revoke_reason = serializers.CharField()
+
+
+class FlightsSerializer(serializers.Serializer):
+    uav = serializers.IntegerField(help_text="its place in the mission")
+    flights = serializers.IntegerField(help_text="in how many it flies its route")
+    flown = serializers.IntegerField()
+
+
+class MissionApprovalSerializer(ApprovalSerializer):
+    flights = FlightsSerializer(many=True)
+
+
+class ApprovalDocumentSerializer(ApprovalSerializer):
+    document = serializers.JSONField(
+        help_text="routes with their flights and items, zones, conditions, ground, lost link, separation, figures of UAVs: as approved"
+    )
+
+
+class ReasonInputSerializer(KnownFieldsSerializer):
+    reason = serializers.CharField(max_length=LONGEST_WHY, help_text="kept in the mission's history")
+
+
+class WhyInputSerializer(KnownFieldsSerializer):
+    why = serializers.CharField(max_length=LONGEST_WHY, required=False, allow_blank=True, default="")
+
+
+class DispatchInputSerializer(WhyInputSerializer):
+    uav = serializers.IntegerField(
+        required=False, min_value=0, max_value=10_000, help_text="its place in the mission; without it: all that have nothing yet"
+    )
+    flight = serializers.IntegerField(required=False, min_value=1, max_value=MOST_FLIGHTS, help_text="of this UAV, from 1 on")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if "flight" in attrs and "uav" not in attrs:
+            raise serializers.ValidationError({"uav": "A flight is one UAV's."})
+        return attrs
+
+
+class CommandParametersSerializer(KnownFieldsSerializer):
+    speed_mps = serializers.FloatField(required=False, help_text="over ground; of change-speed")
+    altitude_relative_m = serializers.FloatField(required=False, help_text="above the place of take-off; of take-off")
+
+
+class CommandInputSerializer(WhyInputSerializer):
+    kind = serializers.ChoiceField(choices=CommandKind.choices)
+    parameters = CommandParametersSerializer(required=False)
+
+
+class CommandUavSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+
+
+class ProgressSerializer(serializers.Serializer):
+    done = serializers.IntegerField()
+    total = serializers.IntegerField()
+
+
+class CommandSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    uav = CommandUavSerializer()
+    mission = serializers.UUIDField(allow_null=True)
+    approval = serializers.UUIDField(allow_null=True)
+    sequence = serializers.IntegerField(help_text="of the UAV's commands, in the order in which they were given")
+    kind = serializers.ChoiceField(choices=CommandKind.choices)
+    priority = serializers.ChoiceField(choices=PRIORITIES)
+    parameters = serializers.JSONField()
+    state = serializers.ChoiceField(choices=CommandState.choices)
+    link = serializers.ChoiceField(choices=LinkKind.choices)
+    created_by = serializers.CharField(allow_null=True)
+    why = serializers.CharField()
+    created_at = serializers.DateTimeField()
+    expires_at = serializers.DateTimeField(allow_null=True, help_text="until when it is wanted; null: until a later one takes its place")
+    attempts = serializers.IntegerField()
+    sent_at = serializers.DateTimeField(allow_null=True)
+    acknowledged_at = serializers.DateTimeField(allow_null=True)
+    finished_at = serializers.DateTimeField(allow_null=True)
+    progress = ProgressSerializer(allow_null=True)
+    outcome_code = serializers.CharField()
+    outcome = serializers.CharField(help_text="why it failed or expired")
+
+
+class CommandEventSerializer(serializers.Serializer):
+    state = serializers.ChoiceField(choices=CommandState.choices)
+    attempt = serializers.IntegerField()
+    holder = serializers.CharField(help_text="the gateway that carried it")
+    note = serializers.CharField()
+    recorded_at = serializers.DateTimeField()
+
+
+class CommandDetailSerializer(CommandSerializer):
+    events = CommandEventSerializer(many=True)
+
+
+class CommandPageSerializer(serializers.Serializer):
+    results = CommandSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class SentSerializer(serializers.Serializer):
+    """What became of a mission that was sent or aborted."""
+
+    mission = serializers.UUIDField()
+    state = serializers.CharField()
+    revision = serializers.IntegerField(help_text="the ETag")
+    commands = CommandSerializer(many=True)
+
+
+def approval_json(approval: Approval | None) -> dict[str, Any] | None:
+    if approval is None:
+        return None
+    return {
+        "id": str(approval.pk),
+        "content_sha256": approval.content_sha256,
+        "approved_by": approval.approved_by.username if approval.approved_by else None,
+        "approved_at": approval.approved_at,
+        "revoke_requested_at": approval.revoke_requested_at,
+        "revoke_requested_by": approval.revoked_by.username if approval.revoked_by else None,
+        "revoke_reason": approval.revoke_reason,
+    }
+
+
+def command_json(command: UavCommand) -> dict[str, Any]:
+    return {
+        "id": str(command.pk),
+        "uav": {"id": command.uav_id, "name": command.uav.name},
+        "mission": None if command.mission_id is None else str(command.mission_id),
+        "approval": None if command.approval_id is None else str(command.approval_id),
+        "sequence": command.sequence,
+        "kind": command.kind,
+        "priority": PRIORITIES[command.priority],
+        "parameters": command.parameters,
+        "state": command.state,
+        "link": command.link,
+        "created_by": command.created_by.username if command.created_by else None,
+        "why": command.why,
+        "created_at": command.created_at,
+        "expires_at": command.expires_at,
+        "attempts": command.attempts,
+        "sent_at": command.sent_at,
+        "acknowledged_at": command.acknowledged_at,
+        "finished_at": command.finished_at,
+        "progress": command.progress,
+        "outcome_code": command.outcome_code,
+        "outcome": str(OUTCOMES.get(command.outcome_code) or in_words(command.outcome)),
+    }

@@ -1,0 +1,128 @@
+"""Approving a plan and taking the approval back. An approved mission is frozen: what may be flown is what was approved, and nothing else.
+
+A revocation counts at once while nothing of the mission has left. Later it waits until every UAV that may hold the mission was seen
+without it: until then the approval is in force, so that no UAV flies what nobody answers for.
+"""
+
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.db.models import Exists, OuterRef, Q, QuerySet
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
+from missions.models import (
+    OPEN_COMMANDS,
+    Approval,
+    CommandKind,
+    CommandState,
+    Mission,
+    MissionState,
+    TargetState,
+    Uav,
+    UavCommand,
+)
+from missions.selectors import approval_in_force, mission_of_organisation
+from missions.services.approval_checks import reasons_against
+from missions.services.approval_document import approval_document, content_sha256
+from missions.services.missions import MissionChanged, note
+from missions.services.outbox import end_commands, queue_command
+from missions.services.refused import refuse, refuse_for
+from workspace.models import User
+
+REVOKED = "revoked"
+SETS_IN_MOTION = (CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START, CommandKind.RESUME)
+
+
+def approve_mission(*, mission: Mission, actor: User, expected_revision: int | None = None) -> Approval:
+    """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so."""
+    with transaction.atomic():
+        held = held_mission(mission.pk, expected_revision)
+        if held.state == MissionState.DRAFT:
+            raise refuse("not_planned", _("A draft cannot be approved. Plan it first."))
+        if held.state != MissionState.PLANNED:
+            raise refuse("not_planned", _("Only a planned mission can be approved."))
+        loaded = mission_of_organisation(held.organisation, held.pk)
+        refuse_for(reasons_against(loaded, now=timezone.now()))
+        document = approval_document(loaded)
+        approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
+        held.ground_revision = document["ground"]["revision"]  # which the routes have just been checked against
+        held.targets.update(state=TargetState.PENDING)
+        held.routes.update(flights_flown=0)
+        change_state(held, MissionState.APPROVED, actor, "approve", {"approval": str(approval.pk), "sha256": approval.content_sha256})
+    return approval
+
+
+def revoke_approval(*, mission: Mission, actor: User, reason: str, expected_revision: int | None = None) -> Approval:
+    """Take the approval back: the mission is planned again. Raises MissionChanged or Refused.
+
+    If UAVs may hold the mission, each is given the command to drop it, and the approval stays in force until all of them have; asked
+    again, it tells those once more that failed to. What is being flown is not revoked but aborted.
+    """
+    with transaction.atomic():
+        held = held_mission(mission.pk, expected_revision)
+        approval = approval_in_force(held)
+        if approval is None or held.state not in {MissionState.APPROVED, MissionState.DISPATCHED}:
+            raise refuse("not_approved", _("Only a mission that is approved and not yet flown can be revoked. Abort one that is flown."))
+        if approval.revoke_requested_at is None:
+            approval.revoke_requested_at, approval.revoked_by, approval.revoke_reason = timezone.now(), actor, reason
+            approval.save(update_fields=["revoke_requested_at", "revoked_by", "revoke_reason"])
+        never_left = Q(kind=CommandKind.UPLOAD_MISSION, attempts=0)
+        end_commands(approval.commands.filter(never_left | Q(kind__in=SETS_IN_MOTION)), code=REVOKED, words="The approval was revoked.")
+        for uav in uavs_that_may_hold(approval).order_by("pk"):
+            if not _is_being_cleared(uav, approval):
+                queue_command(uav=uav, kind=CommandKind.CLEAR_MISSION, actor=actor, why=reason, mission=held, approval=approval)
+        if not _finish(held, approval):
+            change_state(held, MissionState(held.state), actor, "revoke-asked", {"approval": str(approval.pk), "reason": reason})
+    return approval
+
+
+def finish_revocation(*, approval_id: UUID) -> bool:
+    """After a UAV was seen without the mission: end the approval if it was to be revoked and no UAV holds it any more."""
+    with transaction.atomic():
+        mission_id = Approval.objects.values_list("mission", flat=True).get(pk=approval_id)
+        held = Mission.objects.select_for_update().get(pk=mission_id)
+        approval = approval_in_force(held)
+        if approval is None or approval.pk != approval_id or approval.revoke_requested_at is None:
+            return False
+        return _finish(held, approval)
+
+
+def _finish(held: Mission, approval: Approval) -> bool:
+    if held.state not in {MissionState.APPROVED, MissionState.DISPATCHED} or uavs_that_may_hold(approval).exists():
+        return False
+    approval.revoked_at = timezone.now()
+    approval.save(update_fields=["revoked_at"])
+    facts = {"approval": str(approval.pk), "reason": approval.revoke_reason}
+    change_state(held, MissionState.PLANNED, approval.revoked_by, "revoke", facts)
+    return True
+
+
+def uavs_that_may_hold(approval: Approval) -> QuerySet[Uav]:
+    """To which some of it went, or may have gone, and of which nobody has seen since that they hold no mission or another one."""
+    emptied_or_loaded = Q(kind=CommandKind.CLEAR_MISSION) | (Q(kind=CommandKind.UPLOAD_MISSION) & ~Q(approval=approval))
+    later = UavCommand.objects.filter(emptied_or_loaded, uav=OuterRef("uav"), sequence__gt=OuterRef("sequence"), state=CommandState.APPLIED)
+    went = UavCommand.objects.filter(~Exists(later), approval=approval, kind=CommandKind.UPLOAD_MISSION)
+    open_or_tried = Q(state__in=OPEN_COMMANDS) | Q(attempts__gt=0)
+    return Uav.objects.filter(pk__in=went.filter(open_or_tried).values("uav"))
+
+
+def _is_being_cleared(uav: Uav, approval: Approval) -> bool:
+    return approval.commands.filter(uav=uav, kind=CommandKind.CLEAR_MISSION, state__in=OPEN_COMMANDS).exists()
+
+
+def held_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
+    """The row, held until the caller's transaction ends. Raises MissionChanged."""
+    held = Mission.objects.select_for_update().get(pk=mission_id)
+    if held.deleted_at is not None or (expected_revision is not None and held.revision != expected_revision):
+        raise MissionChanged
+    return held
+
+
+def change_state(held: Mission, state: MissionState, actor: User | None, action: str, facts: dict[str, Any]) -> None:
+    """With its entry in the history; the caller holds the row."""
+    before = {"state": str(held.state), "revision": held.revision}
+    held.state, held.revision = state, held.revision + 1
+    held.save(update_fields=["state", "revision", "ground_revision", "updated_at"])
+    note(held, actor, action, before=before, after={"state": str(state), "revision": held.revision, **facts})

@@ -1,0 +1,122 @@
+"""What speaks against flying a mission's routes as they are stored: looked at before it is approved, and again before it is sent."""
+
+from collections.abc import Iterator, Sequence
+from datetime import datetime, timedelta
+
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import planning_read
+from missions.fleet_selectors import performance_of
+from missions.flight_plan.performance import InvalidPerformance, Performance, performance_from_json
+from missions.models import Mission, MissionUav, Route, UavState
+from missions.services.over_wires import spans_in_the_way
+from missions.services.refused import Reason
+from missions.services.still_apart import separation_of_stored
+from missions.services.stored_routes import stored_routes
+from missions.stale_selectors import causes_on_the_routes
+from missions.uav_change_selectors import uav_changes
+
+TOO_NEAR = {"too_near", "hovers_in_the_way"}
+SAME = 1e-6  # figures that differ by less are the same
+
+
+def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[Reason]:
+    """All of them, of a mission with routes as loaded by selectors.mission_of_organisation; empty where it may be flown.
+
+    One that is under way has departed, and other missions have been kept apart from it.
+    """
+    flown = [route for route in mission.routes.all() if route.geometry is not None]
+    if not flown:
+        return [Reason("no_routes", _("No UAV flies a route in this mission."))]
+    return [
+        *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
+        *_height_references(mission, flown),
+        *_ground(mission),
+        *(reason for route in flown for reason in _uav(route.mission_uav)),
+    ]
+
+
+def _departure(mission: Mission, now: datetime) -> Iterator[Reason]:
+    """Zones and other missions were looked at for its time, with a margin."""
+    margin = timedelta(seconds=settings.ZONE_RULES.time_margin_s)
+    if mission.departs_at is not None and mission.departs_at + margin < now:
+        yield Reason("departure_past", _("Its departure is over. Plan it for another time."))
+
+
+def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[Reason]:
+    """A height over an assumed ground is none for a real aircraft."""
+    for route in routes:
+        uav = route.mission_uav
+        is_real = uav.uav is None or not uav.uav.is_simulated
+        if is_real and (mission.flat_ground_assumed is not False or any(row.altitude_amsl_m is None for row in route.waypoints.all())):
+            words = _("%(uav)s would fly as over flat ground: there is no terrain data here. Only a simulated UAV may.")
+            yield Reason("flat_ground", words % {"uav": uav.name}, uav.sequence)
+
+
+def _ground(mission: Mission) -> Iterator[Reason]:
+    """Zones, bases, assets and terrain as they are now, and what stands and hangs beside the routes."""
+    for cause in causes_on_the_routes(mission, uav_changes(mission.pk)):
+        yield Reason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
+    routes = stored_routes(mission)
+    if routes is None:
+        yield Reason("times_not_known", _("The times of a route are not known. Plan it again."))
+        return
+    names = [row.name for row in mission.mission_uavs.all()]
+    for number in sorted(spans_in_the_way(routes, planning_read().ground().network(), ground_heights_m)):
+        words = _("The route of %(uav)s passes a mast or wires too near.") % {"uav": names[number]}
+        yield Reason("wires", words, number)
+
+
+def _separation(mission: Mission) -> Iterator[Reason]:
+    found = separation_of_stored(mission)
+    for encounter in [] if found is None else found["unresolved"]:
+        if encounter["code"] not in TOO_NEAR:
+            continue
+        others = set(encounter["missions"]) - {None, str(mission.pk)}
+        values = {"uavs": _(" and ").join(encounter["uavs"]), "metres": f"{encounter['metres']:.0f}"}
+        words = _("%(uavs)s come within %(metres)s m of each other.") % values
+        if others:
+            names = Mission.objects.filter(pk__in=others).order_by("name").values_list("name", flat=True)
+            words = f"{words} {_('The other one flies %(missions)s.') % {'missions': ', '.join(names)}}"
+        yield Reason("separation", words)
+
+
+def _uav(row: MissionUav) -> Iterator[Reason]:
+    """The UAV as it is now: in service, and no worse than it was planned with."""
+    if row.uav is None:
+        return
+    if row.uav.state != UavState.ACTIVE:
+        words = _("%(uav)s is in maintenance.") if row.uav.state == UavState.MAINTENANCE else _("%(uav)s is retired.")
+        yield Reason("uav_not_in_service", words % {"uav": row.uav.name}, row.sequence)
+    try:
+        planned, today = performance_from_json(row.performance), performance_of(row.uav)
+    except InvalidPerformance:
+        yield Reason("uav_changed", _("The figures of %(uav)s are not valid.") % {"uav": row.uav.name}, row.sequence)
+        return
+    if worse := [*_worse(planned, today), *_shorter(row)]:
+        words = _("%(uav)s is not as it was planned with (%(figures)s). Plan it again with its figures of now.")
+        yield Reason("uav_changed", words % {"uav": row.uav.name, "figures": ", ".join(worse)}, row.sequence)
+
+
+def _worse(planned: Performance, today: Performance) -> Iterator[str]:
+    if planned.battery_wh is not None and (today.battery_wh is None or today.battery_wh < planned.battery_wh - SAME):
+        yield _("battery")
+    if planned.battery_wh is not None and today.reserve_percent > planned.reserve_percent + SAME:
+        yield _("reserve")
+    if today.mass_kg > planned.mass_kg + SAME:
+        yield _("mass")
+    fastest = planned.max_airspeed_mps, today.max_airspeed_mps
+    if None not in fastest and fastest[1] < fastest[0] - SAME:
+        yield _("airspeed")
+    if today.hover_power_w is not None and (planned.hover_power_w is None or today.hover_power_w > planned.hover_power_w + SAME):
+        yield _("hover power")
+
+
+def _shorter(row: MissionUav) -> Iterator[str]:
+    assert row.uav is not None  # noqa: S101 - looked at before
+    if row.uav.range_m is not None and (row.max_range_m is None or row.uav.range_m < row.max_range_m - SAME):
+        yield _("range")
+    if set(row.sensors) - set(row.uav.sensors):
+        yield _("sensors")

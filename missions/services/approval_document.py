@@ -1,0 +1,186 @@
+"""What an approval freezes: one document with the routes, what they were checked against, and the items that UAVs are given.
+
+It is written in one canonical form, whose SHA-256 names it. What is sent to a UAV is read from it and from nothing else.
+"""
+
+import hashlib
+import json
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
+from inspection.selectors import ground_revision, terrain_edition
+from inspection.selectors.zone_table import zone_table
+from inspection.zones.reach import ZoneTable
+from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
+from missions.flight_plan.waypoints import WaypointKind
+from missions.flight_plan.zone_facts import zones_near
+from missions.mavlink.content import load_to_json
+from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
+from missions.mavlink.items import CannotBeFlown, flight_loads
+from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
+from missions.services.approved_targets import approved_targets
+from missions.services.refused import Reason, Refused
+from missions.services.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
+from missions.zone_selectors import zone_margins
+
+VERSION = 1
+
+
+def content_sha256(document: Any) -> str:
+    """Of the canonical form, which is the same before and after the database has kept the document."""
+    text = json.dumps(_canonical(document), sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _canonical(value: Any) -> Any:
+    """A whole number is written as one: the database does not keep how it was written, nor the sign of zero."""
+    if isinstance(value, dict):
+        return {str(key): _canonical(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_canonical(entry) for entry in value]
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    return value
+
+
+def approval_document(mission: Mission) -> dict[str, Any]:
+    """Of a planned mission, as loaded by selectors.mission_of_organisation. Raises Refused for routes that a UAV cannot be given."""
+    flown = [route for route in mission.routes.all() if route.geometry is not None]
+    return {
+        "version": VERSION,
+        "mission": {
+            "id": str(mission.pk),
+            "name": mission.name,
+            "objective": mission.objective,
+            "departs_at": moment_to_json(mission.departs_at),
+            "planned_at": moment_to_json(mission.planned_at),
+            "return_to_start": mission.return_to_start,
+        },
+        "ground": {
+            "revision": ground_revision(),
+            "graph_version": mission.graph_version,
+            "terrain": list(terrain_edition()),
+            "flat_ground_assumed": mission.flat_ground_assumed,
+        },
+        "conditions": conditions_to_json(conditions_from_json(mission.conditions)),
+        "charging_w": mission.charging_w,
+        "lost_link": lost_link_to_json(lost_link_from_json(mission.lost_link)),
+        "lost_link_check": mission.lost_link_check,
+        "separation": mission.separation,
+        "zones": _zones(flown),
+        "targets": approved_targets(mission),
+        "routes": _routes(flown, mission),
+    }
+
+
+def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
+    """A stored route in plain values. Its first waypoint stands above the take-off."""
+    waypoints = list(route.waypoints.all())
+    first, uav = waypoints[0], route.mission_uav
+    ground_m = None if first.altitude_amsl_m is None else round(first.altitude_amsl_m - first.altitude_agl_m, 2)
+    sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
+    return FrozenRoute(
+        uav=uav.name,
+        take_off=TakeOff(LonLat(*first.position.coords[:2]), ground_m),
+        cruise_speed_mps=uav.cruise_speed_mps,
+        end_action=str(EndAction.RETURN if mission.return_to_start else EndAction(uav.end_action)),
+        waypoints=tuple(_waypoint(waypoint, sequence_of) for waypoint in waypoints),
+        charging_stops=tuple(stop["waypoint"] for stop in route.charging),
+        departs_s=route.departs_s,
+    )
+
+
+def _waypoint(row: Waypoint, sequence_of: dict[int, int]) -> FrozenWaypoint:
+    return FrozenWaypoint(
+        sequence=row.sequence,
+        position=LonLat(*row.position.coords[:2]),
+        kind=WaypointKind(row.kind),
+        altitude_agl_m=row.altitude_agl_m,
+        altitude_relative_m=row.altitude_relative_m,
+        altitude_amsl_m=row.altitude_amsl_m,
+        task=task_from_json(row.task),
+        target=None if row.target_id is None else sequence_of[row.target_id],
+        speed_mps=row.speed_mps,
+        arrival_s=row.arrival_s,
+    )
+
+
+def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
+    found, reasons = [], []
+    for route in routes:
+        uav = route.mission_uav
+        try:
+            frozen = frozen_route(route, mission)
+            flights = _flights(frozen, by_mavlink=uav.uav is None or uav.uav.link == LinkKind.MAVLINK)
+        except (CannotBeFlown, NotARoute) as error:
+            values = {"uav": uav.name, "why": str(error)}
+            reasons.append(Reason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
+            continue
+        found.append(
+            {
+                "place": uav.sequence,
+                "uav": uav.uav_id,
+                "name": uav.name,
+                "figures": {
+                    "max_range_m": uav.max_range_m, "cruise_speed_mps": uav.cruise_speed_mps, "performance": uav.performance,
+                    "sorties": uav.sorties, "sensors": uav.sensors,
+                },
+                "length_m": route.length_m,
+                "duration_s": route.duration_s,
+                "energy_wh": route.energy_wh,
+                "route": route_to_json(frozen),
+                "flights": flights,
+            }
+        )  # fmt: skip
+    if reasons:
+        raise Refused(reasons)
+    return found
+
+
+def _flights(route: FrozenRoute, *, by_mavlink: bool) -> list[dict[str, Any]]:
+    """With what each flight is flown from: items for an autopilot, the flight in plain values for a companion computer."""
+    loads = flight_loads(route) if by_mavlink else [None] * len(route.flights)
+    found = []
+    for flight, load in zip(route.flights, loads, strict=True):
+        content = flight_to_json(flight, route) if load is None else None
+        found.append(
+            {
+                "number": flight.number + 1,
+                "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},
+                "waypoints": [waypoint.sequence for waypoint in flight.waypoints],
+                "items": None if load is None else load_to_json(load),
+                "content": content,
+                "content_sha256": content_sha256(content) if load is None else load.content_sha256,
+            }
+        )
+    return found
+
+
+def _zones(routes: list[Route]) -> list[dict[str, Any]]:
+    """Those beside or across the routes at whatever height and time, each with what it says."""
+    table, margins = zone_table(), zone_margins()
+    found: dict[int, dict[str, Any]] = {}
+    for route in routes:
+        positions = np.array([waypoint.position.coords[:2] for waypoint in route.waypoints.all()], dtype=np.float64).reshape(-1, 2)
+        near, _facts = zones_near(table, positions, margins)
+        found |= {int(key): _zone(near, row) for row, key in enumerate(near.ids)}
+    return [found[key] for key in sorted(found)]
+
+
+def _zone(table: ZoneTable, row: int) -> dict[str, Any]:
+    limits = table.limits[row]
+    return {
+        "id": int(table.ids[row]),
+        "name": table.names[row],
+        "geometry_sha256": hashlib.sha256(table.wkb[row]).hexdigest(),
+        "lower_limit_m": limits.lower_m,
+        "lower_reference": limits.lower_reference,
+        "upper_limit_m": limits.upper_m,
+        "upper_reference": limits.upper_reference,
+        "schedule": table.schedules[row],
+        "margins": {"time_s": settings.ZONE_RULES.time_margin_s, "height_m": settings.ZONE_RULES.height_margin_m},
+    }

@@ -1,0 +1,55 @@
+"""Commands to UAVs, and what becomes of missions when they are carried out.
+
+Whoever carries commands works with this module; the rows themselves are kept by `outbox`.
+"""
+
+from uuid import UUID
+
+from django.db import transaction
+
+from missions.models import CommandKind, Mission, UavCommand
+from missions.services import outbox
+from missions.services.approval import finish_revocation
+from missions.services.flying import mark_started
+from missions.services.outbox import (
+    CHANNEL,
+    claim_commands,
+    expire_overdue,
+    note_acknowledged,
+    note_failed,
+    note_progress,
+    note_released,
+    note_sent,
+    queue_command,
+    renew_claims,
+)
+
+__all__ = [
+    "CHANNEL",
+    "claim_commands",
+    "expire_overdue",
+    "note_acknowledged",
+    "note_applied",
+    "note_failed",
+    "note_progress",
+    "note_released",
+    "note_sent",
+    "queue_command",
+    "renew_claims",
+]
+
+
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "") -> bool:
+    """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked."""
+    with transaction.atomic():
+        command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id").filter(pk=command_id).first()
+        if command is not None and command.mission_id is not None:
+            Mission.objects.select_for_update().values_list("pk").get(pk=command.mission_id)  # missions are held before commands
+        if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note):
+            return False
+        assert command is not None  # noqa: S101 - it has just been written to
+        if command.kind == CommandKind.START and command.mission_id is not None:
+            mark_started(mission_id=command.mission_id, uav_id=command.uav_id)
+        if command.kind == CommandKind.CLEAR_MISSION and command.approval_id is not None:
+            finish_revocation(approval_id=command.approval_id)
+    return True

@@ -1,0 +1,94 @@
+"""A mission on its way: what telemetry has seen of it, from the start of the first UAV to the end of the last flight.
+
+Telemetry decides what has happened and calls these. Each may be called again with the same: nothing changes twice, and what comes late,
+after a mission has ended, changes nothing.
+"""
+
+from enum import StrEnum
+from uuid import UUID
+
+from django.db import transaction
+
+from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
+from missions.selectors import approval_in_force
+from missions.services.approval import change_state, held_mission
+
+ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
+UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
+
+
+class FlightEnd(StrEnum):
+    FLOWN = "flown"
+    FAILED = "failed"
+
+
+def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
+    """A UAV flies its part. Returns whether the mission became active by it."""
+    with transaction.atomic():
+        held = held_mission(mission_id, None)
+        if held.state != MissionState.DISPATCHED:
+            return False
+        change_state(held, MissionState.ACTIVE, None, "start", {"uav": uav_id})
+    return True
+
+
+def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> None:
+    """A UAV is at a waypoint of its route, by its place in it: the target there is in progress, those before it are done."""
+    with transaction.atomic():
+        held = held_mission(mission_id, None)
+        if held.state not in ON_ITS_WAY:
+            return
+        rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, waypoints__kind=WaypointKind.TARGET)
+        visits = list(rows.order_by("waypoints__sequence").values_list("waypoints__sequence", "waypoints__target"))
+        here = {target for sequence, target in visits if sequence == waypoint}
+        to_come = {target for sequence, target in visits if sequence > waypoint}
+        before = {target for sequence, target in visits if sequence < waypoint} - here - to_come
+        targets = InspectionTarget.objects.filter(mission=held)
+        targets.filter(pk__in=here, state=TargetState.PENDING).update(state=TargetState.IN_PROGRESS)
+        targets.filter(pk__in=before, state__in=UNDECIDED).update(state=TargetState.COMPLETE)
+
+
+def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
+    """What a UAV reports of a target, by its place in the mission, is the last word on it: complete, skipped or failed."""
+    with transaction.atomic():
+        held = held_mission(mission_id, None)
+        if held.state in {MissionState.DRAFT, MissionState.PLANNED, MissionState.APPROVED}:
+            return False
+        return bool(InspectionTarget.objects.filter(mission=held, sequence=target).update(state=state))
+
+
+def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:
+    """A UAV is down after its flight, from 1 on. The mission is completed with the last flight of its last UAV.
+
+    Targets on a flown route that nothing else was said of are complete, those on one that failed have failed. Returns the mission's state.
+    """
+    with transaction.atomic():
+        held = held_mission(mission_id, None)
+        route = Route.objects.select_for_update().filter(mission=held, mission_uav__uav=uav_id, geometry__isnull=False).first()
+        if held.state not in ON_ITS_WAY or route is None:
+            return MissionState(held.state)
+        if end is FlightEnd.FAILED:
+            _settle(route, TargetState.FAILED)
+            change_state(held, MissionState.FAILED, None, "fail", {"uav": uav_id, "flight": flight})
+            return MissionState.FAILED
+        if flight > route.flights_flown:
+            route.flights_flown = flight
+            route.save(update_fields=["flights_flown"])
+        flights = _flights(held)
+        if route.flights_flown >= flights.get(uav_id, 1):
+            _settle(route, TargetState.COMPLETE)
+        flown = dict(Route.objects.filter(mission=held, geometry__isnull=False).values_list("mission_uav__uav", "flights_flown"))
+        if all(flown.get(uav, 0) >= number for uav, number in flights.items()):
+            change_state(held, MissionState.COMPLETED, None, "complete", {})
+        return MissionState(held.state)
+
+
+def _settle(route: Route, state: TargetState) -> None:
+    on_route = route.waypoints.filter(kind=WaypointKind.TARGET).values("target")
+    InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED).update(state=state)
+
+
+def _flights(mission: Mission) -> dict[int, int]:
+    """How many each UAV has to fly, as approved."""
+    approval = approval_in_force(mission)
+    return {} if approval is None else {route["uav"]: len(route["flights"]) for route in approval.document["routes"]}

@@ -1,0 +1,199 @@
+"""The outbox of commands to UAVs. Rows are the truth: whoever carries one holds it by a lease, and writes to it only while it does.
+
+All times are the database's, so that the clocks of those who carry do not matter. A command is fenced by its attempt and its holder:
+once another one has taken it over, or it has ended, nothing that the first one writes meets a row.
+"""
+
+from collections.abc import Collection
+from datetime import timedelta
+from typing import Any
+from uuid import UUID
+
+from django.conf import settings
+from django.db import connection, transaction
+from django.db.models import Max, Q, QuerySet
+from django.db.models.functions import Coalesce, Now
+
+from missions.command_rules import axes_overtaken_by, axis_of, priority_of
+from missions.models import OPEN_COMMANDS, Approval, CommandKind, CommandState, LinkKind, Mission, Uav, UavCommand, UavCommandEvent
+from workspace.models import User
+from workspace.services import record_change
+
+CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
+SUPERSEDED, NOT_DELIVERED, UNCONFIRMED = "superseded", "not-delivered", "unconfirmed"
+
+_CLAIM = """
+    WITH wanted AS (
+        SELECT id FROM missions_uavcommand
+        WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
+            AND (%s::text IS NULL OR link = %s::text)
+            AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
+            AND (expires_at IS NULL OR expires_at > statement_timestamp())
+        ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
+    )
+    UPDATE missions_uavcommand AS command
+    SET holder = %s, attempts = attempts + 1, lease_expires_at = statement_timestamp() + make_interval(secs => %s)
+    FROM wanted WHERE command.id = wanted.id RETURNING command.*"""
+
+
+def queue_command(
+    *,
+    uav: Uav,
+    kind: CommandKind,
+    actor: User | None,
+    why: str = "",
+    parameters: dict[str, Any] | None = None,
+    mission: Mission | None = None,
+    approval: Approval | None = None,
+    expires_in_s: float | None = None,
+) -> UavCommand:
+    """Give a UAV a command; unfinished ones about the same thing no longer count.
+
+    Without `expires_in_s` it is wanted for as long as the settings say of its kind. Rows are taken in the order mission,
+    UAV, command: a caller that needs a mission's takes it before.
+    """
+    wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
+    with transaction.atomic():
+        Uav.objects.select_for_update(no_key=True).values_list("pk").get(pk=uav.pk)
+        _end(
+            UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind)),
+            SUPERSEDED,
+            f"A later command took its place: {CommandKind(kind).label}.",
+        )
+        last = UavCommand.objects.filter(uav=uav).aggregate(last=Max("sequence"))["last"] or 0
+        command = UavCommand.objects.create(
+            organisation_id=uav.organisation_id,
+            uav=uav,
+            mission=mission,
+            approval=approval,
+            sequence=last + 1,
+            kind=kind,
+            axis=axis_of(kind),
+            priority=priority_of(kind),
+            parameters=parameters or {},
+            link=uav.link,
+            created_by=actor,
+            why=why,
+            expires_at=None if wanted_for_s is None else Now() + timedelta(seconds=wanted_for_s),
+        )
+        command.refresh_from_db(fields=["created_at", "expires_at"])
+        UavCommandEvent.objects.create(command=command, state=CommandState.QUEUED, attempt=0)
+        record_change(
+            organisation=uav.organisation, actor=actor, action="give", subject_type="uav_command", subject_id=command.pk,
+            after={
+                "uav": uav.pk, "kind": str(kind), "sequence": command.sequence, "parameters": command.parameters, "why": why,
+                "mission": mission and str(mission.pk), "approval": approval and str(approval.pk),
+            },
+        )  # fmt: skip
+        _tell(uav.pk)
+    return command
+
+
+def claim_commands(*, uav_ids: Collection[int], holder: str, lease_s: float, limit: int, link: LinkKind | None = None) -> list[UavCommand]:
+    """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
+
+    With `link` only those that go by this door.
+
+    Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
+    program: a gateway that starts anew has another name.
+    """
+    with transaction.atomic():
+        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, limit, holder, lease_s]))
+    return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
+
+
+def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
+    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once."""
+    with transaction.atomic():
+        held = UavCommand.objects.select_for_update().filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+        attempts = dict(held.order_by("pk").values_list("pk", "attempts"))
+        UavCommand.objects.filter(pk__in=attempts).update(lease_expires_at=Now() + timedelta(seconds=lease_s))
+    return attempts
+
+
+def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """It goes out now; an attempt after another one sends it again."""
+    return _note(command_id, attempt, holder, CommandState.SENT, {"sent_at": Coalesce("sent_at", Now())})
+
+
+def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """The vehicle has it. That is not yet what it does."""
+    held = _held(command_id, attempt, holder)
+    if held.filter(state=CommandState.ACKNOWLEDGED).exists():
+        return True
+    now = {"sent_at": Coalesce("sent_at", Now()), "acknowledged_at": Coalesce("acknowledged_at", Now())}
+    return _note(command_id, attempt, holder, CommandState.ACKNOWLEDGED, now)
+
+
+def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
+    """So many items of an upload are over."""
+    return bool(_held(command_id, attempt, holder).update(progress={"done": done, "total": total}))
+
+
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "") -> bool:
+    """The vehicle was seen to do it."""
+    ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None}
+    return _note(command_id, attempt, holder, CommandState.APPLIED, ended, note)
+
+
+def note_failed(command_id: UUID, code: str, words: str, *, attempt: int, holder: str) -> bool:
+    """The vehicle refused it, or did not do it: why, in words."""
+    ended = {"finished_at": Now(), "lease_expires_at": None, "outcome_code": code[:50], "outcome": words[:500]}
+    return _note(command_id, attempt, holder, CommandState.FAILED, ended, words)
+
+
+def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: str = "") -> bool:
+    """Given back, for anybody to take after so many seconds."""
+    back = {"holder": "", "lease_expires_at": Now() + timedelta(seconds=retry_in_s) if retry_in_s else None}
+    return _note(command_id, attempt, holder, CommandState.QUEUED, back, note)
+
+
+def expire_overdue() -> int:
+    """End what nobody wants any more and nobody is carrying; returns how many."""
+    overdue = UavCommand.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()), expires_at__lte=Now())
+    with transaction.atomic():
+        never = _end(overdue.filter(sent_at=None), NOT_DELIVERED, "It could not be delivered in time.", skip_locked=True)
+        sent = overdue.filter(sent_at__isnull=False)
+        unsure = _end(sent, UNCONFIRMED, "It was sent; whether it was done is not known.", skip_locked=True)
+    return never + unsure
+
+
+def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> int:
+    """No longer wanted, for another reason than a later command."""
+    with transaction.atomic():
+        ended = list(commands.filter(state__in=OPEN_COMMANDS).values_list("uav_id", flat=True))
+        number = _end(commands, code, words)
+        for uav_id in set(ended):
+            _tell(uav_id)
+    return number
+
+
+def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:
+    return UavCommand.objects.filter(pk=command_id, attempts=attempt, holder=holder, state__in=OPEN_COMMANDS)
+
+
+def _note(command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "") -> bool:
+    with transaction.atomic():
+        if not _held(command_id, attempt, holder).update(state=state, **values):
+            return False
+        UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
+    return True
+
+
+def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: bool = False) -> int:
+    """The caller has begun a transaction."""
+    found = list(commands.filter(state__in=OPEN_COMMANDS).select_for_update(skip_locked=skip_locked).order_by("pk"))
+    UavCommand.objects.filter(pk__in=[command.pk for command in found]).update(
+        state=CommandState.EXPIRED, finished_at=Now(), lease_expires_at=None, outcome_code=code, outcome=words
+    )
+    UavCommandEvent.objects.bulk_create(
+        UavCommandEvent(command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=words)
+        for command in found
+    )
+    return len(found)
+
+
+def _tell(uav_id: int) -> None:
+    """Whoever listens hears it once the transaction is committed, and not at all if it is not."""
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT pg_notify(%s, %s)", [CHANNEL, str(uav_id)])

@@ -1,0 +1,104 @@
+"""Commands that a person gives to one UAV: what is possible in its state, and with which figures."""
+
+from datetime import datetime, timedelta
+from typing import Any
+
+from django.conf import settings
+from django.db import transaction
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
+from missions.fleet_selectors import performance_of
+from missions.models import Approval, CommandAxis, CommandKind, CommandState, Mission, MissionUav, Uav, UavCommand, UavState
+from missions.selectors import approval_in_force
+from missions.services.flying import ON_ITS_WAY
+from missions.services.outbox import queue_command
+from missions.services.refused import refuse
+from workspace.models import User
+
+SLOWEST_MPS = 0.5
+LOWEST_TAKE_OFF_M = 1.0
+BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION})
+
+
+def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", parameters: dict[str, Any] | None = None) -> UavCommand:
+    """Give one UAV a command, as part of the mission that it has in hand if there is one.
+
+    parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off place for a take-off.
+    Raises Refused.
+    """
+    if kind not in BY_HAND:
+        raise refuse("not_by_hand", _("Missions are sent and taken back with the whole mission."))
+    if uav.state == UavState.RETIRED:
+        raise refuse("uav_not_in_service", _("%(uav)s is retired.") % {"uav": uav.name})
+    checked = _parameters(uav, kind, parameters or {})
+    with transaction.atomic():
+        mission = mission_in_hand(uav)
+        if mission is not None:
+            mission = Mission.objects.select_for_update().get(pk=mission.pk)
+        approval = None if mission is None else approval_in_force(mission)
+        if kind == CommandKind.START:
+            checked["flight"] = _flight_to_start(uav, mission, approval, timezone.now())
+        return queue_command(uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval)
+
+
+def mission_in_hand(uav: Uav) -> Mission | None:
+    """The dispatched or active mission in which it flies a route."""
+    return (
+        Mission.objects.filter(deleted_at=None, state__in=ON_ITS_WAY, mission_uavs__uav=uav, mission_uavs__route__geometry__isnull=False)
+        .order_by("-updated_at")
+        .first()
+    )
+
+
+def speed_limits_mps(uav: Uav) -> tuple[float, float]:
+    """Between which it can be told to fly: its airspeed is the most, or what it cruises at where that is not stated."""
+    return SLOWEST_MPS, performance_of(uav).max_airspeed_mps or uav.speed_mps
+
+
+def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str, Any]:
+    """Those that the kind has, in their bounds."""
+    if kind == CommandKind.CHANGE_SPEED:
+        return {"speed_mps": _within("speed_mps", given, *speed_limits_mps(uav), "m/s")}
+    if kind == CommandKind.TAKE_OFF:
+        return {"altitude_relative_m": _within("altitude_relative_m", given, LOWEST_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
+    if given:
+        raise refuse("no_parameters", _("This command has no parameters."))
+    return {}
+
+
+def _within(name: str, given: dict[str, Any], low: float, high: float, unit: str) -> float:
+    value = given.get(name)
+    if set(given) != {name} or value is None or not low <= value <= high:
+        values = {"name": name, "low": f"{low:g}", "high": f"{high:g}", "unit": unit}
+        raise refuse("out_of_range", _("%(name)s is needed, from %(low)s to %(high)s %(unit)s.") % values)
+    return float(value)
+
+
+def _flight_to_start(uav: Uav, mission: Mission | None, approval: Approval | None, now: datetime) -> int:
+    """That is on the UAV, seen there, and due. Raises Refused."""
+    values = {"uav": uav.name}
+    if mission is None or approval is None:
+        raise refuse("no_mission", _("%(uav)s has no mission.") % values)
+    if approval.revoke_requested_at is not None:
+        raise refuse("being_revoked", _("The approval is being taken back."))
+    last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
+    if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION or last.state != CommandState.APPLIED:
+        raise refuse("not_loaded", _("%(uav)s does not have its mission yet.") % values)
+    flight = int(last.parameters.get("flight", 1))
+    route = MissionUav.objects.select_related("route").get(mission=mission, uav=uav).route
+    if flight <= route.flights_flown:
+        raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
+    if flight == 1 and mission.departs_at is not None:
+        _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
+    return flight
+
+
+def _refuse_untimely(departs_at: datetime, now: datetime, values: dict[str, str]) -> None:
+    """Zones and other missions were looked at for one departure, with a margin."""
+    margin = timedelta(seconds=settings.ZONE_RULES.time_margin_s)
+    if now < departs_at - margin:
+        words = _("%(uav)s departs at %(time)s UTC; it cannot be started yet.")
+        raise refuse("too_early", words % {**values, "time": f"{departs_at:%H:%M}"})
+    if now > departs_at + margin:
+        raise refuse("departure_past", _("The departure of %(uav)s is over. Revoke, and plan it for another time.") % values)

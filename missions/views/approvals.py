@@ -1,0 +1,138 @@
+"""Approving missions, taking that back, sending them to UAVs, aborting them."""
+
+from typing import Any
+from uuid import UUID
+
+from django.http import Http404
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from missions import selectors
+from missions.command_selectors import commands_of_organisation
+from missions.models import UavCommand
+from missions.serializers import commands as shapes
+from missions.serializers.shapes import MissionSerializer
+from missions.services.approval import approve_mission, revoke_approval
+from missions.services.dispatch import abort_mission, dispatch_mission
+from missions.views.missions import IF_MATCH, answer_mission, expected_revision, mission_or_404
+from missions.views.problems import api_problems, refusals
+from workspace.idempotency import idempotent
+from workspace.models import User
+
+REFUSED = {
+    409: OpenApiResponse(description="It cannot be done: `details.reasons` has each reason; or somebody else was faster."),
+    412: OpenApiResponse(description="The mission has changed since."),
+}
+
+
+def _body(serializer: type, request: Request) -> dict[str, Any]:
+    body = serializer(data=request.data)
+    body.is_valid(raise_exception=True)
+    return dict(body.validated_data)
+
+
+def _sent(user: User, mission_id: UUID, commands: list[UavCommand]) -> Response:
+    mission = mission_or_404(user, mission_id)
+    rows = commands_of_organisation(user.organisation).filter(pk__in=[command.pk for command in commands]).order_by("uav_id", "sequence")
+    body = {
+        "mission": str(mission.pk),
+        "state": mission.state,
+        "revision": mission.revision,
+        "commands": [shapes.command_json(command) for command in rows],
+    }
+    return Response(body, headers={"ETag": f'"{mission.revision}"'})
+
+
+class MissionApproval(APIView):
+    @extend_schema(
+        operation_id="get_mission_approval", summary="What was approved, word for word", responses=shapes.ApprovalDocumentSerializer
+    )
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        approval = selectors.approval_in_force(mission_or_404(request.user, mission_id))
+        if approval is None:
+            raise Http404
+        return Response(
+            {**(shapes.approval_json(approval) or {}), "document": approval.document}, headers={"ETag": f'"{approval.content_sha256}"'}
+        )
+
+
+class MissionApprove(APIView):
+    @extend_schema(
+        operation_id="approve_mission",
+        summary="Approve a planned mission: from now on it is frozen",
+        parameters=[IF_MATCH],
+        request=None,
+        responses={200: MissionSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        expected = expected_revision(request)
+        mission = mission_or_404(request.user, mission_id)
+        with api_problems(has_precondition=expected is not None), refusals():
+            approve_mission(mission=mission, actor=request.user, expected_revision=expected)
+        return answer_mission(request.user, mission_id)
+
+
+class MissionRevoke(APIView):
+    @extend_schema(
+        operation_id="revoke_mission",
+        summary="Take an approval back: the mission can be changed again",
+        description="If it may be on UAVs, each is told to drop it, and the mission is planned again once all were seen without it.",
+        parameters=[IF_MATCH],
+        request=shapes.ReasonInputSerializer,
+        responses={200: MissionSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        expected = expected_revision(request)
+        mission = mission_or_404(request.user, mission_id)
+        values = _body(shapes.ReasonInputSerializer, request)
+        with api_problems(has_precondition=expected is not None), refusals():
+            revoke_approval(mission=mission, actor=request.user, reason=values["reason"], expected_revision=expected)
+        return answer_mission(request.user, mission_id)
+
+
+class MissionDispatch(APIView):
+    @extend_schema(
+        operation_id="dispatch_mission",
+        summary="Send an approved mission to its UAVs",
+        description="Each UAV is given the first flight of its route; with `uav` one of them, with `flight` a later flight of it.",
+        parameters=[IF_MATCH],
+        request=shapes.DispatchInputSerializer,
+        responses={200: shapes.SentSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        expected = expected_revision(request)
+        mission = mission_or_404(request.user, mission_id)
+        values = _body(shapes.DispatchInputSerializer, request)
+        with api_problems(has_precondition=expected is not None), refusals():
+            sent = dispatch_mission(
+                mission=mission,
+                actor=request.user,
+                expected_revision=expected,
+                place=values.get("uav"),
+                flight=values.get("flight", 1),
+                why=values["why"],
+            )
+        return _sent(request.user, mission_id, sent)
+
+
+class MissionAbort(APIView):
+    @extend_schema(
+        operation_id="abort_mission",
+        summary="Abort a mission that is on its way",
+        parameters=[IF_MATCH],
+        request=shapes.WhyInputSerializer,
+        responses={200: shapes.SentSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        expected = expected_revision(request)
+        mission = mission_or_404(request.user, mission_id)
+        values = _body(shapes.WhyInputSerializer, request)
+        with api_problems(has_precondition=expected is not None), refusals():
+            told = abort_mission(mission=mission, actor=request.user, why=values["why"], expected_revision=expected)
+        return _sent(request.user, mission_id, told)

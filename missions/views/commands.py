@@ -1,0 +1,86 @@
+"""Commands to UAVs: given, listed, followed."""
+
+from uuid import UUID
+
+from django.shortcuts import get_object_or_404
+from django.urls import reverse
+from drf_spectacular.utils import extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from missions.command_selectors import commands_of_mission, commands_of_organisation, commands_of_uav
+from missions.models import CommandKind, UavCommand
+from missions.serializers import commands as shapes
+from missions.services.steering import command_uav
+from missions.views.approvals import REFUSED
+from missions.views.missions import mission_or_404
+from missions.views.problems import refusals
+from missions.views.uavs import uav_or_404
+from workspace.idempotency import idempotent
+from workspace.paging import page_of
+from workspace.schema import PAGE_PARAMETERS
+
+NEWEST_FIRST = ("-created_at", "-pk")
+
+
+def _detail(command: UavCommand) -> dict[str, object]:
+    return {
+        **shapes.command_json(command),
+        "events": shapes.CommandEventSerializer(command.events.all(), many=True).data,
+    }
+
+
+class MissionCommands(APIView):
+    @extend_schema(
+        operation_id="list_commands_of_mission",
+        summary="What its UAVs were told, the newest first",
+        parameters=PAGE_PARAMETERS,
+        responses=shapes.CommandPageSerializer,
+    )
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        page = page_of(request, commands_of_mission(mission_or_404(request.user, mission_id)), order=NEWEST_FIRST)
+        return Response({"results": [shapes.command_json(command) for command in page.rows], "next": page.next})
+
+
+class UavCommands(APIView):
+    @extend_schema(
+        operation_id="list_commands_of_uav",
+        summary="What a UAV was told, the newest first",
+        parameters=PAGE_PARAMETERS,
+        responses=shapes.CommandPageSerializer,
+    )
+    def get(self, request: Request, uav_id: int) -> Response:
+        page = page_of(request, commands_of_uav(uav_or_404(request.user, uav_id)), order=NEWEST_FIRST)
+        return Response({"results": [shapes.command_json(command) for command in page.rows], "next": page.next})
+
+    @extend_schema(
+        operation_id="command_uav",
+        summary="Give a UAV a command",
+        description="It waits in the outbox until a gateway has carried it, or nobody wants it any more. An earlier one about the same"
+        " thing that is not finished expires; an abort takes the place of all.",
+        request=shapes.CommandInputSerializer,
+        responses={201: shapes.CommandDetailSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: Request, uav_id: int) -> Response:
+        uav = uav_or_404(request.user, uav_id)
+        body = shapes.CommandInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        values = body.validated_data
+        with refusals():
+            command = command_uav(
+                uav=uav,
+                kind=CommandKind(values["kind"]),
+                actor=request.user,
+                why=values["why"],
+                parameters=dict(values.get("parameters", {})),
+            )
+        command.refresh_from_db()
+        return Response(_detail(command), status=201, headers={"Location": reverse("api-command", args=[command.pk])})
+
+
+class CommandDetail(APIView):
+    @extend_schema(operation_id="get_command", summary="A command and its way so far", responses=shapes.CommandDetailSerializer)
+    def get(self, request: Request, command_id: UUID) -> Response:
+        return Response(_detail(get_object_or_404(commands_of_organisation(request.user.organisation), pk=command_id)))

@@ -1,0 +1,142 @@
+"""What the server's clock showed when a vehicle's clock showed a time since its boot.
+
+A message takes some time to arrive, never less than none: the earliest arrivals tell. A simulated vehicle's clock may run faster than
+ours, or slower, and change its pace; what a vehicle has kept while the link was lost arrives late, and faster than it was measured.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field
+from itertools import pairwise
+from statistics import median
+from typing import NamedTuple
+
+WINDOW_S = 20.0  # of receipt, from which the pace is learnt
+SHORTEST_WINDOW_S = 4.0
+LEAST_POINTS = 8
+POINT_EVERY_S = 0.2
+REFIT_EVERY_S = 1.0
+ON_TIME_S = 1.0  # later than the earliest arrivals
+STEADY = 0.1  # by which the pace of both halves of the window may differ
+REAL_TIME = 0.05  # as near to 1 a pace is 1: clocks are better than this window
+SAME_PACE = 0.03
+CREEP = 0.2  # of a small lateness that is taken for drift, each time
+SLOWEST = 0.5  # no later record is put nearer to the one before it than so much of the time between them, unless it was here sooner
+EARLY_SHARE = 0.5  # of how much too early messages come if the vehicle's clock has become faster
+
+
+class Point(NamedTuple):
+    """One message; early_s: by how much all until then, and this one, came earlier than was thought possible."""
+
+    received_s: float
+    boot_s: float
+    early_s: float
+
+
+@dataclass
+class VehicleClock:
+    """offset_s is the server's time at the vehicle's boot, rate the vehicle's seconds a second."""
+
+    offset_s: float | None = None
+    rate: float = 1.0
+    _points: deque[Point] = field(default_factory=deque)
+    _base: Point | None = None  # an early point of the present pace, as long ago as it is
+    _fitted_at_s: float = 0.0
+    _early_s: float = 0.0
+    _last: tuple[float, float] | None = None  # since boot, measured
+
+    def measured_s(self, boot_s: float) -> float:
+        """By the server's clock. Only after the first `receive`."""
+        assert self.offset_s is not None  # noqa: S101 - as the docstring asks
+        return self.offset_s + boot_s / self.rate
+
+    def lateness_s(self, boot_s: float, now_s: float) -> float:
+        """How much later than the earliest possible a message arrives; negative where the clock is not understood yet."""
+        return 0.0 if self.offset_s is None else now_s - self.measured_s(boot_s)
+
+    def receive(self, boot_s: float, now_s: float) -> None:
+        if self.offset_s is None:
+            self.offset_s = now_s - boot_s / self.rate
+        lateness_s = self.lateness_s(boot_s, now_s)
+        self.offset_s += min(lateness_s, 0.0)
+        self._early_s -= min(lateness_s, 0.0)
+        if self._points and now_s - self._points[-1].received_s < POINT_EVERY_S:
+            return
+        self._points.append(Point(now_s, boot_s, self._early_s))
+        while now_s - self._points[0].received_s > WINDOW_S:
+            self._points.popleft()
+        if abs(now_s - self._fitted_at_s) >= REFIT_EVERY_S:
+            self._fitted_at_s = now_s
+            self._fit()
+
+    def stamp_s(self, boot_s: float, now_s: float) -> float:
+        """measured_s, kept in the order of the vehicle's clock while ours is still being learnt; not later than now_s."""
+        measured_s = self.measured_s(boot_s)
+        if self._last is not None and boot_s <= self._last[0]:
+            return min(measured_s, self._last[1])
+        if self._last is not None:
+            measured_s = max(measured_s, self._last[1] + SLOWEST * (boot_s - self._last[0]) / self.rate)
+        self._last = (boot_s, min(measured_s, now_s))
+        return self._last[1]
+
+    def _fit(self) -> None:
+        points = list(self._points)
+        on_time = [point for point in points if self.lateness_s(point.boot_s, point.received_s) < ON_TIME_S]
+        if len(on_time) >= LEAST_POINTS:
+            points = on_time
+        pace = _steady_pace(points)
+        if pace is None:
+            return
+        if abs(pace - self.rate) <= SAME_PACE * self.rate:
+            self._refine(points)
+        elif pace < self.rate or self._has_become_faster(points, pace):
+            self.rate, self._base = pace, None
+            self.offset_s = _earliest(points, pace)[1]
+        # else it only catches up: a replay of what was kept
+
+    def _has_become_faster(self, points: list[Point], pace: float) -> bool:
+        took_s = points[-1].received_s - points[0].received_s
+        return points[-1].early_s - points[0].early_s > EARLY_SHARE * took_s * (pace / self.rate - 1.0)
+
+    def _refine(self, points: list[Point]) -> None:
+        """The longer a pace has been kept, the better it is known."""
+        assert self.offset_s is not None  # noqa: S101 - there are points
+        point, offset_s = _earliest(points, self.rate)
+        if self._base is None:
+            self._base = point
+        elif self.rate != 1.0 and point.received_s - self._base.received_s > WINDOW_S:
+            self.rate = (point.boot_s - self._base.boot_s) / (point.received_s - self._base.received_s)
+            self.offset_s = point.received_s - point.boot_s / self.rate
+            return
+        later_s = offset_s - self.offset_s
+        self.offset_s += later_s * (CREEP if later_s < ON_TIME_S else 1.0)
+
+
+def _earliest(points: list[Point], rate: float) -> tuple[Point, float]:
+    """The point that took least time, and the offset that it tells."""
+    point = min(points, key=lambda point: point.received_s - point.boot_s / rate)
+    return point, point.received_s - point.boot_s / rate
+
+
+def _steady_pace(points: list[Point]) -> float | None:
+    """Seconds a second, 1 where it is as good as 1; None while there are too few points, or it changes."""
+    if len(points) < LEAST_POINTS or points[-1].received_s - points[0].received_s < SHORTEST_WINDOW_S:
+        return None
+    if any(later.boot_s < earlier.boot_s for earlier, later in pairwise(points)):
+        return None
+    half = len(points) // 2
+    first, second, whole = _pace(points[:half]), _pace(points[half:]), _pace(points)
+    if whole <= 0 or abs(first - second) > STEADY * max(first, second):
+        return None
+    return 1.0 if abs(whole - 1.0) <= REAL_TIME else whole
+
+
+def _pace(points: list[Point]) -> float:
+    """The median slope of pairs that lie half the points apart: single late ones do not matter."""
+    half = len(points) // 2
+    pairs = zip(points, points[half:], strict=False)
+    slopes = [
+        (later.boot_s - earlier.boot_s) / (later.received_s - earlier.received_s)
+        for earlier, later in pairs
+        if later.received_s > earlier.received_s
+    ]
+    return median(slopes) if slopes else 0.0

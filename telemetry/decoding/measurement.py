@@ -1,0 +1,67 @@
+"""What one report of a UAV tells, whichever door it came by, and what of it can be believed."""
+
+import math
+from dataclasses import dataclass, fields, replace
+
+LONGEST_MODE = 30
+_SMALLEST, _LARGEST_SMALL, _LARGEST_INT = 0, 32_767, 2_147_483_647
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Values of one moment; None is not known. Speeds go north, east and down, the wind where the air moves to."""
+
+    longitude_deg: float | None = None
+    latitude_deg: float | None = None
+    altitude_amsl_m: float | None = None
+    altitude_relative_m: float | None = None
+    altitude_agl_m: float | None = None
+    velocity_north_mps: float | None = None
+    velocity_east_mps: float | None = None
+    velocity_down_mps: float | None = None
+    airspeed_mps: float | None = None
+    roll_deg: float | None = None
+    pitch_deg: float | None = None
+    heading_deg: float | None = None
+    battery_percent: float | None = None
+    battery_v: float | None = None
+    battery_a: float | None = None
+    mode: str = ""
+    is_armed: bool | None = None
+    is_in_air: bool | None = None
+    link_quality_percent: float | None = None
+    gps_fix: int | None = None
+    satellites: int | None = None
+    hdop: float | None = None
+    wind_north_mps: float | None = None
+    wind_east_mps: float | None = None
+    mission_item: int | None = None
+
+
+_FLOATS = tuple(field.name for field in fields(Measurement) if field.name.endswith(("_deg", "_m", "_mps", "_percent", "_v", "_a", "hdop")))
+
+
+def believable(measurement: Measurement) -> Measurement:
+    """The same without what cannot be: no number, no place on Earth, a battery fuller than full. A heading is brought into 0 to 360."""
+    wrong: dict[str, float | int | str | None] = {
+        name: None for name in _FLOATS if (value := getattr(measurement, name)) is not None and not math.isfinite(value)
+    }
+    if not _is_place(measurement.longitude_deg, measurement.latitude_deg):
+        wrong |= {"longitude_deg": None, "latitude_deg": None}
+    for name in ("battery_percent", "link_quality_percent"):
+        if (value := getattr(measurement, name)) is not None and not 0 <= value <= 100:
+            wrong[name] = None
+    for name, largest in (("gps_fix", _LARGEST_SMALL), ("satellites", _LARGEST_SMALL), ("mission_item", _LARGEST_INT)):
+        if (value := getattr(measurement, name)) is not None and not _SMALLEST <= value <= largest:
+            wrong[name] = None
+    heading_deg = measurement.heading_deg
+    if heading_deg is not None and math.isfinite(heading_deg) and not 0 <= heading_deg < 360:
+        wrong["heading_deg"] = heading_deg % 360.0 % 360.0  # twice: of a tiny negative angle the first gives 360
+    if "\0" in measurement.mode or len(measurement.mode) > LONGEST_MODE:
+        wrong["mode"] = measurement.mode.replace("\0", "")[:LONGEST_MODE]
+    return replace(measurement, **wrong) if wrong else measurement  # type: ignore[arg-type]
+
+
+def _is_place(longitude_deg: float | None, latitude_deg: float | None) -> bool:
+    """NaN compares with nothing, so it is none."""
+    return longitude_deg is not None and latitude_deg is not None and -180 <= longitude_deg <= 180 and -90 <= latitude_deg <= 90

@@ -1,0 +1,212 @@
+"""The log's one way in: records of any link, in bulk, each stored once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from datetime import datetime, timedelta
+from uuid import UUID
+
+import numpy as np
+from django.db import connection, transaction
+
+from inspection.selectors import ground_heights_m
+from missions.models import MissionState
+from missions.services.reports import ReportedPosition, note_reported_positions
+from telemetry.decoding.measurement import Measurement, believable
+
+FUTURE_S = 60.0  # findings: stored, but never shown as the latest
+FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
+
+
+@dataclass(frozen=True, slots=True)
+class NewRecord:
+    """One report as it came in.
+
+    `stream` is the key of the sender's counter, at most 64 characters, `sequence` its number in it: what has been stored under both
+    already is dropped. Without a mission it is of the one that the UAV is flying or has been sent.
+    """
+
+    uav_id: int
+    link: str  # LinkKind
+    stream: str
+    sequence: int
+    measured_at: datetime
+    received_at: datetime
+    measurement: Measurement
+    mission_id: UUID | None = None
+
+
+@dataclass(frozen=True)
+class StoredCount:
+    """What became of records: stored ones, of them from the future and late ones; not stored ones."""
+
+    stored: int = 0
+    from_future: int = 0
+    late: int = 0
+    duplicates: int = 0
+    of_unknown_uavs: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    record: NewRecord
+    is_from_future: bool
+    is_late: bool
+
+
+@transaction.atomic
+def store_records(records: Sequence[NewRecord]) -> StoredCount:
+    """Stores what is new, in the order given, and moves the UAVs' reported positions forward. Safe to call again with the same records."""
+    known = _missions_of_known({record.uav_id for record in records})
+    kept = [_attributed(record, known[record.uav_id]) for record in records if record.uav_id in known]
+    if not kept:
+        return StoredCount(of_unknown_uavs=len(records))
+    rows = _flagged(kept, _newest_measured(kept))
+    stored = _insert(rows)
+    note_reported_positions(reports=_newest_positions(rows))
+    return StoredCount(
+        stored=len(stored),
+        from_future=sum(is_from_future for is_from_future, _ in stored),
+        late=sum(is_late for _, is_late in stored),
+        duplicates=len(kept) - len(stored),
+        of_unknown_uavs=len(records) - len(kept),
+    )
+
+
+def _missions_of_known(uav_ids: set[int]) -> dict[int, UUID | None]:
+    """The UAVs that exist, held against deletion until the transaction ends, each with the mission that it flies."""
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT id FROM missions_uav WHERE id = ANY(%s) ORDER BY id FOR KEY SHARE", [sorted(uav_ids)])
+        known: dict[int, UUID | None] = {uav_id: None for (uav_id,) in cursor.fetchall()}
+        cursor.execute(
+            """
+            SELECT DISTINCT ON (mission_uav.uav_id) mission_uav.uav_id, mission.id
+            FROM missions_missionuav mission_uav JOIN missions_mission mission ON mission.id = mission_uav.mission_id
+            WHERE mission_uav.uav_id = ANY(%s) AND mission.state = ANY(%s) AND mission.deleted_at IS NULL
+            ORDER BY mission_uav.uav_id, array_position(%s, mission.state::text), mission.updated_at DESC
+            """,
+            [list(known), list(FLYING), list(FLYING)],
+        )
+        known.update(dict(cursor.fetchall()))
+    return known
+
+
+def _attributed(record: NewRecord, mission_id: UUID | None) -> NewRecord:
+    measurement = believable(record.measurement)
+    if measurement is record.measurement and (record.mission_id is not None or mission_id is None):
+        return record
+    return replace(record, measurement=measurement, mission_id=record.mission_id or mission_id)
+
+
+def _newest_measured(records: Sequence[NewRecord]) -> dict[int, datetime]:
+    """Per UAV the time of its newest stored record that is not from the future."""
+    latest_possible = max(record.received_at for record in records) + timedelta(seconds=FUTURE_S)
+    with connection.cursor() as cursor:
+        cursor.execute(
+            """
+            SELECT uav.id, newest.measured_at FROM unnest(%s::bigint[]) AS uav(id), LATERAL (
+                SELECT measured_at FROM telemetry_telemetryrecord
+                WHERE uav_id = uav.id AND NOT is_from_future AND measured_at <= %s
+                ORDER BY measured_at DESC LIMIT 1
+            ) newest
+            """,
+            [list({record.uav_id for record in records}), latest_possible],
+        )
+        return dict(cursor.fetchall())
+
+
+def _flagged(records: Sequence[NewRecord], newest: dict[int, datetime]) -> list[_Row]:
+    rows = []
+    for record in records:
+        is_from_future = record.measured_at > record.received_at + timedelta(seconds=FUTURE_S)
+        before = newest.get(record.uav_id)
+        is_late = not is_from_future and before is not None and record.measured_at < before
+        if not is_from_future and not is_late:
+            newest[record.uav_id] = record.measured_at
+        rows.append(_Row(record, is_from_future, is_late))
+    return rows
+
+
+def _newest_positions(rows: Sequence[_Row]) -> list[ReportedPosition]:
+    newest: dict[int, ReportedPosition] = {}
+    for row in rows:
+        record, told = row.record, row.record.measurement
+        if row.is_from_future or told.longitude_deg is None or told.latitude_deg is None:
+            continue
+        before = newest.get(record.uav_id)
+        if before is None or before.measured_at < record.measured_at:
+            newest[record.uav_id] = ReportedPosition(
+                record.uav_id, record.measured_at, told.longitude_deg, told.latitude_deg, told.heading_deg, told.battery_percent
+            )
+    return list(newest.values())
+
+
+def _agl_m(records: Sequence[NewRecord]) -> list[float | None]:
+    """As measured, else above the terrain model where there is one."""
+    nan = float("nan")
+    place = ("longitude_deg", "latitude_deg", "altitude_amsl_m")
+    told = np.array(
+        [[nan if (value := getattr(record.measurement, name)) is None else value for name in place] for record in records], dtype=np.float64
+    )
+    above = np.full(len(told), nan)
+    whole = np.isfinite(told).all(axis=1)
+    if whole.any():
+        above[whole] = told[whole, 2] - ground_heights_m(told[whole, :2])
+    return [
+        record.measurement.altitude_agl_m if record.measurement.altitude_agl_m is not None else None if np.isnan(height) else float(height)
+        for record, height in zip(records, above, strict=True)
+    ]
+
+
+_TYPES = {"mode": "text", "is_armed": "bool", "is_in_air": "bool", "gps_fix": "int2", "satellites": "int2", "mission_item": "int4"}
+_MEASURED = tuple(field.name for field in fields(Measurement))
+_STORED_AS_THEY_ARE = tuple(name for name in _MEASURED if name not in {"longitude_deg", "latitude_deg"})
+_COLUMNS: dict[str, str] = {
+    "number": "int8", "stream": "int8", "sequence": "int8", "uav_id": "int8", "mission_id": "uuid",
+    "measured_at": "timestamptz", "received_at": "timestamptz", "is_from_future": "bool", "is_late": "bool",
+    **{name: _TYPES.get(name, "float8") for name in _MEASURED},
+}  # fmt: skip
+_INSERT = f"""
+INSERT INTO telemetry_telemetryrecord
+    (stream_id, sequence, uav_id, mission_id, measured_at, received_at, is_from_future, is_late, position, {", ".join(_STORED_AS_THEY_ARE)})
+SELECT stream, sequence, uav_id, mission_id, measured_at, received_at, is_from_future, is_late,
+    ST_SetSRID(ST_MakePoint(longitude_deg, latitude_deg), 4326), {", ".join(_STORED_AS_THEY_ARE)}
+FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS r({", ".join(_COLUMNS)})
+ORDER BY number
+ON CONFLICT (stream_id, sequence) DO NOTHING
+RETURNING is_from_future, is_late
+"""  # noqa: S608 (names of columns, all from here)
+
+
+def _insert(rows: Sequence[_Row]) -> list[tuple[bool, bool]]:
+    """What was stored, as (is_from_future, is_late)."""
+    records = [row.record for row in rows]
+    streams = _stream_ids({(record.uav_id, record.link, record.stream) for record in records})
+    columns: dict[str, list[object]] = {name: [getattr(record.measurement, name) for record in records] for name in _MEASURED}
+    columns |= {name: [getattr(record, name) for record in records] for name in ("sequence", "uav_id", "mission_id")}
+    columns |= {name: [getattr(record, name) for record in records] for name in ("measured_at", "received_at")}
+    columns |= {name: [getattr(row, name) for row in rows] for name in ("is_from_future", "is_late")}
+    columns["number"] = list(range(len(rows)))
+    columns["stream"] = [streams[record.uav_id, record.link, record.stream] for record in records]
+    columns["altitude_agl_m"] = list(_agl_m(records))
+    with connection.cursor() as cursor:
+        cursor.execute(_INSERT, [columns[name] for name in _COLUMNS])
+        return list(cursor.fetchall())
+
+
+def _stream_ids(streams: set[tuple[int, str, str]]) -> dict[tuple[int, str, str], int]:
+    uavs, links, keys = (list(column) for column in zip(*sorted(streams), strict=True))
+    wanted = "unnest(%s::bigint[], %s::text[], %s::text[]) AS wanted(uav_id, link, key)"
+    with connection.cursor() as cursor:
+        cursor.execute(
+            f"INSERT INTO telemetry_telemetrystream (uav_id, link, key) SELECT * FROM {wanted} "  # noqa: S608
+            "WHERE NOT EXISTS (SELECT 1 FROM telemetry_telemetrystream stream "
+            "WHERE stream.uav_id = wanted.uav_id AND stream.link = wanted.link AND stream.key = wanted.key) "
+            "ON CONFLICT (uav_id, link, key) DO NOTHING",
+            [uavs, links, keys],
+        )
+        cursor.execute(
+            f"SELECT stream.uav_id, stream.link, stream.key, stream.id FROM telemetry_telemetrystream stream JOIN {wanted} "  # noqa: S608
+            "USING (uav_id, link, key)",
+            [uavs, links, keys],
+        )
+        return {(uav_id, link, key): stream_id for uav_id, link, key, stream_id in cursor.fetchall()}

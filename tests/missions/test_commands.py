@@ -1,0 +1,330 @@
+"""The outbox of commands to UAVs: order, urgency, leases, and an end for everything."""
+
+import threading
+from uuid import uuid4
+
+import psycopg
+import pytest
+from django.conf import settings
+from django.db import IntegrityError, connection, transaction
+
+from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
+from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, UavCommand
+from missions.services.commands import (
+    CHANNEL,
+    claim_commands,
+    expire_overdue,
+    note_acknowledged,
+    note_applied,
+    note_failed,
+    note_progress,
+    note_released,
+    note_sent,
+    renew_claims,
+)
+from missions.tasks import expire_commands
+from tests.missions.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
+from tests.workspace.people import somebody
+from workspace.models import AuditEntry
+
+pytestmark = pytest.mark.django_db
+
+
+def test_every_kind_has_its_priority_and_its_axis() -> None:
+    assert set(PRIORITIES) == set(CommandKind.values)
+    assert set(AXES) <= set(CommandKind.values)
+    assert {str(axis) for axis in Axis} == set(CommandAxis.values)
+    assert {priority_of(kind) for kind in CommandKind.values} == set(CommandPriority.values)
+    assert [CommandPriority(priority_of(kind)) for kind in ("abort", "hold", "return", "land")] == [CommandPriority.SAFETY] * 4
+    assert (axis_of("arm"), axis_of("upload-mission"), axis_of("change-speed")) == (Axis.FLIGHT, Axis.MISSION, Axis.SPEED)
+
+
+def test_what_sets_a_uav_in_motion_is_too_old_before_what_stops_it() -> None:
+    wanted_s = settings.COMMAND_RULES.wanted_for_s
+    motion, stop = ("arm", "take-off", "start", "resume"), ("pause", "hold", "return", "land", "abort")
+    assert max(wanted_s(kind) for kind in motion) <= 30.0 < min(wanted_s(kind) for kind in stop)
+    assert wanted_s("clear-mission") is None
+
+
+def test_a_commands_way_from_the_person_to_the_vehicle() -> None:
+    person, uav = somebody(), a_uav()
+    command = give(uav, CommandKind.HOLD, person, why="Crane on the site")
+    assert (command.state, command.sequence, command.attempts) == (CommandState.QUEUED, 1, 0)
+    (held,) = claim(uav)
+    assert held == command
+    assert note_sent(held.pk, **fence(held))
+    assert note_acknowledged(held.pk, **fence(held))
+    assert note_applied(held.pk, **fence(held), note="LOITER")
+    done = now(command)
+    assert done.state == CommandState.APPLIED
+    assert done.created_at <= done.sent_at <= done.acknowledged_at <= done.finished_at
+    assert steps(done) == [("queued", 0), ("sent", 1), ("acknowledged", 1), ("applied", 1)]
+    entry = AuditEntry.objects.get(subject_type="uav_command", subject_id=str(command.pk))
+    assert (entry.actor, entry.after["why"], entry.after["uav"]) == (person, "Crane on the site", uav.pk)
+
+
+def test_sequences_of_a_uav_have_no_gaps_and_are_its_own() -> None:
+    kite, tern = a_uav("Kite"), a_uav("Tern")
+    kinds = [CommandKind.ARM, CommandKind.CHANGE_SPEED, CommandKind.HOLD]
+    assert [give(kite, kind).sequence for kind in kinds] == [1, 2, 3]
+    assert give(tern, CommandKind.ARM).sequence == 1
+
+
+def test_a_later_command_about_the_same_thing_takes_the_place_of_the_earlier() -> None:
+    uav = a_uav()
+    pause, speed = give(uav, CommandKind.PAUSE), give(uav, CommandKind.CHANGE_SPEED)
+    resume = give(uav, CommandKind.RESUME)
+    assert (now(pause).state, pause.outcome_code) == (CommandState.EXPIRED, "superseded")
+    assert "Resume" in pause.outcome
+    assert claim(uav) == [resume, speed]
+
+
+def test_an_abort_takes_the_place_of_everything() -> None:
+    uav = a_uav()
+    earlier = [give(uav, CommandKind.CLEAR_MISSION), give(uav, CommandKind.START), give(uav, CommandKind.CHANGE_SPEED)]
+    abort = give(uav, CommandKind.ABORT)
+    assert {now(command).outcome_code for command in earlier} == {"superseded"}
+    assert claim(uav) == [abort]
+
+
+def test_other_uavs_keep_their_commands() -> None:
+    kite, tern = a_uav("Kite"), a_uav("Tern")
+    start = give(kite, CommandKind.START)
+    give(tern, CommandKind.ABORT)
+    assert now(start).state == CommandState.QUEUED
+
+
+def test_whoever_carries_what_was_overtaken_learns_of_it_with_the_next_word() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.START)
+    (start,) = claim(uav)
+    assert note_sent(start.pk, **fence(start))
+    hold = give(uav, CommandKind.HOLD)
+    assert not note_acknowledged(start.pk, **fence(start))
+    assert not note_applied(start.pk, **fence(start))
+    assert not note_failed(start.pk, "denied", "Denied", **fence(start))
+    assert not note_released(start.pk, **fence(start))
+    assert now(start).state == CommandState.EXPIRED
+    assert claim(uav) == [hold]
+
+
+def test_the_database_keeps_two_open_commands_about_one_thing_apart() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.ARM)
+    with pytest.raises(IntegrityError, match="uav_command_one_open_of_an_axis"), transaction.atomic():
+        UavCommand.objects.create(uav=uav, sequence=2, kind="hold", axis="flight", priority=0, link="mavlink")
+
+
+def test_the_most_urgent_is_taken_first_and_of_these_the_oldest() -> None:
+    uavs = [a_uav(name) for name in ("Kite", "Tern", "Auk")]
+    speed = give(uavs[0], CommandKind.CHANGE_SPEED)
+    start = give(uavs[0], CommandKind.START)
+    pause = give(uavs[1], CommandKind.PAUSE)
+    first_hold, second_hold = give(uavs[2], CommandKind.HOLD), give(a_uav("Owl"), CommandKind.HOLD)
+    uavs.append(second_hold.uav)
+    assert claim(*uavs, limit=2) == [first_hold, second_hold]
+    assert claim(*uavs, limit=10) == [pause, start, speed]
+    assert claim(*uavs) == []
+
+
+def test_commands_to_uavs_that_are_not_asked_for_are_left_alone() -> None:
+    kite, tern = a_uav("Kite"), a_uav("Tern")
+    give(kite, CommandKind.HOLD)
+    assert claim(tern) == []
+    assert claim() == []
+
+
+def test_each_door_has_its_own_commands() -> None:
+    kite, tern = a_uav("Kite", link=LinkKind.HTTP), a_uav("Tern")
+    by_http, by_mavlink = give(kite, CommandKind.HOLD), give(tern, CommandKind.HOLD)
+    asked = {"uav_ids": [kite.pk, tern.pk], "holder": "gateway-1", "lease_s": LEASE_S, "limit": 10}
+    assert claim_commands(**asked, link=LinkKind.MAVLINK) == [by_mavlink]
+    assert claim_commands(**asked) == [by_http]
+
+
+def test_what_is_held_is_taken_by_nobody_else_until_the_lease_runs_out() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (first,) = claim(uav, holder="gateway-1")
+    assert claim(uav, holder="gateway-2") == []
+    note_sent(first.pk, **fence(first))
+    lose(first)
+    (second,) = claim(uav, holder="gateway-2")
+    assert (second.attempts, second.holder) == (2, "gateway-2")
+    assert not note_acknowledged(first.pk, **fence(first))
+    assert not note_applied(first.pk, **fence(first))
+    assert note_sent(second.pk, **fence(second))
+    assert note_applied(second.pk, **fence(second))
+    assert steps(second) == [("queued", 0), ("sent", 1), ("sent", 2), ("applied", 2)]
+    assert now(second).sent_at < second.finished_at
+
+
+def test_a_gateway_that_takes_its_own_again_fences_off_its_earlier_attempt() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (first,) = claim(uav)
+    lose(first)
+    (again,) = claim(uav)
+    assert not note_sent(first.pk, **fence(first))
+    assert note_sent(again.pk, **fence(again))
+
+
+def test_renewing_says_what_is_still_held() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    give(uav, CommandKind.CHANGE_SPEED)
+    hold, speed = claim(uav)
+    lose(hold)
+    assert renew_claims(holder="gateway-1", lease_s=LEASE_S) == {hold.pk: 1, speed.pk: 1}
+    assert claim(uav, holder="gateway-2") == []
+    give(uav, CommandKind.ABORT)
+    assert renew_claims(holder="gateway-1", lease_s=LEASE_S) == {}
+
+
+def test_what_is_given_back_is_there_for_anybody_and_after_a_while_if_wished() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (held,) = claim(uav)
+    assert note_released(held.pk, **fence(held), note="The gateway stops")
+    (held,) = claim(uav, holder="gateway-2")
+    assert note_released(held.pk, **fence(held), retry_in_s=60.0)
+    assert claim(uav) == []
+    assert renew_claims(holder="gateway-2", lease_s=LEASE_S) == {}
+    lose(held)
+    assert claim(uav) == [held]
+
+
+def test_acknowledging_twice_is_one_step() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (held,) = claim(uav)
+    assert note_acknowledged(held.pk, **fence(held))
+    assert note_acknowledged(held.pk, **fence(held))
+    assert steps(held) == [("queued", 0), ("acknowledged", 1)]
+    assert now(held).sent_at is not None
+
+
+def test_what_has_ended_stays_ended() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (held,) = claim(uav)
+    assert note_failed(held.pk, "denied", "The UAV refused it.", **fence(held))
+    assert not note_applied(held.pk, **fence(held))
+    assert not note_progress(held.pk, **fence(held), done=1, total=2)
+    assert (now(held).state, held.outcome_code, held.outcome) == (CommandState.FAILED, "denied", "The UAV refused it.")
+    assert claim(uav) == []
+
+
+def test_progress_is_noted_without_a_step() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.CLEAR_MISSION)
+    (held,) = claim(uav)
+    assert note_progress(held.pk, **fence(held), done=3, total=200)
+    assert now(held).progress == {"done": 3, "total": 200}
+    assert steps(held) == [("queued", 0)]
+    assert not note_progress(held.pk, attempt=7, holder=held.holder, done=4, total=200)
+
+
+def test_notes_of_what_is_not_there_write_nothing() -> None:
+    assert not note_sent(uuid4(), attempt=1, holder="gateway-1")
+
+
+def test_an_arm_that_could_not_be_delivered_does_not_arm_the_uav_an_hour_later() -> None:
+    uav = a_uav()
+    arm = give(uav, CommandKind.ARM)
+    assert 29 < (arm.expires_at - arm.created_at).total_seconds() < 31
+    grow_old(arm)
+    assert claim(uav) == []
+    expire_commands()
+    assert (now(arm).state, arm.outcome_code) == (CommandState.EXPIRED, "not-delivered")
+    assert steps(arm) == [("queued", 0), ("expired", 0)]
+
+
+def test_what_is_carried_is_left_to_its_carrier_beyond_its_time() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.ARM)
+    (held,) = claim(uav)
+    note_sent(held.pk, **fence(held))
+    grow_old(held)
+    assert expire_overdue() == 0
+    assert note_applied(held.pk, **fence(held))
+
+
+def test_what_was_sent_by_somebody_who_died_ends_unconfirmed() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.ARM)
+    (held,) = claim(uav)
+    note_sent(held.pk, **fence(held))
+    grow_old(held)
+    lose(held)
+    assert claim(uav) == []
+    assert expire_overdue() == 1
+    assert now(held).outcome_code == "unconfirmed"
+    assert not note_applied(held.pk, **fence(held))
+
+
+def test_a_command_may_be_wanted_longer_or_shorter_than_its_kind() -> None:
+    command = give(a_uav(), CommandKind.HOLD, expires_in_s=5.0)
+    assert 4 < (command.expires_at - command.created_at).total_seconds() < 6
+    assert give(a_uav("Tern"), CommandKind.CLEAR_MISSION).expires_at is None
+
+
+@pytest.mark.django_db(transaction=True)
+def test_whoever_listens_hears_of_a_committed_command_and_of_no_other() -> None:
+    uav = a_uav()
+    with psycopg.connect(**connection.get_connection_params() | {"cursor_factory": psycopg.Cursor}, autocommit=True) as ear:
+        ear.execute(f"LISTEN {CHANNEL}")
+        with transaction.atomic():
+            give(uav, CommandKind.ARM)
+            transaction.set_rollback(True)
+        give(uav, CommandKind.HOLD)
+        heard = next(ear.notifies(timeout=10, stop_after=1))
+        assert heard.payload == str(uav.pk)
+        assert list(ear.notifies(timeout=0.05)) == []
+
+
+@pytest.mark.django_db(transaction=True)
+def test_many_at_once_give_one_uav_its_commands_in_an_order_without_gaps() -> None:
+    uav, kinds = a_uav(), [CommandKind.HOLD, CommandKind.CHANGE_SPEED, CommandKind.CLEAR_MISSION, CommandKind.ABORT]
+
+    def give_some() -> None:
+        try:
+            for kind in kinds:
+                give(uav, kind)
+        finally:
+            connection.close()
+
+    together([give_some] * 4)
+    assert sorted(uav.commands.values_list("sequence", flat=True)) == list(range(1, 17))
+    for axis in CommandAxis.values:
+        assert uav.commands.filter(axis=axis, state=CommandState.QUEUED).count() <= 1
+
+
+@pytest.mark.django_db(transaction=True)
+def test_many_at_once_take_each_command_once() -> None:
+    uavs = [a_uav(f"Kite {number}") for number in range(20)]
+    for uav in uavs:
+        give(uav, CommandKind.HOLD)
+        give(uav, CommandKind.CHANGE_SPEED)
+    taken: list[list[UavCommand]] = []
+
+    def take(holder: str) -> None:
+        try:
+            while found := claim(*uavs, holder=holder, limit=3):
+                taken.append(found)
+        finally:
+            connection.close()
+
+    together([lambda number=number: take(f"gateway-{number}") for number in range(4)])
+    all_taken = [command for commands in taken for command in commands]
+    assert len(all_taken) == len(set(all_taken)) == 40
+    assert {command.attempts for command in all_taken} == {1}
+
+
+def together(works: list) -> None:
+    threads = [threading.Thread(target=work) for work in works]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(timeout=60)
+    assert not any(thread.is_alive() for thread in threads)

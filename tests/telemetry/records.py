@@ -1,0 +1,23 @@
+"""Records for tests: one second after another, at one place unless told."""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from missions.models import LinkKind, Uav
+from telemetry.decoding.measurement import Measurement
+from telemetry.services import NewRecord
+
+START = datetime(2026, 11, 22, 12, tzinfo=UTC)
+
+
+def at(seconds: float) -> datetime:
+    return START + timedelta(seconds=seconds)
+
+
+def record(uav: Uav, sequence: int, *, measured_s: float | None = None, received_s: float | None = None, **values: Any) -> NewRecord:
+    """Measured at its sequence number's second unless told, received then too."""
+    measured_s = float(sequence) if measured_s is None else measured_s
+    stream = values.pop("stream", "boot")
+    measurement = Measurement(**{"longitude_deg": 10.0, "latitude_deg": 55.0, **values})
+    received_s = measured_s if received_s is None else received_s
+    return NewRecord(uav.pk, LinkKind.MAVLINK, stream, sequence, at(measured_s), at(received_s), measurement)
