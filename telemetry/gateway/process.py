@@ -15,8 +15,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.mavlink.frames import Frame, message_of
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_EVERY_S, Flights
+from telemetry.gateway.hints import listen
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
@@ -33,7 +35,8 @@ LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
 WAITED_TOO_LONG_S = 15.0
-STOP_WITHIN_S = 8.0
+DESK_WITHIN_S = 5.0
+STOP_WITHIN_S = 4.0
 
 
 @dataclass
@@ -51,6 +54,7 @@ class Gateway:
         self.database = DatabaseThread("gateway-store")
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.flights = Flights(self.options)
+        self.desk = Desk(self.options.holder, self.options.lease_s, lambda: list(self.sessions.values()))
         self.listeners = Listeners(self.receive)
         self._stop = asyncio.Event()
         self._wants_lease = asyncio.Event()
@@ -132,6 +136,8 @@ class Gateway:
             "fleet": self._every(FLEET_EVERY_S, self._read_fleet),
             "leases": self._lease_loop(),
             "store": self._store_loop(),
+            "commands": self.desk.run(),
+            "hints": listen(self.desk.hint),
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
@@ -149,6 +155,7 @@ class Gateway:
         for loop in loops:
             loop.cancel()
         await asyncio.gather(*loops, return_exceptions=True)
+        await self._close_desk()
         self.listeners.close()
         self.flights.end_all(time.time())
         try:
@@ -160,6 +167,14 @@ class Gateway:
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
+
+    async def _close_desk(self) -> None:
+        try:
+            async with asyncio.timeout(DESK_WITHIN_S):
+                await self.desk.close()
+        except (DatabaseAway, TimeoutError):
+            logger.warning("the database is away: commands are taken up again when their leases run out")
+        self.desk.database.close()
 
     # What goes on all the time
 
