@@ -219,7 +219,10 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_METADATA_CLASS": None,
     "URL_FORMAT_OVERRIDE": None,
     "DEFAULT_SCHEMA_CLASS": "workspace.schema.SpanwiseSchema",
-    "DEFAULT_THROTTLE_RATES": {"plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second")},
+    "DEFAULT_THROTTLE_RATES": {
+        "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
+        "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
+    },
     "EXCEPTION_HANDLER": "workspace.errors.error_response",
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
 }
@@ -251,6 +254,7 @@ SPECTACULAR_SETTINGS = {
         "MissionState": "missions.models.MissionState",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
+        "UavFigure": "missions.fleet_selectors.FIGURES",
         "CredentialKind": "missions.models.CredentialKind",
         "CommandKind": "missions.models.CommandKind",
         "CommandState": "missions.models.CommandState",
@@ -376,6 +380,7 @@ TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
+FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_FLIGHT_LOG_DIR", STATE_DIR / "flight-logs"))  # tlog files
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")

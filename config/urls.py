@@ -14,6 +14,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),
+    path("api/v1/", include("telemetry.urls")),
     path("", include("workspace.page_urls")),
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),

@@ -18,19 +18,27 @@ class StrictJSONParser(BaseParser):
     """Refuses NaN and infinities, deep nesting, characters that cannot be stored, and bodies over the limit."""
 
     media_type = "application/json"
+    finite_only = True
 
     def parse(self, stream: IO[bytes], media_type: str | None = None, parser_context: dict[str, Any] | None = None) -> Any:
         limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
         body = stream.read(limit + 1)
         if len(body) > limit:
             raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
-        return read_json(body)
+        return read_json(body, finite_only=self.finite_only)
 
 
-def read_json(body: bytes) -> Any:
+class MeasuredJSONParser(StrictJSONParser):
+    """Lets NaN and infinities pass, for views that name the record that holds them and take the others of the body."""
+
+    finite_only = False
+
+
+def read_json(body: bytes, *, finite_only: bool = True) -> Any:
     """What a body says. Raises ParseError."""
+    rules: dict[str, Any] = {"parse_constant": _refuse_constant, "parse_float": _finite_float} if finite_only else {}
     try:
-        value = json.loads(body.decode(), parse_constant=_refuse_constant, parse_float=_finite_float)
+        value = json.loads(body.decode(), **rules)
     except UnicodeDecodeError as error:
         raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
     except RecursionError as error:

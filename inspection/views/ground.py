@@ -1,12 +1,11 @@
 """The ground as a whole, and its tiles."""
 
-from typing import Any, cast
+from typing import cast
 
 from django.http import Http404, HttpResponse
 from django.utils.cache import get_conditional_response
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.negotiation import BaseContentNegotiation
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -14,6 +13,7 @@ from rest_framework.views import APIView
 from inspection import selectors
 from inspection.selectors import NoSuchTile
 from inspection.serializers.ground import GroundSerializer, ground_json
+from workspace.negotiation import OneAnswer
 
 TILE_TYPE = "application/vnd.mapbox-vector-tile"
 
@@ -24,18 +24,8 @@ class Ground(APIView):
         return Response(ground_json(selectors.ground_summary()))
 
 
-class _OneAnswer(BaseContentNegotiation):
-    """Tiles are tiles and errors are JSON, whatever the client says that it prefers."""
-
-    def select_parser(self, request: Request, parsers: Any) -> Any:
-        return parsers[0]
-
-    def select_renderer(self, request: Request, renderers: Any, format_suffix: str | None = None) -> Any:
-        return renderers[0], renderers[0].media_type
-
-
 class Tile(APIView):
-    content_negotiation_class = _OneAnswer
+    content_negotiation_class = OneAnswer
 
     @extend_schema(
         operation_id="get_tile",

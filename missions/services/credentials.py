@@ -5,6 +5,7 @@ Each is shown once. Kept is only what is needed to check it: a token's SHA-256, 
 
 import secrets
 from dataclasses import dataclass
+from datetime import datetime
 
 from django.db import transaction
 from django.utils import timezone
@@ -13,7 +14,8 @@ from django.utils.crypto import salted_hmac
 from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.fleet_rows import locked
 from workspace.models import User
-from workspace.services import hash_token, record_change
+from workspace.prepared import prepared_rows
+from workspace.services import USE_NOTED_EVERY, hash_token, record_change
 
 KEY_PURPOSE = "missions.mavlink-signing-key"
 
@@ -46,6 +48,19 @@ def revoke_credential(*, credential: UavCredential, actor: User) -> None:
     with transaction.atomic():
         if UavCredential.objects.filter(pk=credential.pk, revoked_at=None).update(revoked_at=timezone.now()):
             _note(credential.uav, actor, "revoke", credential)
+
+
+# Nobody waits for the disk, as for the tokens of users.
+_NOTE_USE = """
+    WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
+    UPDATE missions_uavcredential SET last_used_at = %s FROM quick WHERE id = %s"""
+
+
+def note_link_token_use(*, credential_id: int, last_used_at: datetime | None) -> None:
+    """When a UAV proved itself with this token last, to the minute: it asks every few seconds."""
+    now = timezone.now()
+    if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
+        prepared_rows(_NOTE_USE, [now, credential_id])
 
 
 def mavlink_signing_key(*, credential: UavCredential) -> bytes:

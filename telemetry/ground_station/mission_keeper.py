@@ -115,7 +115,8 @@ class MissionKeeper:
         for kind in ORDER:
             if not (yield from self._bring(kind)):
                 return (yield from self._give_up())
-        words = f"The vehicle holds the approved mission: {len(self.load.mission)} items."
+        held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
+        words = f"The vehicle holds {held}."
         return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes))
 
     def _cannot_begin(self) -> KeeperOutcome | None:

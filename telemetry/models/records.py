@@ -5,7 +5,7 @@ from django.contrib.postgres.indexes import BrinIndex
 from django.db.models import Q
 from django.db.models.functions import Now
 
-from missions.models import InspectionTarget, LinkKind, Mission, Uav
+from missions.models import Approval, InspectionTarget, LinkKind, Mission, Uav
 
 
 class TelemetryStream(models.Model):
@@ -86,7 +86,11 @@ class InspectionResult(models.Model):
     sequence = models.BigIntegerField()
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="results")
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="results")
-    target = models.ForeignKey(InspectionTarget, on_delete=models.SET_NULL, null=True, related_name="results")
+    approval = models.ForeignKey(Approval, on_delete=models.SET_NULL, null=True, related_name="results", help_text="that it was flown by")
+    place = models.PositiveIntegerField(help_text="the target's place in the mission as it was approved, from 0")
+    target = models.ForeignKey(
+        InspectionTarget, on_delete=models.SET_NULL, null=True, related_name="results", help_text="empty: the mission is another one by now"
+    )
     measured_at = models.DateTimeField()
     received_at = models.DateTimeField(db_default=Now(), editable=False)
     outcome = models.CharField(max_length=12, help_text="complete, skipped or failed")

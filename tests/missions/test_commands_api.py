@@ -200,3 +200,14 @@ def test_what_became_of_a_command_is_said_in_words(client: Client) -> None:
     assert (hold["state"], hold["priority"], hold["outcome"]) == ("failed", "safety", "The UAV refused it.")
     german = client.get(f"/api/v1/uavs/{tern.pk}/commands", headers={"Accept-Language": "de"}).json()["results"]
     assert german[1]["outcome"] == "Ein späterer Befehl trat an seine Stelle."
+
+
+def test_only_administrators_say_that_a_uav_is_simulated_or_needs_no_signature(client: Client) -> None:
+    tern = a_uav("Tern")
+    for name in ("is_simulated", "allows_unsigned"):
+        assert error(patch(client, f"uavs/{tern.pk}", {name: True}, **{"If-Match": "*"}), 403)["code"] == "permission_denied"
+        assert patch(client, f"uavs/{tern.pk}", {name: False, "link": "http"}, **{"If-Match": "*"}).status_code == 200
+        changed = patch(client_of(somebody(Role.ADMINISTRATOR)), f"uavs/{tern.pk}", {name: True}, **{"If-Match": "*"})
+        assert changed.json()["properties"][name] is True
+    tern.refresh_from_db()
+    assert (tern.is_simulated, tern.allows_unsigned, tern.link) == (True, True, "http")

@@ -1,0 +1,62 @@
+"""What a UAV has been given over the HTTP link: read for one UAV, from the outbox and the approvals."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from uuid import UUID
+
+from missions.models import Approval, CommandKind, CommandState, LinkKind, MissionState, UavCommand
+from workspace.prepared import prepared_rows
+
+FLOWN_IN = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
+
+
+@dataclass(frozen=True)
+class Given:
+    """What a UAV is to have: `upload` is the command whose route it flies, `waiting` those that it has not ended, the most urgent first."""
+
+    upload: UUID | None
+    waiting: tuple[UUID, ...]
+    has_unclaimed: bool
+
+
+_OPEN = """
+    command.state IN ('queued', 'sent', 'acknowledged') AND (command.expires_at IS NULL OR command.expires_at > statement_timestamp()
+        OR command.lease_expires_at > statement_timestamp())"""
+_OWN = f"command.uav_id = %s AND command.link = '{LinkKind.HTTP.value}'"
+# The last word about missions counts: an upload or a clearing that was neither refused nor came too late.
+_GIVEN = f"""
+    SELECT
+        (SELECT CASE WHEN command.kind = '{CommandKind.UPLOAD_MISSION.value}' AND approval.revoked_at IS NULL AND mission.deleted_at IS NULL
+                AND mission.state IN ({", ".join(f"'{state.value}'" for state in FLOWN_IN)}) THEN command.id END
+            FROM missions_uavcommand AS command LEFT JOIN missions_approval AS approval ON approval.id = command.approval_id
+                LEFT JOIN missions_mission AS mission ON mission.id = command.mission_id
+            WHERE {_OWN} AND command.axis = 'mission' AND (command.state = '{CommandState.APPLIED.value}' OR {_OPEN})
+            ORDER BY command.sequence DESC LIMIT 1),
+        ARRAY(SELECT command.id FROM missions_uavcommand AS command WHERE {_OWN} AND {_OPEN}
+            ORDER BY command.priority, command.created_at, command.sequence),
+        EXISTS (SELECT 1 FROM missions_uavcommand AS command WHERE {_OWN} AND {_OPEN}
+            AND (command.lease_expires_at IS NULL OR command.lease_expires_at <= statement_timestamp()))"""  # noqa: S608 - of constants
+
+
+def given_to(uav_id: int) -> Given:
+    """One question to the database: asked by every UAV every few seconds."""
+    ((upload, waiting, has_unclaimed),) = prepared_rows(_GIVEN, [uav_id, uav_id, uav_id])
+    return Given(upload, tuple(waiting), has_unclaimed)
+
+
+def commands_by_key(keys: tuple[UUID, ...]) -> list[UavCommand]:
+    """In the order of the keys."""
+    found = UavCommand.objects.in_bulk(keys)
+    return [found[key] for key in keys if key in found]
+
+
+def approvals_given_to(uav_id: int, keys: Collection[UUID]) -> dict[UUID, Approval]:
+    """Of these approvals those that were sent to this UAV, with their missions; in force or not."""
+    uploads = UavCommand.objects.filter(uav_id=uav_id, approval__in=keys, kind=CommandKind.UPLOAD_MISSION)
+    return Approval.objects.select_related("mission").in_bulk(set(uploads.values_list("approval", flat=True)))
+
+
+def places_of_targets(uav_id: int, approval: Approval) -> frozenset[int]:
+    """Of the targets on this UAV's route, as approved: their places in the mission's list."""
+    (route,) = [route for route in approval.document["routes"] if route["uav"] == uav_id]
+    return frozenset(waypoint["target"] for waypoint in route["route"]["waypoints"] if waypoint["target"] is not None)

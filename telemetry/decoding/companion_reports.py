@@ -1,0 +1,179 @@
+"""Reports of companion computers, as they come over the HTTP link: read, checked, each fault named. Pure."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+from uuid import UUID
+
+LARGEST_SEQUENCE = 2**63 - 1
+EARLIEST_YEAR, LATEST_YEAR = 1970, 9998  # what a clock that was never set says, and what the database and Python both keep
+LONGEST_MODE = 30
+NEAR_KM, FAR_KM = 50.0, 500.0  # a place that is far as it stands and near with its two numbers changed over was sent the wrong way round
+EARTH_RADIUS_KM = 6_371.0088  # IUGG mean radius
+
+NUMBERS: Mapping[str, tuple[float, float]] = {  # inclusive
+    "altitude_amsl_m": (-1_000, 20_000),
+    "altitude_relative_m": (-5_000, 20_000),
+    "altitude_agl_m": (-1_000, 20_000),
+    "velocity_north_mps": (-200, 200),
+    "velocity_east_mps": (-200, 200),
+    "velocity_down_mps": (-200, 200),
+    "airspeed_mps": (0, 200),
+    "roll_deg": (-180, 180),
+    "pitch_deg": (-180, 180),
+    "heading_deg": (0, 360),
+    "battery_percent": (0, 100),
+    "battery_v": (0, 1_000),
+    "battery_a": (-1_000, 1_000),
+    "link_quality_percent": (0, 100),
+    "hdop": (0, 1_000),
+    "wind_north_mps": (-100, 100),
+    "wind_east_mps": (-100, 100),
+}
+INTEGERS: Mapping[str, tuple[int, int]] = {"gps_fix": (0, 8), "satellites": (0, 255), "mission_item": (0, 65_535)}
+FLAGS = ("is_armed", "is_in_air")
+KNOWN = frozenset({"sequence", "measured_at", "mission", "position", "mode", *NUMBERS, *INTEGERS, *FLAGS})
+BARE_HEIGHTS = ("altitude", "altitude_m", "height", "height_m")
+
+
+@dataclass(frozen=True)
+class Report:
+    """One report. `position` is longitude, latitude [deg]; `values` are the other fields that were sent, by the log's own names."""
+
+    sequence: int
+    measured_at: datetime
+    mission: UUID | None = None
+    position: tuple[float, float] | None = None
+    values: Mapping[str, float | int | bool | str] = field(default_factory=dict)
+
+
+class FaultyReport(Exception):
+    """`faults` are words by field."""
+
+    def __init__(self, faults: dict[str, str]) -> None:
+        super().__init__("; ".join(f"{name}: {words}" for name, words in faults.items()))
+        self.faults = faults
+
+
+def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) -> Report:
+    """A report as it was sent, as decoded JSON. `known_place` is where the UAV was last (longitude, latitude). Raises FaultyReport."""
+    if not isinstance(sent, dict):
+        raise FaultyReport({"": "A record is an object."})
+    faults = {str(name): _unknown(str(name)) for name in sent if name not in KNOWN}
+    read: dict[str, Any] = {}
+    for name in sorted(KNOWN & sent.keys()):
+        if sent[name] is None:
+            continue
+        try:
+            read[name] = _value(name, sent[name], known_place)
+        except ValueError as error:
+            faults[name] = str(error)
+    for name in ("sequence", "measured_at"):
+        if sent.get(name) is None:
+            faults[name] = "This field is required."
+    if faults:
+        raise FaultyReport(faults)
+    return Report(
+        sequence=read.pop("sequence"),
+        measured_at=read.pop("measured_at"),
+        mission=read.pop("mission", None),
+        position=read.pop("position", None),
+        values=read,
+    )
+
+
+def _value(name: str, value: Any, known_place: tuple[float, float] | None) -> Any:
+    if name == "position":
+        return _position(value, known_place)
+    if name == "measured_at":
+        return instant(value)
+    if name == "mission":
+        return _identifier(value)
+    if name == "mode":
+        return _words(value)
+    if name in FLAGS:
+        if not isinstance(value, bool):
+            raise ValueError("true or false is needed.")
+        return value
+    if name in NUMBERS:
+        found = _number(value, *NUMBERS[name])
+        return found % 360.0 if name == "heading_deg" else found
+    return whole_number(value, *INTEGERS.get(name, (0, LARGEST_SEQUENCE)))
+
+
+def instant(value: Any) -> datetime:
+    """A time of RFC 3339 with its zone, in UTC. Raises ValueError."""
+    fault = "A time with its zone is needed, such as 2026-11-22T09:30:00.250Z."
+    if not isinstance(value, str):
+        raise ValueError(fault)
+    try:
+        found = datetime.fromisoformat(value)
+    except ValueError as error:
+        raise ValueError(fault) from error
+    if found.tzinfo is None or not EARLIEST_YEAR <= found.year <= LATEST_YEAR:
+        raise ValueError(fault)
+    return found.astimezone(UTC)
+
+
+def whole_number(value: Any, lowest: int, highest: int) -> int:
+    """Raises ValueError."""
+    if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
+        raise ValueError(f"A whole number from {lowest} to {highest} is needed.")
+    return value
+
+
+def _number(value: Any, lowest: float, highest: float) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not lowest <= value <= highest:  # false for NaN, too
+        raise ValueError(f"A number from {lowest:g} to {highest:g} is needed.")
+    return float(value)
+
+
+def _words(value: Any) -> str:
+    if not isinstance(value, str) or len(value) > LONGEST_MODE or not value.isprintable():
+        raise ValueError(f"At most {LONGEST_MODE} printable characters.")
+    return value
+
+
+def _identifier(value: Any) -> UUID:
+    try:
+        return UUID(value if isinstance(value, str) else "")
+    except ValueError as error:
+        raise ValueError("A mission's id is needed.") from error
+
+
+def _position(value: Any, known_place: tuple[float, float] | None) -> tuple[float, float]:
+    fault = "Longitude and latitude in degrees are needed, longitude first."
+    if not isinstance(value, list) or len(value) != 2:
+        raise ValueError(fault)
+    if any(isinstance(number, bool) or not isinstance(number, int | float) for number in value):
+        raise ValueError(fault)
+    if not (abs(value[0]) <= 180 and abs(value[1]) <= 90):  # false for NaN, too
+        raise ValueError(fault)
+    longitude, latitude = float(value[0]), float(value[1])
+    if longitude == latitude == 0.0:
+        raise ValueError("0, 0 is what a receiver says that has no fix: send null.")
+    if known_place and _is_turned_round((longitude, latitude), known_place):
+        raise ValueError(f"{fault} These two lie near the UAV only the other way round.")
+    return longitude, latitude
+
+
+def _is_turned_round(place: tuple[float, float], known: tuple[float, float]) -> bool:
+    longitude, latitude = place
+    if abs(longitude) > 90.0 or _distance_km(place, known) < FAR_KM:
+        return False
+    return _distance_km((latitude, longitude), known) < NEAR_KM
+
+
+def _distance_km(a: tuple[float, float], b: tuple[float, float]) -> float:
+    """On a sphere: to tell 50 km from 500."""
+    (lon_a, lat_a), (lon_b, lat_b) = ((math.radians(lon), math.radians(lat)) for lon, lat in (a, b))
+    half = math.sin((lat_b - lat_a) / 2) ** 2 + math.cos(lat_a) * math.cos(lat_b) * math.sin((lon_b - lon_a) / 2) ** 2
+    return 2 * EARTH_RADIUS_KM * math.asin(min(1.0, math.sqrt(half)))
+
+
+def _unknown(name: str) -> str:
+    if name in BARE_HEIGHTS:
+        return "A height names its reference: altitude_amsl_m, altitude_relative_m or altitude_agl_m."
+    return "There is no such field."

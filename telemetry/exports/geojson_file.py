@@ -1,0 +1,38 @@
+"""Records as GeoJSON (RFC 7946): one Feature each."""
+
+import json
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from telemetry.exports.logged_record import FLAGS, REPORTED, LoggedRecord, time_text
+
+FEATURES_A_PIECE = 200
+
+
+def record_feature(record: LoggedRecord) -> dict[str, Any]:
+    """Geometry is null where the UAV did not know its place. A height is a property, since GeoJSON's third number has another reference."""
+    geometry = {"type": "Point", "coordinates": list(record.position)} if record.position else None
+    properties = {
+        "uav": record.uav,
+        "uav_name": record.uav_name,
+        "mission": record.mission,
+        "stream": record.stream,
+        "sequence": record.sequence,
+        "measured_at": time_text(record.measured_at),
+        "received_at": time_text(record.received_at),
+        "stored_at": time_text(record.stored_at),
+        **dict(zip((*REPORTED, *FLAGS), record.values, strict=True)),
+    }
+    return {"type": "Feature", "id": record.id, "geometry": geometry, "properties": properties}
+
+
+def geojson_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
+    written: list[str] = []
+    before = '{"type":"FeatureCollection","features":['
+    for record in records:
+        written.append(json.dumps(record_feature(record), separators=(",", ":"), ensure_ascii=False))
+        if len(written) == FEATURES_A_PIECE:
+            yield before + ",".join(written)
+            written.clear()
+            before = ","
+    yield (before if written or before != "," else "") + ",".join(written) + "]}"

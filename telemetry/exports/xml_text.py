@@ -1,0 +1,11 @@
+"""Text in XML."""
+
+import re
+from xml.sax.saxutils import escape
+
+FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # XML 1.0, 2.2
+
+
+def xml_text(text: str) -> str:
+    """As the text of an element; what XML cannot hold at all is left out."""
+    return escape(FORBIDDEN.sub("", text))

@@ -1,0 +1,126 @@
+"""Reads of the log, always within one organisation."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any
+from uuid import UUID
+
+from django.db.models import F, FloatField, Func, Max, Min, QuerySet, Value, Window
+from django.db.models.functions import Extract, Floor, RowNumber
+
+from inspection.selectors import Box
+from inspection.selectors.assets import area_of
+from missions.models import Uav
+from telemetry.exports.logged_record import FLAGS, REPORTED, LoggedRecord
+from telemetry.models import TelemetryRecord
+from workspace.models import Organisation
+
+ROWS_AT_ONCE = 2_000
+SHORTEST_S, LONGEST_S = 1e-3, 366 * 86_400.0  # between chosen records
+
+
+@dataclass(frozen=True)
+class LogFilter:
+    """Which records; None is not asked for. Times are those of measurement, `before` is left out."""
+
+    uav_id: int | None = None
+    mission_id: UUID | None = None
+    measured_from: datetime | None = None
+    measured_before: datetime | None = None
+    box: Box | None = None
+
+
+def records_that_match(organisation: Organisation, wanted: LogFilter) -> QuerySet[TelemetryRecord]:
+    """A UAV or mission of another organisation has none."""
+    uavs = Uav.objects.filter(organisation=organisation)
+    if wanted.uav_id is not None:
+        uavs = uavs.filter(pk=wanted.uav_id)
+    found = TelemetryRecord.objects.filter(uav_id__in=list(uavs.values_list("pk", flat=True)))  # a list, so that each UAV's index is used
+    if wanted.mission_id is not None:
+        found = found.filter(mission_id=wanted.mission_id, mission__organisation=organisation)
+    if wanted.measured_from is not None:
+        found = found.filter(measured_at__gte=wanted.measured_from)
+    if wanted.measured_before is not None:
+        found = found.filter(measured_at__lt=wanted.measured_before)
+    if wanted.box is not None:
+        found = found.filter(position__intersects=area_of(wanted.box))
+    return found
+
+
+def one_each(records: QuerySet[TelemetryRecord], every_s: float) -> QuerySet[TelemetryRecord]:
+    """The first of each UAV in each stretch of so many seconds, chosen in the database; none of the future."""
+    stretch = Floor(Extract("measured_at", "epoch") / Value(every_s), output_field=FloatField())
+    place = Window(RowNumber(), partition_by=[F("uav_id"), stretch], order_by=[F("measured_at"), F("pk")])
+    in_time = records.filter(is_from_future=False).order_by()
+    return TelemetryRecord.objects.filter(pk__in=in_time.annotate(place=place).filter(place=1).values("pk"))
+
+
+def spacing_for(records: QuerySet[TelemetryRecord], most: int) -> float | None:
+    """How many seconds apart at most so many of them lie, but up to two a UAV; None where they are no more than that."""
+    in_time = records.filter(is_from_future=False).order_by()
+    if len(in_time.values_list("pk")[: most + 1]) <= most:
+        return None
+    facts = in_time.aggregate(first=Min("measured_at"), last=Max("measured_at"))
+    uavs = in_time.values("uav_id").distinct().count()
+    span: timedelta = facts["last"] - facts["first"]
+    stretches = max(most // uavs - 1, 1)  # whole ones; the span may touch one more than it has
+    return min(max(span.total_seconds() / stretches, SHORTEST_S), LONGEST_S)
+
+
+def latest_record(uav: Uav) -> TelemetryRecord | None:
+    """What the UAV measured last; never from the future."""
+    return (
+        TelemetryRecord.objects.filter(uav=uav, is_from_future=False)
+        .select_related("uav", "stream")
+        .order_by("-measured_at", "-pk")
+        .first()
+    )
+
+
+def _coordinate(function: str) -> Func:
+    return Func(F("position"), function=function, output_field=FloatField())
+
+
+_COLUMNS = ("pk", "uav_id", "uav__name", "mission_id", "stream__key", "sequence", "measured_at", "received_at", "stored_at")
+
+
+def logged(records: QuerySet[TelemetryRecord], *order: str) -> Iterator[LoggedRecord]:
+    """Row by row out of the database, in this order; never more than some thousand at once in memory."""
+    rows = records.order_by(*order).values_list(*_COLUMNS, _coordinate("ST_X"), _coordinate("ST_Y"), *REPORTED, *FLAGS)
+    return (_from_columns(row) for row in rows.iterator(chunk_size=ROWS_AT_ONCE))
+
+
+def as_logged(record: TelemetryRecord) -> LoggedRecord:
+    """One row that has been read with its UAV and stream."""
+    place = record.position
+    return LoggedRecord(
+        id=record.pk,
+        uav=record.uav_id,
+        uav_name=record.uav.name,
+        mission=None if record.mission_id is None else str(record.mission_id),
+        stream=record.stream.key,
+        sequence=record.sequence,
+        measured_at=record.measured_at,
+        received_at=record.received_at,
+        stored_at=record.stored_at,
+        position=None if place is None else (place.x, place.y),
+        values=tuple(getattr(record, name) for name in (*REPORTED, *FLAGS)),
+    )
+
+
+def _from_columns(row: tuple[Any, ...]) -> LoggedRecord:
+    key, uav, uav_name, mission, stream, sequence, measured_at, received_at, stored_at, longitude, latitude, *values = row
+    return LoggedRecord(
+        id=key,
+        uav=uav,
+        uav_name=uav_name,
+        mission=None if mission is None else str(mission),
+        stream=stream,
+        sequence=sequence,
+        measured_at=measured_at,
+        received_at=received_at,
+        stored_at=stored_at,
+        position=None if longitude is None else (longitude, latitude),
+        values=tuple(values),
+    )

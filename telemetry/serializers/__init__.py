@@ -1,0 +1,1 @@
+"""Shapes of the app's requests and answers."""

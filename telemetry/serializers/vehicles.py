@@ -1,0 +1,63 @@
+"""Vehicles that nobody knows, and what is said of them."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from missions.fields import PositionField
+from missions.serializers.known_fields import KnownFieldsSerializer
+from telemetry.models import UnknownVehicle, UnknownVehicleState
+
+
+class UnknownVehicleSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    mavlink_system_id = serializers.IntegerField()
+    autopilot = serializers.CharField(allow_blank=True)
+    vehicle_type = serializers.CharField(allow_blank=True)
+    address = serializers.CharField(allow_blank=True, help_text="whence it was heard")
+    is_signed = serializers.BooleanField()
+    position = PositionField(allow_null=True)
+    state = serializers.ChoiceField(choices=UnknownVehicleState.choices)
+    first_heard_at = serializers.DateTimeField()
+    heard_at = serializers.DateTimeField()
+    settled_by = serializers.CharField(allow_null=True)
+    settled_at = serializers.DateTimeField(allow_null=True)
+    uav = serializers.IntegerField(allow_null=True, help_text="that it was adopted as")
+
+
+class UnknownVehiclePageSerializer(serializers.Serializer):
+    results = UnknownVehicleSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class AdoptionSerializer(KnownFieldsSerializer):
+    """Either `uav`, which gets the system id, or what a new UAV is made from."""
+
+    uav = serializers.IntegerField(required=False, min_value=1, max_value=2**63 - 1)
+    name = serializers.CharField(required=False, max_length=100)
+    uav_type = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=2**63 - 1)
+    position = PositionField(required=False, help_text="of a new one; without it where the vehicle is")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if ("uav" in attrs) == ("name" in attrs):
+            raise serializers.ValidationError({"uav": "Either a UAV that exists, or the name of a new one."})
+        return attrs
+
+
+def vehicle_json(vehicle: UnknownVehicle) -> dict[str, Any]:
+    by = vehicle.settled_by
+    return {
+        "id": vehicle.pk,
+        "mavlink_system_id": vehicle.mavlink_system_id,
+        "autopilot": vehicle.autopilot,
+        "vehicle_type": vehicle.vehicle_type,
+        "address": vehicle.address,
+        "is_signed": vehicle.is_signed,
+        "position": list(vehicle.location.coords[:2]) if vehicle.location else None,
+        "state": vehicle.state,
+        "first_heard_at": vehicle.first_heard_at,
+        "heard_at": vehicle.heard_at,
+        "settled_by": (by.get_full_name() or by.username) if by else None,
+        "settled_at": vehicle.settled_at,
+        "uav": vehicle.uav_id,
+    }

@@ -1,0 +1,68 @@
+"""Reports that a companion computer sent over the HTTP link go into the log."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from missions.models import LinkKind, MissionUav
+from telemetry.decoding.companion_reports import FaultyReport, Report, read_report
+from telemetry.decoding.measurement import Measurement
+from telemetry.services.ingest import NewRecord, StoredCount, store_records
+
+
+@dataclass(frozen=True)
+class RefusedReport:
+    """`index` is its place in the batch; `faults` are words by field."""
+
+    index: int
+    faults: dict[str, str]
+
+
+@dataclass(frozen=True)
+class TakenReports:
+    counts: StoredCount
+    refused: list[RefusedReport] = field(default_factory=list)
+
+
+def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: Sequence[Any], received_at: datetime) -> TakenReports:
+    """Stores the sound ones and names the others, so that one faulty record holds up none behind it.
+
+    `place` is where the UAV was last: longitude, latitude [deg]. `sent` is decoded JSON.
+    """
+    read: dict[int, Report] = {}
+    refused: list[RefusedReport] = []
+    for index, record in enumerate(sent):
+        try:
+            read[index] = read_report(record, known_place=place)
+        except FaultyReport as error:
+            refused.append(RefusedReport(index, error.faults))
+    own = _own_missions(uav_id, {report.mission for report in read.values() if report.mission})
+    for index in [index for index, report in read.items() if report.mission and report.mission not in own]:
+        del read[index]
+        refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
+    records = [_new_record(report, uav_id, stream, received_at) for report in read.values()]
+    counts = store_records(records) if records else StoredCount()
+    return TakenReports(counts, sorted(refused, key=lambda fault: fault.index))
+
+
+def _own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:
+    if not named:
+        return set()
+    return set(MissionUav.objects.filter(uav_id=uav_id, mission_id__in=named).values_list("mission_id", flat=True))
+
+
+def _new_record(report: Report, uav_id: int, stream: str, received_at: datetime) -> NewRecord:
+    longitude_deg, latitude_deg = report.position or (None, None)
+    values: dict[str, Any] = dict(report.values)
+    return NewRecord(
+        uav_id=uav_id,
+        link=LinkKind.HTTP,
+        stream=stream,
+        sequence=report.sequence,
+        measured_at=report.measured_at,
+        received_at=received_at,
+        measurement=Measurement(longitude_deg=longitude_deg, latitude_deg=latitude_deg, **values),
+        mission_id=report.mission,
+    )

@@ -1,0 +1,113 @@
+"""What UAVs found at targets and how their flights ended, as they report it: each stored once, and the mission follows."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.db.models.functions import Least
+
+from missions.given_selectors import approvals_given_to, places_of_targets
+from missions.models import Approval, InspectionTarget, LinkKind, TargetState
+from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
+from telemetry.models import InspectionResult, TelemetryStream
+
+
+@dataclass(frozen=True)
+class NewResult:
+    """`place` is the target's in the mission as it was approved."""
+
+    sequence: int
+    approval_id: UUID
+    place: int
+    outcome: TargetState
+    measured_at: datetime
+    note: str
+    values: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class EndedFlight:
+    """`flight` counts from 1."""
+
+    approval_id: UUID
+    flight: int
+    end: FlightEnd
+
+
+@dataclass(frozen=True)
+class TakenResults:
+    """Refused are those, by their place in what was given, that this UAV was never sent."""
+
+    stored: int
+    known: int
+    refused_results: list[int]
+    refused_flights: list[int]
+
+
+@transaction.atomic
+def take_results(
+    *, uav_id: int, stream: str, results: Sequence[NewResult], flights: Sequence[EndedFlight], received_at: datetime
+) -> TakenResults:
+    """Of this UAV's own routes alone, in any approval that it was sent: one may have been revoked while it could not be reached."""
+    named = {result.approval_id for result in results} | {flight.approval_id for flight in flights}
+    given = approvals_given_to(uav_id, named)
+    places = {key: places_of_targets(uav_id, approval) for key, approval in given.items()}
+    own = [result for result in results if result.place in places.get(result.approval_id, ())]
+    stored = _store(uav_id, stream, own, given, received_at) if own else 0
+    for flight in flights:
+        if flight.approval_id in given and given[flight.approval_id].revoked_at is None:
+            mark_flight_ended(mission_id=given[flight.approval_id].mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
+    return TakenResults(
+        stored=stored,
+        known=len(own) - stored,
+        refused_results=[place for place, result in enumerate(results) if result.place not in places.get(result.approval_id, ())],
+        refused_flights=[place for place, flight in enumerate(flights) if flight.approval_id not in given],
+    )
+
+
+def _store(uav_id: int, stream: str, results: Sequence[NewResult], given: dict[UUID, Approval], received_at: datetime) -> int:
+    run, _ = TelemetryStream.objects.get_or_create(uav_id=uav_id, link=LinkKind.HTTP, key=stream)
+    run = TelemetryStream.objects.select_for_update().get(pk=run.pk)  # two batches of one counter: one after the other
+    known = set(
+        InspectionResult.objects.filter(stream=run, sequence__in=[result.sequence for result in results]).values_list("sequence", flat=True)
+    )
+    new = {result.sequence: result for result in reversed(results) if result.sequence not in known}  # of a number that is twice, the first
+    targets = _targets(given)
+    InspectionResult.objects.bulk_create(
+        InspectionResult(
+            stream=run,
+            sequence=result.sequence,
+            uav_id=uav_id,
+            mission_id=given[result.approval_id].mission_id,
+            approval_id=result.approval_id,
+            place=result.place,
+            target_id=targets.get((given[result.approval_id].pk, result.place)),
+            measured_at=result.measured_at,
+            received_at=received_at,
+            outcome=result.outcome,
+            note=result.note,
+            values=result.values,
+        )
+        for result in new.values()
+    )
+    for approval in sorted(given.values(), key=lambda approval: approval.mission_id):
+        if approval.revoked_at is None:
+            for place in sorted({result.place for result in new.values() if result.approval_id == approval.pk}):
+                mark_target(mission_id=approval.mission_id, target=place, state=_newest_outcome(approval, place))
+    return len(new)
+
+
+def _targets(given: dict[UUID, Approval]) -> dict[tuple[UUID, int], int]:
+    """Keys by approval and place, while the approval is in force: after that another target may have the place."""
+    in_force = {approval.mission_id: approval.pk for approval in given.values() if approval.revoked_at is None}
+    rows = InspectionTarget.objects.filter(mission__in=in_force).values_list("mission_id", "sequence", "pk")
+    return {(in_force[mission_id], place): key for mission_id, place, key in rows}
+
+
+def _newest_outcome(approval: Approval, place: int) -> TargetState:
+    """A result counts from when it was measured, but not from later than it came: a clock that is ahead settles nothing for good."""
+    results = InspectionResult.objects.filter(approval=approval, place=place).annotate(counts_at=Least("measured_at", "received_at"))
+    return TargetState(results.order_by("-counts_at", "-pk").values_list("outcome", flat=True)[0])

@@ -1,0 +1,108 @@
+"""What waits for a UAV that asks over HTTP, and what it says of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+
+from missions.given_selectors import Given, given_to
+from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
+from missions.services.commands import claim_commands, note_acknowledged, note_applied, note_failed, note_sent
+from missions.services.dispatch import ApprovedLoad, load_of
+from telemetry.models import UavLink
+
+HOLDER = "http-link"  # all processes of the link are one: a UAV may ask any of them
+LEASE_S = 30.0
+MOST_AT_ONCE = 10
+OTHER_CONTENT = "other-content"
+REFUSED = "refused-by-uav"
+
+
+@dataclass(frozen=True)
+class Acknowledgement:
+    """`content_sha256` is of what the UAV holds, as far as it is about an upload."""
+
+    command_id: UUID
+    state: CommandState
+    reason: str = ""
+    content_sha256: str | None = None
+
+
+@dataclass(frozen=True)
+class Noted:
+    """`state` is the command's afterwards; None: it is none of this UAV's."""
+
+    command_id: UUID
+    noted: bool
+    state: str | None
+    words: str = ""
+
+
+def handed_to(uav_id: int, given: Given) -> Given:
+    """The same after whatever waited has been handed over: from now on it has been sent."""
+    if not given.has_unclaimed:
+        return given
+    for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MOST_AT_ONCE):
+        note_sent(command.pk, attempt=command.attempts, holder=HOLDER)
+    return given_to(uav_id)
+
+
+def note_acknowledgements(*, uav_id: int, acknowledgements: Sequence[Acknowledgement]) -> list[Noted]:
+    """In their order. One that was noted before is noted again: nothing changes twice."""
+    return [_note(uav_id, acknowledgement) for acknowledgement in acknowledgements]
+
+
+@transaction.atomic
+def _note(uav_id: int, told: Acknowledgement) -> Noted:
+    command = UavCommand.objects.select_related("approval").filter(pk=told.command_id, uav_id=uav_id, link=LinkKind.HTTP).first()
+    if command is None:
+        return Noted(told.command_id, False, None, "There is no such command to this UAV.")
+    if command.state not in OPEN_COMMANDS:
+        is_known = command.state == told.state
+        return Noted(command.pk, is_known, command.state, "" if is_known else f"The command has ended before: {command.outcome}"[:500])
+    holding: dict[str, Any] = {"attempt": command.attempts, "holder": command.holder}
+    words = ""
+    if told.state == CommandState.ACKNOWLEDGED:
+        noted = note_acknowledged(command.pk, **holding)
+    elif told.state == CommandState.FAILED:
+        words = told.reason or "The UAV gave no reason."
+        noted = note_failed(command.pk, REFUSED, words, **holding)
+        _hold(command, None)
+    elif command.kind == CommandKind.UPLOAD_MISSION:
+        noted, words = _note_upload(command, told, holding)
+    else:
+        noted = note_applied(command.pk, note=told.reason, **holding)
+        if command.kind == CommandKind.CLEAR_MISSION:
+            _hold(command, None)
+    command.refresh_from_db(fields=["state"])
+    return Noted(command.pk, noted, command.state, words)
+
+
+def _note_upload(command: UavCommand, told: Acknowledgement, holding: dict[str, Any]) -> tuple[bool, str]:
+    """The UAV is ready only when what it holds is what was approved."""
+    load = load_of(command)
+    if told.content_sha256 == load.content_sha256:
+        noted = note_applied(command.pk, note=told.reason, **holding)
+        if noted:
+            _hold(command, load)
+        return noted, ""
+    words = "The UAV holds something else than what was approved." if told.content_sha256 else "The UAV does not say what it holds."
+    noted = note_failed(command.pk, OTHER_CONTENT, words, **holding)
+    _hold(command, None)
+    return noted, words
+
+
+def _hold(command: UavCommand, load: ApprovedLoad | None) -> None:
+    """What the UAV holds now; after a failure nobody knows."""
+    if command.kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION}:
+        return
+    UavLink.objects.update_or_create(
+        uav_id=command.uav_id,
+        defaults={
+            "loaded_sha256": load.content_sha256 if load else "",
+            "loaded_approval": load.approval if load else None,
+            "loaded_flight": load.flight if load else None,
+        },
+    )

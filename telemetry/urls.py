@@ -1,0 +1,41 @@
+"""Addresses of the UAV link and of the log under /api/v1/."""
+
+from django.urls import path, register_converter
+
+from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
+from telemetry.views.log import LatestTelemetry, TelemetryLog
+from telemetry.views.uav_link import UavAcknowledgements, UavResults, UavRoute, UavTelemetry
+from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
+from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, VehicleTexts
+
+
+class FileKindConverter:
+    """How the name of an exported file ends."""
+
+    regex = "|".join(KINDS)
+
+    def to_python(self, value: str) -> str:
+        return value
+
+    def to_url(self, value: str) -> str:
+        return value
+
+
+register_converter(FileKindConverter, "file_kind")
+
+urlpatterns = [
+    path("uav-link/route", UavRoute.as_view(), name="uav-link-route"),
+    path("uav-link/acknowledgements", UavAcknowledgements.as_view(), name="uav-link-acknowledgements"),
+    path("uav-link/telemetry", UavTelemetry.as_view(), name="uav-link-telemetry"),
+    path("uav-link/results", UavResults.as_view(), name="uav-link-results"),
+    path("unknown-vehicles", UnknownVehicles.as_view(), name="api-unknown-vehicles"),
+    path("unknown-vehicles/<int:vehicle_id>/adopt", UnknownVehicleAdoption.as_view(), name="api-unknown-vehicle-adoption"),
+    path("unknown-vehicles/<int:vehicle_id>/ignore", UnknownVehicleIgnoring.as_view(), name="api-unknown-vehicle-ignoring"),
+    path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
+    path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
+    path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
+    path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),
+    path("uavs/<int:uav_id>/vehicle-texts", VehicleTexts.as_view(), name="api-vehicle-texts"),
+    path("uavs/<int:uav_id>/flight-logs", FlightLogs.as_view(), name="api-flight-logs"),
+    path("uavs/<int:uav_id>/flight-logs/<int:log_id>/file", FlightLogFile.as_view(), name="api-flight-log-file"),
+]

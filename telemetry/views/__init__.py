@@ -1,0 +1,1 @@
+"""The UAV link, the log, and vehicles that nobody knows, over HTTP."""

@@ -1,0 +1,87 @@
+"""Flown tracks as files, written while they are sent."""
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+from uuid import UUID
+
+from django.db.models import QuerySet
+from django.http import Http404, StreamingHttpResponse
+from drf_spectacular.types import OpenApiTypes
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework.request import Request
+from rest_framework.views import APIView
+
+from missions.models import Mission
+from missions.views.uavs import uav_or_404
+from telemetry.exports.csv_file import csv_pieces
+from telemetry.exports.geojson_file import geojson_pieces
+from telemetry.exports.gpx_file import gpx_pieces
+from telemetry.exports.kml_file import kml_pieces
+from telemetry.exports.logged_record import LoggedRecord
+from telemetry.models import TelemetryRecord
+from telemetry.selectors.log import LogFilter, logged, records_that_match
+from telemetry.views.log_filters import TIMES, time_of
+from workspace.negotiation import OneAnswer
+
+BY_TIME = ("measured_at", "pk")
+BY_STREAM = ("uav_id", "stream_id", "sequence")  # as each counter ran: a track is drawn in this order
+UNSAFE = re.compile(r"[^A-Za-z0-9]+")  # in names of files: other programs stumble over more
+
+
+class FileKind(NamedTuple):
+    media_type: str
+    order: tuple[str, ...]
+    pieces: Callable[[Iterable[LoggedRecord], str], Iterator[str]]
+
+
+KINDS = {
+    "csv": FileKind("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_pieces(records)),
+    "gpx": FileKind("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name)),
+    "kml": FileKind("application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name)),
+    "geojson": FileKind("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
+}
+ABOUT = (
+    "Each record has the times of measurement, receipt and storage. CSV and GeoJSON have every record, flagged where its time is wrong; "
+    "the tracks of GPX and KML leave out those without a place and those from the future."
+)
+KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
+FILES = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()}
+
+
+class MissionTelemetryFile(APIView):
+    content_negotiation_class = OneAnswer
+
+    @extend_schema(
+        operation_id="export_mission_telemetry", summary="What was flown in a mission, as CSV, GPX, KML or GeoJSON", description=ABOUT,
+        parameters=[KIND, *TIMES], responses=FILES,
+    )  # fmt: skip
+    def get(self, request: Request, mission_id: UUID, kind: str) -> StreamingHttpResponse:
+        organisation = request.user.organisation
+        mission = Mission.objects.filter(organisation=organisation, deleted_at=None, pk=mission_id).first()
+        if mission is None:
+            raise Http404
+        wanted = LogFilter(None, mission_id, time_of(request, "from"), time_of(request, "to"))
+        return _file(records_that_match(organisation, wanted), kind, mission.name)
+
+
+class UavTelemetryFile(APIView):
+    content_negotiation_class = OneAnswer
+
+    @extend_schema(
+        operation_id="export_uav_telemetry", summary="What a UAV has flown, as CSV, GPX, KML or GeoJSON", description=ABOUT,
+        parameters=[KIND, *TIMES], responses=FILES,
+    )  # fmt: skip
+    def get(self, request: Request, uav_id: int, kind: str) -> StreamingHttpResponse:
+        uav = uav_or_404(request.user, uav_id)
+        wanted = LogFilter(uav.pk, None, time_of(request, "from"), time_of(request, "to"))
+        return _file(records_that_match(request.user.organisation, wanted), kind, uav.name)
+
+
+def _file(records: QuerySet[TelemetryRecord], kind: str, name: str) -> StreamingHttpResponse:
+    wanted = KINDS[kind]
+    response = StreamingHttpResponse(wanted.pieces(logged(records, *wanted.order), name), content_type=wanted.media_type)
+    stem = UNSAFE.sub("-", name).strip("-") or "flight"
+    response["Content-Disposition"] = f'attachment; filename="{stem}-telemetry.{kind}"'
+    response["Cache-Control"] = "private, no-cache"
+    return response

@@ -1,0 +1,90 @@
+"""What the log may be asked for, from the address to a filter."""
+
+import math
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from uuid import UUID
+
+from django.utils import timezone
+from drf_spectacular.utils import OpenApiParameter
+from rest_framework.request import Request
+
+from inspection.views.parameters import BOX, box_of, invalid
+from telemetry.decoding.companion_reports import instant
+from telemetry.selectors.log import LONGEST_S, SHORTEST_S, LogFilter
+
+USUAL_SPAN = timedelta(days=1)
+MOST_CHOSEN = 100_000
+TIMES = [
+    OpenApiParameter("from", str, description="measured at or after this time, with its zone"),
+    OpenApiParameter("to", str, description="measured before this time, with its zone"),
+]
+FILTERS = [
+    *TIMES,
+    OpenApiParameter("uav", int, description="id of a UAV"),
+    OpenApiParameter("mission", str, description="id of a mission"),
+    BOX,
+    OpenApiParameter("every_s", float, description="of each UAV the first record in so many seconds, and none from the future"),
+    OpenApiParameter("most", int, description="so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s"),
+]
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How records are thinned out; None, None: not at all."""
+
+    every_s: float | None = None
+    most: int | None = None
+
+
+def asked_log(request: Request) -> LogFilter:
+    """Without a UAV, a mission or a beginning: of the last day. Raises ApiProblem 400."""
+    uav_id, mission_id = _uav(request), _mission(request)
+    wanted = LogFilter(uav_id, mission_id, time_of(request, "from"), time_of(request, "to"), box_of(request))
+    if uav_id is None and mission_id is None and wanted.measured_from is None:
+        last_day = (wanted.measured_before or timezone.now()) - USUAL_SPAN
+        wanted = LogFilter(None, None, last_day, wanted.measured_before, wanted.box)
+    return wanted
+
+
+def asked_sampling(request: Request) -> Sampling:
+    """Raises ApiProblem 400."""
+    every_s, most = request.query_params.get("every_s", ""), request.query_params.get("most", "")
+    if every_s and most:
+        raise invalid("most", "Either every_s or most.")
+    if most and not (most.isascii() and most.isdigit() and len(most) < 10 and 1 <= int(most) <= MOST_CHOSEN):
+        raise invalid("most", f"A whole number from 1 to {MOST_CHOSEN} is needed.")
+    return Sampling(_seconds(every_s) if every_s else None, int(most) if most else None)
+
+
+def time_of(request: Request, name: str) -> datetime | None:
+    text = request.query_params.get(name, "")
+    try:
+        return instant(text) if text else None
+    except ValueError as error:
+        raise invalid(name, str(error)) from error
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not SHORTEST_S <= value <= LONGEST_S:
+        raise invalid("every_s", f"A number of seconds from {SHORTEST_S:g} to {LONGEST_S:g} is needed.")
+    return value
+
+
+def _uav(request: Request) -> int | None:
+    text = request.query_params.get("uav", "")
+    if text and not (text.isascii() and text.isdigit() and len(text) < 19):
+        raise invalid("uav", "The number of a UAV is needed.")
+    return int(text) if text else None
+
+
+def _mission(request: Request) -> UUID | None:
+    text = request.query_params.get("mission", "")
+    try:
+        return UUID(text) if text else None
+    except ValueError as error:
+        raise invalid("mission", "The id of a mission is needed.") from error

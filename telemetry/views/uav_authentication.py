@@ -1,0 +1,99 @@
+"""Who is asking on the UAV link: a UAV by its own token, never a user."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from django.contrib.auth.models import AnonymousUser
+from drf_spectacular.extensions import OpenApiAuthenticationExtension
+from drf_spectacular.plumbing import build_bearer_security_scheme_object
+from rest_framework.authentication import BaseAuthentication, get_authorization_header
+from rest_framework.exceptions import AuthenticationFailed
+from rest_framework.permissions import BasePermission
+from rest_framework.request import Request
+
+from missions.models import CredentialKind, UavState
+from missions.services.credentials import note_link_token_use
+from workspace.authentication import LONGEST_TOKEN
+from workspace.errors import ApiProblem
+from workspace.prepared import prepared_rows
+from workspace.services import hash_token
+from workspace.sign_in_attempts import HeldBack, address_of, network_of, take_turn
+from workspace.throttling import ScopedRate
+
+WRONG_TOKENS = 30  # of one network in a quarter of an hour; a right token is never held back
+GUESSING = "guessing tokens of UAVs"
+
+
+@dataclass(frozen=True)
+class UavAccess:
+    """The UAV that asks, and where it was last: longitude, latitude."""
+
+    uav_id: int
+    organisation_id: int
+    place: tuple[float, float]
+
+
+class UavTokenAuthentication(BaseAuthentication):
+    """`Authorization: Bearer spu_…`. The answer never tells whether a token is unknown or revoked, or its UAV retired."""
+
+    def authenticate(self, request: Request) -> tuple[AnonymousUser, UavAccess] | None:
+        scheme, *rest = get_authorization_header(request).strip().split(b" ", 1)
+        if scheme.lower() != b"bearer":
+            return None
+        access = _access_of(b"".join(rest).strip())
+        if access is None:
+            self._count_a_guess(request)
+            raise AuthenticationFailed("The token is not valid.")
+        return AnonymousUser(), access
+
+    def authenticate_header(self, request: Request) -> str:
+        return "Bearer"
+
+    @staticmethod
+    def _count_a_guess(request: Request) -> None:
+        try:
+            take_turn(GUESSING, network_of(address_of(request)), most=WRONG_TOKENS)
+        except HeldBack as error:
+            raise ApiProblem(429, "throttled", "Too many wrong tokens from this network.", retry_after_s=error.wait_s) from error
+
+
+class UavsAlone(BasePermission):
+    """A UAV, and nobody else."""
+
+    def has_permission(self, request: Request, view: Any) -> bool:
+        return isinstance(request.auth, UavAccess)
+
+
+class UavRate(ScopedRate):
+    """Counts requests per UAV."""
+
+    def get_cache_key(self, request: Request, view: Any) -> str:
+        return str(self.cache_format % {"scope": self.scope, "ident": f"uav:{request.auth.uav_id}"})
+
+
+_ACCESS = f"""
+    SELECT credential.id, credential.last_used_at, uav.id, uav.organisation_id, ST_X(uav.location), ST_Y(uav.location)
+    FROM missions_uavcredential AS credential JOIN missions_uav AS uav ON uav.id = credential.uav_id
+    WHERE credential.token_sha256 = %s AND credential.kind = '{CredentialKind.LINK_TOKEN.value}' AND credential.revoked_at IS NULL
+        AND uav.state <> '{UavState.RETIRED.value}'"""  # noqa: S608 - of constants
+
+
+def _access_of(token: bytes) -> UavAccess | None:
+    if not token.isascii() or len(token) > LONGEST_TOKEN:
+        return None
+    rows = prepared_rows(_ACCESS, [hash_token(token.decode("ascii"))])
+    if not rows:
+        return None
+    credential_id, last_used_at, uav_id, organisation_id, longitude, latitude = rows[0]
+    note_link_token_use(credential_id=credential_id, last_used_at=last_used_at)
+    return UavAccess(uav_id, organisation_id, (longitude, latitude))
+
+
+class UavTokenScheme(OpenApiAuthenticationExtension):
+    """Describes the UAV's token in the OpenAPI document."""
+
+    target_class = UavTokenAuthentication
+    name = "uavToken"
+
+    def get_security_definition(self, auto_schema: Any) -> dict[str, Any]:
+        return build_bearer_security_scheme_object(header_name="Authorization", token_prefix="Bearer")  # noqa: S106 - the scheme's name

@@ -1,0 +1,194 @@
+"""The HTTP link: what a companion computer asks for and tells. A UAV gets its own data only, and tells of itself only."""
+
+import hashlib
+from typing import Any
+
+from django.utils import timezone
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from missions.given_selectors import Given, commands_by_key, given_to
+from missions.models import CommandState
+from missions.services.dispatch import load_of
+from missions.services.flying import FlightEnd
+from telemetry.serializers.given import given_json
+from telemetry.serializers.uav_link import (
+    AcknowledgementsSerializer,
+    GivenSerializer,
+    NotedListSerializer,
+    ReportsEnvelopeSerializer,
+    ReportsSerializer,
+    ResultsEnvelopeSerializer,
+    ResultsSerializer,
+    StoredReportsSerializer,
+    StoredResultsSerializer,
+    read_result,
+)
+from telemetry.services.companion_reports import take_reports
+from telemetry.services.heard import note_heard_over_http
+from telemetry.services.results import EndedFlight, take_results
+from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
+from telemetry.views.uav_authentication import UavAccess, UavRate, UavsAlone, UavTokenAuthentication
+from workspace.parsers import MeasuredJSONParser
+from workspace.renderers import FastJSONRenderer
+from workspace.sign_in_attempts import address_of
+
+
+class UavView(APIView):
+    """An address for UAVs alone. Whatever a UAV asks here, it has been heard."""
+
+    authentication_classes = [UavTokenAuthentication]
+    permission_classes = [UavsAlone]
+    throttle_classes = [UavRate]
+    throttle_scope = "uav-link"
+
+    def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
+        super().initial(request, *args, **kwargs)
+        note_heard_over_http(uav_id=request.auth.uav_id, address=address_of(request))
+
+
+class UavTelemetry(UavView):
+    parser_classes = [MeasuredJSONParser]
+
+    @extend_schema(
+        operation_id="report_telemetry",
+        summary="Report where the UAV is and how it does",
+        description=(
+            "A batch is taken record by record: sound ones are stored, faulty ones are named by their index and are not to be sent again. "
+            "A record that was stored before, under the same stream and sequence, is dropped: after a lost link all that was not answered "
+            "is sent again. Records from the future or out of order are stored and flagged."
+        ),
+        request=ReportsSerializer,
+        responses=StoredReportsSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        received_at = timezone.now()
+        envelope = _envelope(ReportsEnvelopeSerializer, request)
+        uav: UavAccess = request.auth
+        sent = envelope["records"]
+        taken = take_reports(uav_id=uav.uav_id, place=uav.place, stream=envelope["stream"], sent=sent, received_at=received_at)
+        return Response(
+            {
+                "stored": taken.counts.stored,
+                "known": taken.counts.duplicates,
+                "from_future": taken.counts.from_future,
+                "late": taken.counts.late,
+                "refused": [_refused(report.index, sent[report.index], report.faults) for report in taken.refused],
+            }
+        )
+
+
+class UavResults(UavView):
+    parser_classes = [MeasuredJSONParser]
+
+    @extend_schema(
+        operation_id="report_results",
+        summary="Report what was found at targets, and how flights ended",
+        description=(
+            "Of routes that this UAV was sent alone. A result that was stored before, under the same stream and sequence, is dropped. The "
+            "newest result of a target sets its state."
+        ),
+        request=ResultsSerializer,
+        responses=StoredResultsSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        received_at = timezone.now()
+        envelope = _envelope(ResultsEnvelopeSerializer, request)
+        read, refused = [], {}
+        for index, sent in enumerate(envelope["results"]):
+            result, faults = read_result(sent)
+            if result is None:
+                refused[index] = faults
+            else:
+                read.append((index, result))
+        taken = take_results(
+            uav_id=request.auth.uav_id,
+            stream=envelope["stream"],
+            results=[result for _, result in read],
+            flights=[
+                EndedFlight(flight["approval"], flight["flight"], FlightEnd(flight["outcome"])) for flight in envelope.get("flights", [])
+            ],
+            received_at=received_at,
+        )
+        refused |= {read[place][0]: {"place": "It is no target that this UAV was sent to."} for place in taken.refused_results}
+        told = [_refused(index, envelope["results"][index], faults) for index, faults in sorted(refused.items())]
+        return Response({"stored": taken.stored, "known": taken.known, "refused": told, "refused_flights": taken.refused_flights})
+
+
+class UavRoute(UavView):
+    renderer_classes = [FastJSONRenderer]
+
+    @extend_schema(
+        operation_id="get_uav_route",
+        summary="What the UAV is to fly, and the commands that wait for it",
+        description=(
+            "Asked every few seconds, with the ETag of the answer before in If-None-Match. The route is there from when it is sent until "
+            "it is taken off or the mission is over. A command is handed over by this answer and is among `commands` until the UAV has "
+            "told its end, or it has been overtaken, or is not wanted any more: each is to be carried out once."
+        ),
+        parameters=[OpenApiParameter("If-None-Match", str, OpenApiParameter.HEADER, description="the ETag as last seen")],
+        responses={
+            200: GivenSerializer,
+            204: OpenApiResponse(description="Nothing to fly and nothing that waits."),
+            304: OpenApiResponse(description="The same as last seen."),
+        },
+    )
+    def get(self, request: Request) -> Response:
+        uav_id = request.auth.uav_id
+        given = given_to(uav_id)
+        if request.headers.get("If-None-Match") == _etag(uav_id, given):
+            return Response(status=304, headers={"ETag": _etag(uav_id, given), "Cache-Control": "private, no-cache"})
+        given = handed_to(uav_id, given)
+        headers = {"ETag": _etag(uav_id, given), "Cache-Control": "private, no-cache"}
+        if given.upload is None and not given.waiting:
+            return Response(status=204, headers=headers)
+        commands = {command.pk: command for command in commands_by_key((*given.waiting, *filter(None, [given.upload])))}
+        upload = commands.get(given.upload) if given.upload else None
+        waiting = [commands[key] for key in given.waiting if key in commands]
+        return Response(
+            given_json(uav_id=uav_id, upload=upload, load=load_of(upload) if upload else None, waiting=waiting), headers=headers
+        )
+
+
+class UavAcknowledgements(UavView):
+    @extend_schema(
+        operation_id="acknowledge_commands",
+        summary="Say what became of commands",
+        description=(
+            "`acknowledged`: it is here. `applied`: it is done. `failed`: it is not, and `reason` says why. An upload is applied only with "
+            "the `content_sha256` of what the UAV holds, and only if this is what was approved: otherwise the command fails. Asked again, "
+            "nothing changes twice."
+        ),
+        request=AcknowledgementsSerializer,
+        responses=NotedListSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        told = _envelope(AcknowledgementsSerializer, request)["acknowledgements"]
+        acknowledgements = [
+            Acknowledgement(entry["command"], CommandState(entry["state"]), entry.get("reason", ""), entry.get("content_sha256"))
+            for entry in told
+        ]
+        noted = note_acknowledgements(uav_id=request.auth.uav_id, acknowledgements=acknowledgements)
+        return Response(
+            {"results": [{"command": one.command_id, "noted": one.noted, "state": one.state, "words": one.words} for one in noted]}
+        )
+
+
+def _etag(uav_id: int, given: Given) -> str:
+    """A route is what its upload was approved with, which never changes; so are the commands."""
+    digest = hashlib.sha256(f"{uav_id} {given.upload} {' '.join(map(str, given.waiting))}".encode()).hexdigest()
+    return f'"{digest[:32]}"'
+
+
+def _envelope(serializer_class: Any, request: Request) -> dict[str, Any]:
+    serializer = serializer_class(data=request.data)
+    serializer.is_valid(raise_exception=True)
+    return dict(serializer.validated_data)
+
+
+def _refused(index: int, sent: Any, faults: dict[str, str]) -> dict[str, Any]:
+    sequence = sent.get("sequence") if isinstance(sent, dict) else None
+    is_number = isinstance(sequence, int) and not isinstance(sequence, bool)
+    return {"index": index, "sequence": sequence if is_number else None, "faults": faults}
