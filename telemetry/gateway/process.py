@@ -24,6 +24,7 @@ from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
 from telemetry.ground_station.flavour import flavour_of
+from telemetry.services.alerts import tell_of_second_sender
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
 from telemetry.services.sightings import Sighting
@@ -34,6 +35,8 @@ FLEET_EVERY_S = 1.0
 LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
+SENDERS_EVERY_S = 2.0
+SECOND_SENDER_GONE_S = 60.0
 WAITED_TOO_LONG_S = 15.0
 DESK_WITHIN_S = 5.0
 STOP_WITHIN_S = 4.0
@@ -140,6 +143,7 @@ class Gateway:
             "hints": listen(self.desk.hint),
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
+            "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
 
@@ -254,6 +258,20 @@ class Gateway:
         now_s = time.time()
         for session in self.sessions.values():
             session.tick(now_s)
+
+    async def _tell_second_senders(self) -> None:
+        """Two who bear one system id, where nothing is signed: which of them is the UAV nobody can know."""
+        now_s = time.time()
+        for session in self.sessions.values():
+            if session.second_sender is None or session.peer is None:
+                continue
+            other, last_s = session.second_sender
+            if now_s - last_s < SECOND_SENDER_GONE_S:
+                words = f"Two senders say that they are {session.uav.name}: {session.peer.name}, which is believed, and {other}."
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
+            else:
+                session.second_sender = None
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())
