@@ -23,6 +23,7 @@ from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.zone_selectors import zones_met
+from workspace.number_text import number_text
 
 NEAR_DEG = 0.002
 AT_DEG = 1e-5  # a metre
@@ -64,7 +65,7 @@ def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegF
 
 def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
     """Why a speed cannot be flown over a leg."""
-    low, high = (f"{speed_mps:.1f}" for speed_mps in possible)
+    low, high = (number_text(speed_mps, 1) for speed_mps in possible)
     if flyer.performance.max_airspeed_mps is None:
         values = {"low": low, "high": high, "uav": flyer.name}
         return _("Between %(low)s and %(high)s m/s: the top airspeed of %(uav)s is not stated.") % values

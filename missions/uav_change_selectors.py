@@ -6,12 +6,12 @@ from typing import Any
 from uuid import UUID
 
 from django.db.models import QuerySet
-from django.utils.formats import number_format
 from django.utils.translation import gettext as _
 
 from missions.fleet_selectors import FIGURES, figures_of
 from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Uav, UavState
+from workspace.number_text import number_text
 
 TO_BE_FLOWN = (MissionState.PLANNED, MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 OUT_OF_SERVICE = "uav_out_of_service"  # the plan's own warning: it leaves the UAV on the ground
@@ -179,7 +179,7 @@ def _told_apart(kept: float | None, now: float | None, decimals: int) -> tuple[s
 
 def _number(value: float, decimals: int) -> str:
     rounded = round(value, decimals)
-    return str(number_format(int(rounded) if rounded == int(rounded) else rounded))
+    return number_text(rounded, len(f"{rounded:.{decimals}f}".rstrip("0").partition(".")[2]))
 
 
 def _list(sensors: list[str]) -> str:

@@ -5,7 +5,6 @@ It is written in one canonical form, whose SHA-256 names it. What is sent to a U
 
 import hashlib
 import json
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
-from inspection.models import Asset
 from inspection.selectors import ground_revision, terrain_edition
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
@@ -21,9 +19,10 @@ from missions.flight_plan.conditions import conditions_from_json, conditions_to_
 from missions.flight_plan.waypoints import WaypointKind
 from missions.flight_plan.zone_facts import zones_near
 from missions.mavlink.content import load_to_json
-from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, route_to_json
+from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
 from missions.mavlink.items import CannotBeFlown, flight_loads
 from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
+from missions.services.approved_targets import approved_targets
 from missions.services.refused import Reason, Refused
 from missions.services.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
 from missions.zone_selectors import zone_margins
@@ -51,7 +50,6 @@ def _canonical(value: Any) -> Any:
 def approval_document(mission: Mission) -> dict[str, Any]:
     """Of a planned mission, as loaded by selectors.mission_of_organisation. Raises Refused for routes that a UAV cannot be given."""
     flown = [route for route in mission.routes.all() if route.geometry is not None]
-    shapes = _shapes_of_assets([target.asset_id for target in mission.targets.all()])
     return {
         "version": VERSION,
         "mission": {
@@ -74,20 +72,7 @@ def approval_document(mission: Mission) -> dict[str, Any]:
         "lost_link_check": mission.lost_link_check,
         "separation": mission.separation,
         "zones": _zones(flown),
-        "targets": [
-            {
-                "id": target.pk,
-                "sequence": target.sequence,
-                "asset": target.asset_id,
-                "kind": None if target.asset is None else target.asset.kind,
-                "geometry": shapes.get(target.asset_id),
-                "label": target.label,
-                "position": None if target.position is None else list(target.position.coords),
-                "stretch": [list(end) for end in target.stretch.coords] if target.stretch else None,
-                "task": target.task,
-            }
-            for target in mission.targets.all()
-        ],
+        "targets": approved_targets(mission),
         "routes": _routes(flown, mission),
     }
 
@@ -124,12 +109,6 @@ def _waypoint(row: Waypoint, sequence_of: dict[int, int]) -> FrozenWaypoint:
     )
 
 
-def _shapes_of_assets(assets: Sequence[int | None]) -> dict[int, dict[str, Any]]:
-    """As GeoJSON: what a UAV is to look at, as it was when it was approved."""
-    rows = Asset.objects.filter(pk__in=set(assets) - {None}).values_list("pk", "geometry")
-    return {pk: json.loads(geometry.json) for pk, geometry in rows if geometry is not None}
-
-
 def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
     found, reasons = [], []
     for route in routes:
@@ -163,20 +142,22 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
 
 
 def _flights(route: FrozenRoute, *, by_mavlink: bool) -> list[dict[str, Any]]:
-    """With the items of each flight for an autopilot; a companion computer flies from the route itself."""
+    """With what each flight is flown from: items for an autopilot, the flight in plain values for a companion computer."""
     loads = flight_loads(route) if by_mavlink else [None] * len(route.flights)
-    return [
-        {
-            "number": flight.number + 1,
-            "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},
-            "waypoints": [waypoint.sequence for waypoint in flight.waypoints],
-            "items": None if load is None else load_to_json(load),
-            "content_sha256": content_sha256({"route": route_to_json(route), "flight": flight.number + 1})
-            if load is None
-            else load.content_sha256,
-        }
-        for flight, load in zip(route.flights, loads, strict=True)
-    ]
+    found = []
+    for flight, load in zip(route.flights, loads, strict=True):
+        content = flight_to_json(flight, route) if load is None else None
+        found.append(
+            {
+                "number": flight.number + 1,
+                "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},
+                "waypoints": [waypoint.sequence for waypoint in flight.waypoints],
+                "items": None if load is None else load_to_json(load),
+                "content": content,
+                "content_sha256": content_sha256(content) if load is None else load.content_sha256,
+            }
+        )
+    return found
 
 
 def _zones(routes: list[Route]) -> list[dict[str, Any]]:

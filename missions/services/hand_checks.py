@@ -32,6 +32,7 @@ from missions.services.missions import request_of_mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
 from missions.zone_selectors import MetZone, zones_met
+from workspace.number_text import number_text
 
 MOVED_M = 0.1  # less is rounding
 HIGHER_M = 0.05
@@ -128,7 +129,7 @@ def list_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> d
     if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
         return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
     if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
-        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": f"{LONGEST_M / 1_000:.0f}"}}
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(LONGEST_M / 1_000)}}
     return {}
 
 
@@ -142,7 +143,7 @@ def point_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> 
             faults[f"waypoints.{number}.position"] = _("Start, end and targets stay where they are.")
         low_m = _least_agl_m(waypoint, network, is_moved=waypoint is None or apart_m(point, waypoint) > MOVED_M)
         if not low_m - HIGHER_M <= point.agl_m <= flight.max_agl_m + HIGHER_M:
-            limits = {"low": f"{low_m:.0f}", "high": f"{flight.max_agl_m:.0f}"}
+            limits = {"low": number_text(low_m), "high": number_text(flight.max_agl_m)}
             faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
         if point.speed_mps is not None and waypoint is not None and waypoint.kind in {WaypointKind.START, WaypointKind.BASE}:
             faults[f"waypoints.{number}.speed_mps"] = _("No leg leads here.")
@@ -159,9 +160,11 @@ def obstacle_faults(points: RoutePoints) -> dict[str, str]:
     if low is None:
         return {}
     near = legs_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
+    stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # straight up or down to the next one
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
-        if (place, span) in near or (not is_leg and (place - 1, span) in near):
+        legs = [place] if is_leg else [leg for leg in (place - 1, place) if stands[leg]]
+        if any((leg, span) in near for leg in legs):
             faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
     return faults
 
@@ -287,11 +290,11 @@ def _reach_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[s
     asked = request.uavs[uav]
     longest_m = max(lengths_of_sorties(flown.waypoints)) if flown.waypoints else 0.0
     if asked.max_range_m is not None and longest_m > asked.max_range_m:
-        values = {"length": f"{longest_m / 1_000:.1f}", "range": f"{asked.max_range_m / 1_000:.1f}", "uav": asked.name}
+        values = {"length": number_text(longest_m / 1_000, 1), "range": number_text(asked.max_range_m / 1_000, 1), "uav": asked.name}
         return {"waypoints": _("This is %(length)s km; the range of %(uav)s is %(range)s km.") % values}
     usable_wh = asked.performance.usable_wh
     most_wh = max(wh_of_sorties(flown.timing), default=0.0) if flown.timing else 0.0
     if usable_wh is None or most_wh <= usable_wh:
         return {}
-    missing = {"missing": f"{most_wh - usable_wh:.1f}", "uav": asked.name}
+    missing = {"missing": number_text(most_wh - usable_wh, 1), "uav": asked.name}
     return {"waypoints": _("The battery of %(uav)s lacks %(missing)s Wh for this.") % missing}

@@ -1,6 +1,5 @@
 """A mission whose UAV has changed since: the open page says it, takes the present figures and gives them back."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -8,9 +7,10 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks
+from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import EAST, WEST, sends
-from tests.browser.test_safe_routes import in_both_themes, opens
+from tests.browser.test_safe_routes import opens
 
 pytestmark = pytest.mark.browser
 
@@ -29,7 +29,7 @@ def waits_for_changes(page: Page, mission: dict[str, Any], count: int) -> None:
     )
 
 
-def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
+def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     battery = {"battery_wh": 700.0, "mass_kg": 4.0, "max_airspeed_mps": 15.0}
     swift = sends(page, "uavs", {"name": "Swift", "position": EAST, **battery})

@@ -1,7 +1,7 @@
 /** When and in what air a mission is flown, and when it is legal. English → German; [one, other] where there is a plural. */
 
 export default {
-  "a mast or wires are in the way: over them it would be {height} above the greatest height": "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten Höhe",
+  "a mast or wires are in the way: over them it would be {height} above the greatest allowed height": "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten erlaubten Höhe",
   "A mission has at most {most} rally points.": "Eine Mission hat höchstens {most} Sammelpunkte.",
   "A plan with a departure counts it at its times, any other plan at all times.": "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",
   "A route is changed by hand once its plan is saved.": "Eine Route lässt sich von Hand ändern, sobald ihr Plan gespeichert ist.",
@@ -96,7 +96,7 @@ export default {
   "How the flight of {name} ends": "Wie der Flug von {name} endet",
   "If the link is lost": "Wenn die Verbindung abreißt",
   "If the link is lost:": "Wenn die Verbindung abreißt:",
-  "It is counted on ways back at up to this height above the start: {heights}.": "Gerechnet ist mit Rückwegen bis in diese Höhe über dem Start: {heights}.",
+  "Highest way back, above the start: {heights}.": "Höchster Rückweg, über dem Start: {heights}.",
   "It is being checked for energy and zones.": "Energie und Zonen werden gerade geprüft.",
   "It is checked for energy and zones once there is a plan.": "Energie und Zonen werden geprüft, sobald es einen Plan gibt.",
   "Its rally point is kept, and not used.": ["Der Sammelpunkt bleibt und wird nicht genutzt.", "Die {count} Sammelpunkte bleiben und werden nicht genutzt."],
@@ -119,7 +119,9 @@ export default {
   "the route of {name}": "die Route von {name}",
   "the way back meets a no-fly zone": "der Rückweg trifft auf eine Flugverbotszone",
   "the way back meets {zone}": "der Rückweg trifft auf {zone}",
-  "the way back would be {height} above the greatest height": "der Rückweg läge {height} über der größten Höhe",
+  "the way back would be {height} above the greatest allowed height": "der Rückweg läge {height} über der größten erlaubten Höhe",
+  "Way back without a link": "Rückweg ohne Verbindung",
+  "Way back without a link that fails": "Rückweg ohne Verbindung, der nicht gelingt",
   "the wind is too strong for the way back": "der Wind ist zu stark für den Rückweg",
   "This plan was made before this was checked. Plan again to check it.": "Dieser Plan entstand, bevor dies geprüft wurde. Zum Prüfen neu planen.",
   "up to {energy} are missing with the reserve kept": "es fehlen bis zu {energy}, wenn die Reserve bleibt",
@@ -176,6 +178,8 @@ export default {
   "on its way": "unterwegs",
   "{one} and {other} come within {distance} of each other.": "{one} und {other} kommen einander auf {distance} nahe.",
   "{one} and {other}: one hovers in the way of the other.": "{one} und {other}: Eines schwebt dem anderen im Weg.",
+  "All are planned with the figures that this mission has of its UAVs.": "Alle sind mit den Werten geplant, die diese Mission von ihren UAVs hat.",
+  "Plans that reach fewer targets do not count for it.": "Pläne, die weniger Ziele erreichen, zählen dabei nicht.",
   "One plan of the same targets for each. The best figure of a column is bold.": "Je ein Plan derselben Ziele. Der beste Wert einer Spalte ist fett.",
   "Out of range: {length} are missing at best.": "Außer Reichweite: Im besten Fall fehlen {length}.",
   "{percent} left, {energy} used": "{percent} übrig, {energy} verbraucht",

@@ -40,7 +40,7 @@ export function createByHand(store, actions) {
   const takeBack = h("button", { type: "button", class: "button", onclick: actions.takeBackByHand }, icon("undo-2", "small"), t("Take back the last change"));
   const backSaid = h("p", { class: "quiet-text" });
   const back = h("div", { class: "stack hand-back" }, backSaid, h("div", { class: "hand-acts" }, takeBack));
-  const element = h("div", { class: "stack by-hand" }, said, figures, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-acts hand-end" }, keep, leave));
+  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-end" }, figures, h("div", { class: "hand-acts" }, keep, leave)));
 
   const ownSpeed = () => store.state.mission?.uavs[hand().sequence]?.cruise_speed_mps ?? null;
 
@@ -60,6 +60,12 @@ export function createByHand(store, actions) {
     const ofLegs = [...told.legs].map(([index, words]) => `${leg(Math.min(index, points.length - 2))}: ${words}`);
     const ofPoints = [...told.points].map(([index, words]) => `${t("Waypoint {number}", { number: index + 1 })}: ${words}`);
     return [...(unknown ? [unknown] : []), ...told.other, ...ofLegs, ...ofPoints];
+  }
+
+  let shownPoint = null;
+  /** What somebody is typing stays, whatever the server answers meanwhile. */
+  function write(input, value, chosen) {
+    if (input !== document.activeElement || chosen !== shownPoint) input.value = value;
   }
 
   function refresh({ hand: now, plan }) {
@@ -96,9 +102,10 @@ export function createByHand(store, actions) {
     takeBack.disabled = changes > 0 || now.isSaving;
     if (!point) return;
     const free = isFree(point);
-    height.value = typed(point.altitude_agl_m);
-    [longitude.value, latitude.value] = point.position.map((degrees) => Number(degrees.toFixed(6)));
-    speed.value = point.speed_mps === null ? "" : typedSpeed(point.speed_mps);
+    write(height, typed(point.altitude_agl_m), chosen);
+    [longitude, latitude].forEach((input, axis) => write(input, Number(point.position[axis].toFixed(6)), chosen));
+    write(speed, point.speed_mps === null ? "" : typedSpeed(point.speed_mps), chosen);
+    shownPoint = chosen;
     const flown_mps = flownSpeed(now, chosen);
     const usual_mps = point.speed_mps === null ? (flown_mps ?? ownSpeed()) : ownSpeed();
     speed.placeholder = usual_mps && isFlownTo(point) ? typedSpeed(usual_mps) : "";
