@@ -4,6 +4,7 @@ from typing import Any
 
 from django.http import Http404
 from django.urls import reverse
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -18,6 +19,7 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
+from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 
@@ -53,7 +55,16 @@ def _values(request: Request, uav: Uav | None = None) -> dict[str, Any]:
     context = {"organisation": request.user.organisation}
     serializer = UavFlatSerializer(uav, data=flat_uav(request.data), partial=uav is not None, context=context)
     serializer.is_valid(raise_exception=True)
-    return dict(serializer.validated_data)
+    values = dict(serializer.validated_data)
+    _refuse_unsigned(request.user, bool(uav and uav.allows_unsigned), values)
+    return values
+
+
+def _refuse_unsigned(user: User, allowed_now: bool, values: dict[str, Any]) -> None:
+    """Who can speak to a UAV without its key can fly it: administrators alone open that door. Raises ApiProblem 403."""
+    if values.get("allows_unsigned", allowed_now) != allowed_now and user.role not in ADMINISTRATORS:
+        message = _("Only an administrator allows MAVLink without a signature.")
+        raise ApiProblem(403, "administrators_alone", message, details={"allows_unsigned": [message]})
 
 
 def _filters(request: Request) -> dict[str, Any]:
