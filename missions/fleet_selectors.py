@@ -5,11 +5,18 @@ from typing import Any
 
 from django.db.models import Count, Prefetch, Q, QuerySet
 
-from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, PERFORMANCE_KEYS, Performance, performance_from_json
+from missions.flight_plan.performance import (
+    OWN_PERFORMANCE_KEYS,
+    PERFORMANCE_KEYS,
+    Performance,
+    performance_from_json,
+    performance_to_json,
+)
 from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
 from workspace.models import AuditEntry, Organisation
 
 EVERY_STATE = "all"
+FIGURES = ("max_range_m", "cruise_speed_mps", *PERFORMANCE_KEYS, "sensors")  # what a mission takes over from a UAV and plans count on
 
 
 def states_out_of_service(uavs: list[int]) -> dict[int, UavState]:
@@ -83,6 +90,16 @@ def facts_when_deleted(organisation: Organisation, subject_type: str, subject_id
     if entry is None or entry.action != "delete" or entry.organisation_id != organisation.pk:
         return None
     return entry.before
+
+
+def figures_of(uav: Uav) -> dict[str, Any]:
+    """What plans count on of a UAV, by the names of the API: its own figures, and for the rest its type's. Raises InvalidPerformance."""
+    return {
+        "max_range_m": uav.range_m,
+        "cruise_speed_mps": uav.speed_mps,
+        **performance_to_json(performance_of(uav)),
+        "sensors": uav.sensors,
+    }
 
 
 def performance_of(uav: Uav) -> Performance:

@@ -23,6 +23,7 @@ from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.zone_selectors import zones_met
+from workspace.number_text import number_text
 
 NEAR_DEG = 0.002
 AT_DEG = 1e-5  # a metre
@@ -64,7 +65,7 @@ def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegF
 
 def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
     """Why a speed cannot be flown over a leg."""
-    low, high = (f"{speed_mps:.1f}" for speed_mps in possible)
+    low, high = (number_text(speed_mps, 1) for speed_mps in possible)
     if flyer.performance.max_airspeed_mps is None:
         values = {"low": low, "high": high, "uav": flyer.name}
         return _("Between %(low)s and %(high)s m/s: the top airspeed of %(uav)s is not stated.") % values
@@ -110,8 +111,10 @@ _NO_FAULT: dict[str, Any] = {"is_clear": True, "zone": None, "message": ""}
 
 
 def too_low_text(agl_m: float) -> str:
-    """What is said of a leg that has to be flown at this height above ground over something."""
+    """What is said of a leg that has to be flown at this height above ground over something; inf: nobody knows it."""
     limit_m = settings.FLIGHT_RULES.max_agl_m
+    if agl_m == np.inf:
+        return _("How high the ground is under what stands here is not known: go round it.")
     if agl_m > limit_m:
         return _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{limit_m:.0f}"}
     return _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}

@@ -18,6 +18,7 @@ from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_revision
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route
 from missions.stale_selectors import landing_routes_without_base
+from missions.uav_change_selectors import missions_with_other_uavs
 from workspace.cache_absence import CACHE_AWAY
 from workspace.models import Organisation
 
@@ -78,7 +79,8 @@ def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet
     if asked.uav is not None:
         missions = missions.filter(Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav=asked.uav)))
     if asked.is_stale is not None:
-        stale = ~Q(state=MissionState.DRAFT) & (~Q(ground_revision=ground_revision()) | Q(landing_routes_without_base()))
+        others = missions_with_other_uavs(missions)
+        stale = ~Q(state=MissionState.DRAFT) & (~Q(ground_revision=ground_revision()) | Q(landing_routes_without_base()) | Q(pk__in=others))
         missions = missions.filter(stale) if asked.is_stale else missions.exclude(stale)
     if asked.changed_from is not None:
         missions = missions.filter(updated_at__gte=asked.changed_from)

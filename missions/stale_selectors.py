@@ -13,6 +13,7 @@ from inspection.models import Asset
 from inspection.selectors import ground_heights_m, ground_revision
 from missions.flight_plan.clearance import FloatArray, FlownRoute
 from missions.models import Base, Mission, MissionState, Route, WaypointKind
+from missions.uav_change_selectors import UavChange, uav_change_words
 from missions.zone_selectors import MetZone, departure_s, flown_route, zones_met
 
 TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
@@ -23,7 +24,7 @@ MOST_CAUSES = 20
 class StaleCause:
     """One thing that changed and what of the mission it touches. `uav` and `target` are places in the mission."""
 
-    what: str  # zone, base, asset, terrain or elsewhere
+    what: str  # zone, uav, base, asset, terrain or elsewhere
     message: str
     uav: int | None = None
     target: int | None = None
@@ -51,21 +52,24 @@ def has_lost_base(mission: Mission, bases: frozenset[tuple[float, ...]]) -> bool
     return any(route.lands_at is not None and route.lands_at.coords not in bases for route in mission.routes.all())
 
 
-def is_stale(mission: Mission, revision: int, *, has_lost_base: bool) -> bool:
-    """Whether assets, zones, terrain or the bases to land at have changed since it was planned; `revision` is the ground's now."""
-    return mission.state != MissionState.DRAFT and (mission.ground_revision != revision or has_lost_base)
+def is_stale(mission: Mission, revision: int, *, has_lost_base: bool, has_other_uavs: bool) -> bool:
+    """Whether assets, zones, terrain, the bases to land at or its UAVs have changed since it was planned.
+
+    `revision` is the ground's now, `has_other_uavs` as uav_change_selectors has it.
+    """
+    return mission.state != MissionState.DRAFT and (mission.ground_revision != revision or has_lost_base or has_other_uavs)
 
 
-def stale_causes(mission: Mission) -> list[StaleCause]:
-    """What the changes mean for the mission, the worst first; empty if all is as it was."""
-    if not is_stale(mission, ground_revision(), has_lost_base=False):
-        return _bases(mission)
-    return causes_on_the_routes(mission) or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
+def stale_causes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
+    """What the changes mean for the mission, the worst first; empty if all is as it was. `uavs`: its uav_changes."""
+    if not is_stale(mission, ground_revision(), has_lost_base=False, has_other_uavs=False):
+        return [*_uavs(mission, uavs), *_bases(mission)]
+    return causes_on_the_routes(mission, uavs) or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
 
 
-def causes_on_the_routes(mission: Mission) -> list[StaleCause]:
+def causes_on_the_routes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
     """What speaks against the stored routes on the ground as it is now, the worst first, whatever they were planned on."""
-    causes = [*_zones(mission), *_bases(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
+    causes = [*_zones(mission), *_uavs(mission, uavs), *_bases(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
     return (causes or _terrain(mission))[:MOST_CAUSES]
 
 
@@ -75,6 +79,7 @@ def stale_reason(causes: list[StaleCause]) -> str:
         return ""
     headline = {
         "zone": _("A zone changed since this was planned."),
+        "uav": _("A UAV changed since this was planned."),
         "base": _("A base changed since this was planned."),
         "asset": _("An asset changed since this was planned."),
         "terrain": _("The terrain changed since this was planned."),
@@ -176,6 +181,12 @@ def _leg_words(zone: str, ends: tuple[str, str], uav: str) -> str:
 def route_letter(sequence: int) -> str:
     """A to Z, then AA: as on the map."""
     return chr(65 + sequence) if sequence < 26 else f"{chr(64 + sequence // 26)}{chr(65 + sequence % 26)}"
+
+
+def _uavs(mission: Mission, changes: Sequence[UavChange]) -> list[StaleCause]:
+    if mission.state == MissionState.DRAFT:
+        return []
+    return [StaleCause("uav", uav_change_words(change), change.uav) for change in changes]
 
 
 def _bases(mission: Mission) -> list[StaleCause]:

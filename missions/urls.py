@@ -4,7 +4,7 @@ from django.urls import path
 
 from missions import views
 from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionDispatch, MissionRevoke
-from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsUndo
+from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.commands import CommandDetail, MissionCommands, UavCommands
 from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
@@ -28,6 +28,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
     path("missions/<uuid:mission_id>/legal-windows", MissionLegalWindows.as_view(), name="api-mission-legal-windows"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints", RouteWaypoints.as_view(), name="api-route-waypoints"),
+    path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/look", RouteWaypointsLook.as_view(), name="api-route-waypoints-look"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/undo", RouteWaypointsUndo.as_view(), name="api-route-waypoints-undo"),
     path("missions/<uuid:mission_id>/approval", MissionApproval.as_view(), name="api-mission-approval"),
     path("missions/<uuid:mission_id>/approve", MissionApprove.as_view(), name="api-mission-approve"),

@@ -33,13 +33,13 @@ class ChargingStop:
 
 
 class CannotCharge(ValueError):
-    """Even with every stop the battery does not last: `missing_wh` are missing between these two waypoints.
+    """Even with every stop the battery does not last: with `missing_wh` more it would. It ends first between these two waypoints.
 
     `start` is where it was charged last, -1 for the take-off; `end` the next tower, or the number of waypoints for the route's end.
     """
 
     def __init__(self, start: int, end: int, missing_wh: float) -> None:
-        super().__init__(f"{missing_wh:.1f} Wh are missing between waypoint {start} and waypoint {end}.")
+        super().__init__(f"{missing_wh:.1f} Wh are missing; the battery ends between waypoint {start} and waypoint {end}.")
         self.start = start
         self.end = end
         self.missing_wh = missing_wh
@@ -146,6 +146,18 @@ def _way_to_towers(
     return down, up
 
 
+def _least_usable_wh(arrives_wh: NDArray[np.float64], leaves_wh: NDArray[np.float64], total_wh: float) -> float:
+    """What a battery has to give at least from one full charge to the next, with the best stops at towers in this order.
+
+    arrives_wh: used by when it stands on each tower; leaves_wh: used as if it had been charged full while over it.
+    """
+    least_wh = np.maximum(arrives_wh, 0.0)  # to each tower
+    for tower in range(1, len(least_wh)):
+        over_wh = np.maximum(least_wh[:tower], arrives_wh[tower] - leaves_wh[:tower])
+        least_wh[tower] = min(least_wh[tower], over_wh.min())
+    return float(np.maximum(least_wh, total_wh - leaves_wh).min(initial=total_wh))
+
+
 def _fewest(
     used_wh: NDArray[np.float64],
     total_wh: float,
@@ -166,9 +178,8 @@ def _fewest(
         if not is_near.any():
             start = int(places[chosen[-1]]) if chosen else -1
             ahead = [tower for tower in onward.tolist() if used_wh[tower] + down_wh[tower] - start_wh > usable_wh + HAIR_WH]
-            if not ahead:
-                raise CannotCharge(start, end, total_wh - start_wh - usable_wh)
-            raise CannotCharge(start, int(places[ahead[0]]), float(used_wh[ahead[0]] + down_wh[ahead[0]] - start_wh - usable_wh))
+            missing_wh = _least_usable_wh(used_wh + down_wh, used_wh - up_wh, total_wh) - usable_wh
+            raise CannotCharge(start, int(places[ahead[0]]) if ahead else end, missing_wh)
         best = int(onward[is_near][leads_to_wh[is_near].argmax()])
         chosen.append(best)
         start_wh = float(used_wh[best] - up_wh[best])

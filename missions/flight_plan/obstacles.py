@@ -12,6 +12,7 @@ from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import END, FloatArray, IntArray, RoutePoints, Waypoints
 
 HAIR = 1e-9  # of a leg
+ABOVE_ALL_M = 1e5  # the top of what stands on ground that is not known
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +21,7 @@ class TooLow:
 
     place is that of the leg's start; or, where it is no leg, of a waypoint that is itself to stand higher. Levels count as the waypoints'
     own: above the sea where that is known, else above flat ground. agl_m is the level above the ground there; span what stands there, by
-    its number.
+    its number. Both heights are inf where nobody knows how high that stands, as the ground under it is not known.
     """
 
     place: IntArray
@@ -33,6 +34,9 @@ class TooLow:
 
     def __len__(self) -> int:
         return len(self.place)
+
+    def where(self, chosen: NDArray[np.bool_]) -> "TooLow":
+        return TooLow(*(values[chosen] for values in vars(self).values()))
 
 
 def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules) -> TooLow | None:
@@ -56,10 +60,8 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     place = np.concatenate([leg, point])
     ground_m = np.zeros((len(span), 2))
     if is_known and ground_heights_m is not None:
-        under_m = level_m - points.agl_m
-        here_m = np.maximum(under_m[place], under_m[np.minimum(place + 1, len(points) - 1)])
         told_m = ground_heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
-        ground_m = np.where(np.isnan(told_m), here_m[:, None], told_m)
+        ground_m = np.where(np.isnan(told_m).any(axis=1, keepdims=True), ABOVE_ALL_M, told_m)
     heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
     least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)
     is_leg = np.arange(len(place)) < len(leg)
@@ -73,6 +75,8 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
         told_m = ground_heights_m(at)
         under_m = np.where(np.isnan(told_m), np.tile(here_m, 2), told_m)
     agl_m = needed_m - under_m.reshape(2, -1).min(axis=0)
+    is_unknown = needed_m >= ABOVE_ALL_M
+    needed_m[is_unknown] = agl_m[is_unknown] = np.inf
     order = np.lexsort((begin, ~is_leg[row], place[row]))
     return TooLow(place[row][order], is_leg[row][order], begin[order], until[order], needed_m[order], agl_m[order], span[row][order])
 
@@ -82,13 +86,14 @@ def rising_over(
 ) -> tuple[Waypoints, tuple[int, ...]]:
     """The waypoints, with a climb before, a level stretch over and a descent behind whatever they would pass too low.
 
-    Also the numbers of the spans over which a UAV would have to rise above the limit: such a route is not to be flown.
+    Also the numbers of the spans over which a UAV would have to rise above the limit, or nobody knows how high: such a route is not to
+    be flown.
     """
     low = too_low(waypoints, spans, ground_heights_m, rules)
     if low is None:
         return waypoints, ()
     blocked = tuple(np.unique(low.span[low.agl_m > rules.max_agl_m + HAIR]).tolist())
-    return _risen(waypoints, low, ground_heights_m), blocked
+    return _risen(waypoints, low.where(np.isfinite(low.level_m)), ground_heights_m), blocked
 
 
 def _inspected(points: RoutePoints) -> IntArray:

@@ -25,6 +25,7 @@ SHORT_M = 2.0  # by so much a leg may come short of the clearance right over a w
 SLOPE = 0.3  # and by that much more for each metre beside it: then it is farther away all the same
 SAME_M = 2.0
 NEAR_DEG = 0.002
+UNKNOWN_TOP_M = 1e6  # of what stands on ground that is not known: nothing is clear of it
 
 IntArray = NDArray[np.int64]
 
@@ -33,6 +34,11 @@ _by_west: WeakKeyDictionary[Spans, tuple[IntArray, FloatArray, float]] = WeakKey
 
 def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules) -> set[int]:
     """Numbers of the spans that a leg of a finished route passes too near; not those that hang at what it inspects there."""
+    return {span for _leg, span in legs_too_near(waypoints, spans, ground_heights_m, rules)}
+
+
+def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights | None, rules: FlightRules) -> set[tuple[int, int]]:
+    """The same with the leg, by the place of its start, that passes each."""
     points = waypoints.points
     if len(points) < 2 or not len(spans):
         return set()
@@ -51,14 +57,13 @@ def spans_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundH
     top_m = np.column_stack([spans.start_height_m[near], spans.end_height_m[near]])
     if is_known and ground_heights_m is not None:
         used = np.unique(span)
-        highest_m = float((level_m - points.agl_m).max())
         told_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
-        top_m[used] += np.where(np.isnan(told_m), highest_m, told_m)
-    found: set[int] = set()
+        top_m[used] += np.where(np.isnan(told_m).any(axis=1, keepdims=True), UNKNOWN_TOP_M, told_m)
+    found: set[tuple[int, int]] = set()
     too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
     for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):
         if not _is_inspected(points, line, own_leg, start[own_span], end[own_span]):
-            found.add(int(near[own_span]))
+            found.add((own_leg, int(near[own_span])))
     return found
 
 

@@ -93,6 +93,13 @@ class MissionUav(models.Model):
     sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
     performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see flight_plan/performance.py")
+    own_figures = ArrayField(
+        models.CharField(max_length=20),
+        default=list,
+        db_default=[],
+        blank=True,
+        help_text="names of the figures that are said for this mission; the others were the UAV's when it was made",
+    )
 
     class Meta:
         ordering = ["sequence"]

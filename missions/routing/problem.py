@@ -362,10 +362,12 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True)
 class Unassigned:
+    """missing: metres or Wh that the UAV which comes nearest to it lacks, 0 where it is in reach alone; None for other reasons."""
+
     target: int
     reason: Reason
     message: str
-    missing_wh: float | None = None  # that the UAV which comes nearest to it lacks
+    missing: float | None = None
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from missions.routing.problem import BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
+from missions.routing.least_route import LeastRoutes
+from missions.routing.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
 from missions.routing.quantities import NO_WAY_M, Kind, classes_of, quantities_of
 
+_Told = tuple[Reason, str, float | None]  # with what is missing
 _THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
 
 
@@ -114,41 +116,52 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
     left_out = [target for target in range(problem.target_count) if target not in visited]
     if not left_out:
         return ()
+    visits_of = problem.visits_of_target()
+    asked = [visit for target in left_out for visit in visits_of[target]]
+    needed_m = _on_one_route(problem, Kind.METRES, needed_m, asked)
     within_range = _within(problem, needed_m)
     used_wh = needed_wh(problem)
+    if used_wh is not None:
+        used_wh = _on_one_route(problem, Kind.WH, used_wh, asked)
     owner = problem.owner or tuple(range(len(routes)))
     done_by = dict.fromkeys(owner, 0)
     for uav, route in zip(owner, routes, strict=True):
         done_by[uav] += sum(problem.visits[visit].done for visit in route)
     done = [done_by[uav] for uav in owner]
-    visits_of = problem.visits_of_target()
     found = []
     for target in left_out:
         visits = visits_of[target]
-        reason = _beyond_reach(problem, needed_m, within_range, visits)
-        missing_wh = None
+        told = _beyond_reach(problem, needed_m, within_range, visits)
         able = within_range[:, visits]
-        if reason is None and used_wh is not None:
+        if told is None and used_wh is not None:
             able = able & _within_battery(problem, used_wh[:, visits])
             if not able.any():
-                reason, missing_wh = _beyond_battery(problem, used_wh, within_range, visits)
-        if reason is None:
-            reason = _beyond_rest(problem, able, done, visits)
-            if reason[0] is Reason.BEYOND_ENERGY:
-                missing_wh = _missing_beside_others(problem, able, routes, visits)
-        found.append(Unassigned(target, *reason, missing_wh))
+                told = _beyond_battery(problem, used_wh, within_range, visits)
+        found.append(Unassigned(target, *(told or _beyond_rest(problem, able, done, visits))))
     return tuple(found)
 
 
-def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> tuple[Reason, str] | None:
+def _on_one_route(problem: Problem, kind: Kind, needed: FloatArray, visits: Sequence[int]) -> FloatArray:
+    """What these visits need where the ways there and back may lead over others, but not both over the same."""
+    if not len(problem.uavs):
+        return needed
+    routes, exact = LeastRoutes(problem, kind), needed.copy()
+    for visit in visits:
+        by_others = np.isfinite(needed[:, visit]) & (needed[:, visit] < routes.alone[:, visit] * (1.0 - RANGE_RESERVE))
+        for uav in np.flatnonzero(by_others).tolist():
+            exact[uav, visit] = max(routes.route(uav, visit).amount, needed[uav, visit])
+    return exact
+
+
+def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> _Told | None:
     """Why no UAV gets there at all; None if one does, if its battery lasts."""
     needed_m, within = needed_m[:, visits], within_range[:, visits]
     if not len(problem.uavs):
-        return Reason.NO_PATH, "There is no UAV that can take off."
+        return Reason.NO_PATH, "There is no UAV that can take off.", None
     if visits and problem.allowed is not None and not problem.allowed[:, visits].any():
-        return Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to."
+        return Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to.", None
     if not np.isfinite(needed_m).any():
-        return Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone."
+        return Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone.", None
     if within.any():
         return None
     limit_m = np.array([uav.limit_m for uav in problem.uavs])
@@ -156,13 +169,12 @@ def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArra
     uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
     there = _THERE[problem.uavs[uav].end]
     needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
-    return Reason.BEYOND_RANGE, f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
+    message = f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
+    return Reason.BEYOND_RANGE, message, float(missing_m[uav, visit])
 
 
-def _beyond_battery(
-    problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]
-) -> tuple[tuple[Reason, str], float]:
-    """Of the UAVs that have the range, the one that lacks least, and how much."""
+def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> _Told:
+    """Of the UAVs that have the range, the one that lacks least."""
     limit_wh = np.array([uav.limit_wh for uav in problem.uavs])
     within = within_range[:, visits]
     missing_wh = np.where(within, used_wh[:, visits], np.inf) - np.where(within, limit_wh[:, None], 0.0)
@@ -170,33 +182,21 @@ def _beyond_battery(
     needed, missing = used_wh[uav, visits[int(visit)]], float(missing_wh[uav, visit])
     there = _THERE[problem.uavs[uav].end]
     said = f"It takes {needed:,.1f} Wh {there}, {missing:,.1f} Wh more than the battery of the UAV that comes nearest to it may give."
-    return (Reason.BEYOND_ENERGY, said), missing
+    return Reason.BEYOND_ENERGY, said, missing
 
 
-def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> tuple[Reason, str]:
+def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> _Told:
     """Why it is left out though some UAV could do it alone."""
     able_uavs = np.flatnonzero(able.any(axis=1)).tolist()
     if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able_uavs):
-        return Reason.MOST_TARGETS, "Each UAV that can do it has as many targets as it may have."
+        return Reason.MOST_TARGETS, "Each UAV that can do it has as many targets as it may have.", None
     has_range = any(problem.uavs[uav].max_range_m is not None for uav in able_uavs)
     if any(problem.uavs[uav].limit_wh < math.inf for uav in able_uavs):
         alone = "within range and battery" if has_range else "within what the battery may give"
-        return Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets."
+        return Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets.", 0.0
     if has_range:
-        return Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets."
-    return Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV."
-
-
-def _missing_beside_others(problem: Problem, able: BoolArray, routes: Routes, visits: Sequence[int]) -> float | None:
-    """The least Wh that are missing to put it between the targets of a UAV as they are; None if the range is what is missing."""
-    missing_wh = math.inf
-    for uav, number in zip(*(part.tolist() for part in np.nonzero(able)), strict=True):
-        for place in range(len(routes[uav]) + 1):
-            route = (*routes[uav][:place], visits[number], *routes[uav][place:])
-            used_wh = problem.route_wh(uav, route)
-            if used_wh is not None and problem.route_length_m(uav, route) <= problem.uavs[uav].limit_m:
-                missing_wh = min(missing_wh, used_wh - problem.uavs[uav].limit_wh)
-    return missing_wh if 0.0 < missing_wh < math.inf else None
+        return Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0
+    return Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.", None
 
 
 def _km(length_m: float) -> str:

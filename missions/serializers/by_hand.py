@@ -8,7 +8,7 @@ from rest_framework import serializers
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import FASTEST_MPS
-from missions.services.by_hand import MOST_WAYPOINTS, HandPoint
+from missions.services.hand_checks import MOST_WAYPOINTS, HandLook, HandPoint
 
 MOST_LEGS = 200
 HIGHEST_AGL_M = 10_000.0
@@ -40,6 +40,44 @@ class HandRouteSerializer(KnownFieldsSerializer):
             HandPoint(point["position"], point["altitude_agl_m"], point.get("was"), point.get("speed_mps"))
             for point in self.validated_data["waypoints"]
         ]
+
+
+class HandPointFlownSerializer(serializers.Serializer):
+    arrival_s = serializers.FloatField(help_text="seconds after the departure")
+    battery_left_percent = serializers.FloatField(allow_null=True, help_text="null without a battery")
+    speed_mps = serializers.FloatField(
+        allow_null=True, help_text="over ground on the way here, where the wind leaves least; null where no leg leads"
+    )
+
+
+class HandLookSerializer(serializers.Serializer):
+    """What keeping these waypoints would say."""
+
+    faults = serializers.DictField(child=serializers.CharField(), help_text="by place, `waypoints.3.altitude_agl_m` or `legs.2`")
+    length_m = serializers.FloatField(allow_null=True, help_text="null, as all that follows, where the route cannot be flown at all")
+    duration_s = serializers.FloatField(allow_null=True)
+    energy_wh = serializers.FloatField(allow_null=True, help_text="null without a battery")
+    battery_percent = serializers.FloatField(allow_null=True, help_text="left at the end")
+    waypoints = HandPointFlownSerializer(many=True, help_text="one for each that is wished")
+
+
+def hand_look_json(look: HandLook) -> dict[str, Any]:
+    flown, clock = look.flown, None if look.flown is None else look.flown.timing
+    return {
+        "faults": look.faults,
+        "length_m": None if flown is None else round(flown.length_m, 3),
+        "duration_s": None if flown is None else round(flown.duration_s, 1),
+        "energy_wh": None if clock is None or clock.total_wh is None else round(clock.total_wh, 2),
+        "battery_percent": None if clock is None or clock.end_percent is None else round(clock.end_percent, 1),
+        "waypoints": [
+            {
+                "arrival_s": round(point.arrival_s, 1),
+                "battery_left_percent": None if point.battery_left_percent is None else round(point.battery_left_percent, 1),
+                "speed_mps": None if point.speed_mps is None else round(point.speed_mps, 2),
+            }
+            for point in look.points
+        ],
+    }
 
 
 class LegEndSerializer(KnownFieldsSerializer):

@@ -9,13 +9,14 @@ from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
 from missions.models import Base, CredentialKind, UavCredential, UavType
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, LARGEST_DISK_M2, LARGEST_POWER_W, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
 
 MOST_SENSORS = 12
 
 
-class UavTypeSerializer(serializers.Serializer):
+class UavTypeSerializer(KnownFieldsSerializer):
     """What UAVs of one make have in common. A UAV's own values come before these."""
 
     id = serializers.IntegerField(read_only=True)
@@ -53,7 +54,7 @@ class UavTypeSerializer(serializers.Serializer):
         return list(dict.fromkeys(value))
 
 
-class BaseSerializer(serializers.Serializer):
+class BaseSerializer(KnownFieldsSerializer):
     """A place where UAVs stand and take off."""
 
     id = serializers.IntegerField(read_only=True)
@@ -75,7 +76,7 @@ class BasePageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-class CredentialInputSerializer(serializers.Serializer):
+class CredentialInputSerializer(KnownFieldsSerializer):
     kind = serializers.ChoiceField(choices=CredentialKind.choices)
 
 

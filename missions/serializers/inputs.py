@@ -10,10 +10,10 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
-from missions.fleet_selectors import performance_of, uavs_of_organisation
+from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
 from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
 from missions.flight_plan.lost_link import LostLink
-from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
+from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
 from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
@@ -126,6 +126,12 @@ class UavInputSerializer(PerformanceFieldsSerializer):
         required=False,
         max_length=MOST_SENSORS_OF_UAV,
         help_text="missing: the stored UAV's",
+    )
+    own_figures = serializers.ListField(
+        child=serializers.ChoiceField(choices=FIGURES),
+        required=False,
+        max_length=len(FIGURES),
+        help_text="which figures are meant for this mission alone, whatever becomes of the stored UAV; missing: those that differ from its",
     )
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
@@ -290,18 +296,11 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
             "end_action": EndAction.HOVER,
             "sensors": [],
         }
-        performance: dict[str, Any] = {}
+        own: list[str] = []
     else:
-        known = {
-            "name": stored.name,
-            "position": stored.location.coords,
-            "max_range_m": stored.range_m,
-            "cruise_speed_mps": stored.speed_mps,
-            "end_action": stored.end_action,
-            "sensors": stored.sensors,
-        }
-        performance = performance_to_json(performance_of(stored))
-    performance |= {field: uav[field] for field in PERFORMANCE_KEYS if field in uav}
+        figures = figures_of(stored)
+        known = {"name": stored.name, "position": stored.location.coords, "end_action": stored.end_action} | figures
+        own = uav["own_figures"] if "own_figures" in uav else [name for name in FIGURES if name in uav and uav[name] != figures[name]]
     values = known | {field: uav[field] for field in uav if field != "id"}
     return UavRequest(
         name=values["name"],
@@ -312,8 +311,9 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         uav=None if stored is None else stored.pk,
         most_targets=values.get("most_targets"),
         sensors=tuple(values["sensors"]),
-        performance=performance_from_json(performance),
+        performance=performance_from_json({name: values[name] for name in PERFORMANCE_KEYS if name in values}),
         sorties=values.get("sorties", 1),
+        own_figures=tuple(name for name in FIGURES if name in own),
     )
 
 

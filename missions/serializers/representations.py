@@ -10,13 +10,16 @@ from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Ro
 from missions.selectors import approval_in_force, open_plan_of_mission
 from missions.serializers.commands import approval_json
 from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
+from missions.services.missions import EDITABLE
 from missions.services.requests import lost_link_from_json, lost_link_to_json
 from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
+from missions.uav_change_selectors import uav_change_json, uav_changes
 
 
 def mission_json(mission: Mission) -> dict[str, Any]:
     """A mission with all that belongs to it, as loaded by selectors.mission_of_organisation."""
-    causes = stale_causes(mission)
+    changes = uav_changes(mission.pk)
+    causes = stale_causes(mission, changes)
     return {
         "id": str(mission.pk),
         "name": mission.name,
@@ -36,6 +39,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "is_stale": bool(causes),
         "stale_reason": stale_reason(causes),
         "stale_causes": [cause_json(cause) for cause in causes],
+        "uav_changes": [uav_change_json(change) for change in changes],
         "flat_ground_assumed": mission.flat_ground_assumed,
         "locks": mission.locks,
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
@@ -43,14 +47,17 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "plan": _plan(mission),
         "last_plan": mission.last_plan,
         "planning_job": open_plan_of_mission(mission),
-        "approval": approval_json(approval_in_force(mission)),
+        "approval": _approval(mission),
     }
 
 
-def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]]) -> dict[str, Any]:
+def mission_summary(
+    mission: Mission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]], *, has_other_uavs: bool
+) -> dict[str, Any]:
     """A line of the list, as loaded by list_selectors.mission_rows.
 
-    `revision` is the ground's now, `drawing` what stands round it, `bases` as stale_selectors.bases_landed_at has them.
+    `revision` is the ground's now, `drawing` what stands round it, `bases` as stale_selectors.bases_landed_at has them,
+    `has_other_uavs` as uav_change_selectors says.
     """
     return {
         "id": str(mission.pk),
@@ -67,11 +74,28 @@ def mission_summary(mission: Mission, revision: int, drawing: dict[str, Any], ba
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,
         "duration_s": mission.duration_s,
-        "is_stale": is_stale(mission, revision, has_lost_base=has_lost_base(mission, bases)),
+        "is_stale": is_stale(mission, revision, has_lost_base=has_lost_base(mission, bases), has_other_uavs=has_other_uavs),
+        "has_other_uavs": has_other_uavs,
         "sketch": sketch(mission),
         "places": drawing["places"],
         "lines": drawing["lines"],
     }
+
+
+def _approval(mission: Mission) -> dict[str, Any] | None:
+    """With how many flights each UAV has, and how many of them it has flown."""
+    found = None if mission.state in EDITABLE else approval_json(approval_in_force(mission))
+    if found is not None:
+        found["flights"] = [
+            {
+                "uav": route.mission_uav.sequence,
+                "flights": 1 + sum(waypoint.kind == WaypointKind.BASE for waypoint in route.waypoints.all()),
+                "flown": route.flights_flown,
+            }
+            for route in mission.routes.all()
+            if route.geometry is not None
+        ]
+    return found
 
 
 def _uav(row: MissionUav) -> dict[str, Any]:
@@ -85,6 +109,7 @@ def _uav(row: MissionUav) -> dict[str, Any]:
         "most_targets": row.most_targets,
         "sensors": row.sensors,
         "sorties": row.sorties,
+        "own_figures": row.own_figures,
         **performance_to_json(performance_from_json(row.performance)),
     }
 

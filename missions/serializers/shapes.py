@@ -3,10 +3,11 @@
 from rest_framework import serializers
 
 from missions.fields import PositionField
+from missions.fleet_selectors import FIGURES
 from missions.flight_plan.lost_link import LostLink, Trouble
-from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
+from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, UavState, WaypointKind
 from missions.routing.problem import TaskKind
-from missions.serializers.commands import ApprovalSerializer
+from missions.serializers.commands import MissionApprovalSerializer
 
 
 class LineSerializer(serializers.Serializer):
@@ -275,6 +276,9 @@ class MissionUavSerializer(serializers.Serializer):
     max_airspeed_mps = serializers.FloatField(allow_null=True)
     rotor_disk_m2 = serializers.FloatField(allow_null=True)
     hover_power_w = serializers.FloatField(allow_null=True)
+    own_figures = serializers.ListField(
+        child=serializers.ChoiceField(choices=FIGURES), help_text="meant for this mission alone, whatever becomes of the stored UAV"
+    )
 
 
 class MissionTargetSerializer(serializers.Serializer):
@@ -298,7 +302,7 @@ class MissionTargetSerializer(serializers.Serializer):
 class StaleCauseSerializer(serializers.Serializer):
     """One thing that changed since the mission was planned, and what of the mission it touches."""
 
-    what = serializers.ChoiceField(choices=["zone", "base", "asset", "terrain", "elsewhere"])
+    what = serializers.ChoiceField(choices=["zone", "uav", "base", "asset", "terrain", "elsewhere"])
     message = serializers.CharField()
     uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV")
     target = serializers.IntegerField(allow_null=True, help_text="index of the target")
@@ -317,6 +321,25 @@ class StaleCauseSerializer(serializers.Serializer):
         }
 
 
+class FigureChangeSerializer(serializers.Serializer):
+    name = serializers.ChoiceField(choices=FIGURES)
+    kept = serializers.JSONField(allow_null=True, help_text="as the mission plans with it")
+    now = serializers.JSONField(allow_null=True, help_text="as it is in the fleet")
+
+
+class UavChangeSerializer(serializers.Serializer):
+    """A UAV that is no longer as the mission has it. Sent again in `uavs` without its figures, the mission takes the present ones."""
+
+    uav = serializers.IntegerField(help_text="index of the UAV")
+    id = serializers.IntegerField(help_text="of the stored UAV")
+    name = serializers.CharField(help_text="in the mission")
+    figures = FigureChangeSerializer(many=True, help_text="without those of `own_figures`, and sensors that no target needs")
+    state = serializers.ChoiceField(
+        choices=UavState.choices, allow_null=True, help_text="its present one, where the plan counts on another"
+    )
+    message = serializers.CharField()
+
+
 class MissionSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     name = serializers.CharField()
@@ -333,9 +356,10 @@ class MissionSerializer(serializers.Serializer):
     updated_at = serializers.DateTimeField()
     planned_at = serializers.DateTimeField(allow_null=True)
     graph_version = serializers.IntegerField(allow_null=True)
-    is_stale = serializers.BooleanField(help_text="the ground, or a base to land at, has changed since the mission was planned")
-    stale_reason = serializers.CharField(help_text="the headline and the worst cause; empty where the ground is as it was")
+    is_stale = serializers.BooleanField(help_text="the ground, a base to land at or a UAV has changed since the mission was planned")
+    stale_reason = serializers.CharField(help_text="the headline and the worst cause; empty where all is as it was")
     stale_causes = StaleCauseSerializer(many=True)
+    uav_changes = UavChangeSerializer(many=True, help_text="of a draft, too")
     flat_ground_assumed = serializers.BooleanField(allow_null=True)
     locks = PlanLockSerializer(many=True)
     uavs = MissionUavSerializer(many=True)
@@ -343,7 +367,7 @@ class MissionSerializer(serializers.Serializer):
     plan = PlanSerializer(allow_null=True)
     last_plan = LastPlanSerializer(allow_null=True, help_text="the plan before the present one, in short")
     planning_job = serializers.UUIDField(allow_null=True, help_text="the job that is planning it at present")
-    approval = ApprovalSerializer(allow_null=True, help_text="that freezes it; null: it can be changed")
+    approval = MissionApprovalSerializer(allow_null=True, help_text="that freezes it; null: it can be changed")
 
 
 class MissionSummarySerializer(serializers.Serializer):
@@ -362,6 +386,7 @@ class MissionSummarySerializer(serializers.Serializer):
     longest_route_m = serializers.FloatField(allow_null=True)
     duration_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time")
     is_stale = serializers.BooleanField()
+    has_other_uavs = serializers.BooleanField(help_text="it is stale because a UAV is no longer as the plan has it")
     sketch = serializers.ListField(child=serializers.ListField(child=PositionField()), help_text="the routes, simplified")
     places = serializers.ListField(child=PositionField(), help_text="of the targets, the first 60")
     lines = serializers.ListField(
@@ -411,6 +436,7 @@ class PresentSerializer(serializers.Serializer):
 class PresenceSerializer(serializers.Serializer):
     others = PresentSerializer(many=True)
     ground_revision = serializers.IntegerField(help_text="of assets, zones and terrain: a plan of an older one is stale")
+    uav_changes = UavChangeSerializer(many=True)
 
 
 class HistoryEntrySerializer(serializers.Serializer):

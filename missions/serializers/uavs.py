@@ -10,17 +10,19 @@ from missions.fleet_selectors import bases_of_organisation, performance_with, ty
 from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerformance
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
 
 OWN = (
-    "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "allows_unsigned", "is_simulated", "heading_deg",
+    "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "heading_deg",
     "battery_percent", "sensor", "end_action",
 )  # fmt: skip
+FEATURE = {"type", "id", "geometry", "properties", "bbox"}  # RFC 7946
 FROM_TYPE = ("max_range_m", "cruise_speed_mps", *OWN_PERFORMANCE_KEYS)
 
 
-class UavPropertiesSerializer(serializers.Serializer):
+class UavPropertiesSerializer(KnownFieldsSerializer):
     """Range, speed, battery, mass, reserve and airspeed are the UAV's own; where it has none (`null`), what comes back is its type's, and
     `from_type` names it."""
 
@@ -34,10 +36,12 @@ class UavPropertiesSerializer(serializers.Serializer):
     serial_number = serializers.CharField(max_length=100, allow_blank=True, required=False)
     mavlink_system_id = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=254, help_text="one vehicle each")
     link = serializers.ChoiceField(choices=LinkKind.choices, required=False, help_text="the door by which it is told what to do")
-    allows_unsigned = serializers.BooleanField(
-        required=False, help_text="MAVLink without a signature is taken for this UAV's; for administrators alone to change"
+    is_simulated = serializers.BooleanField(
+        required=False, help_text="no real aircraft: may fly without terrain data; changed by administrators alone"
     )
-    is_simulated = serializers.BooleanField(required=False, help_text="no real aircraft: may fly without terrain data")
+    allows_unsigned = serializers.BooleanField(
+        required=False, help_text="MAVLink without a signature is taken for its own; changed by administrators alone"
+    )
     max_range_m = AboveZeroField(
         allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
     )
@@ -162,11 +166,19 @@ def _own_or_of_type(uav: Uav, name: str) -> float | None:
 
 
 def flat_uav(data: Any) -> Any:
-    """A GeoJSON Feature as one flat object; anything else as it is, for the serializer to judge."""
+    """A GeoJSON Feature as one flat object; anything else as it is, for the serializer to judge.
+
+    What comes back in an answer may be sent again. Raises ValidationError for what a Feature of a UAV does not have.
+    """
     if not isinstance(data, dict) or data.get("type") != "Feature":
         return data
     properties, geometry = data.get("properties"), data.get("geometry")
-    flat = dict(properties) if isinstance(properties, dict) else {}
-    if isinstance(geometry, dict) and geometry.get("type") == "Point":
-        flat["position"] = geometry.get("coordinates")
-    return flat
+    faults = {name: [_("A Feature has no such field; what is said of a UAV stands in its properties.")] for name in set(data) - FEATURE}
+    if geometry is not None and not (isinstance(geometry, dict) and geometry.get("type") == "Point"):
+        faults["position"] = [_("A UAV stands at a Point.")]
+    if properties is not None and not isinstance(properties, dict):
+        faults["properties"] = [_("An object is needed.")]
+    if faults:
+        raise serializers.ValidationError(faults)
+    position = {} if geometry is None else {"position": geometry.get("coordinates")}
+    return dict(properties or {}) | position

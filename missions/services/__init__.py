@@ -1,6 +1,6 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
-from missions.services.by_hand import HandPoint, change_route, take_back_change
+from missions.services.by_hand import change_route, take_back_change
 from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet import (
     change_base,
@@ -13,6 +13,7 @@ from missions.services.fleet import (
     restore_uav_type,
 )
 from missions.services.fleet_rows import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdTaken
+from missions.services.hand_checks import HandPoint, look_by_hand
 from missions.services.mission_copies import duplicate_mission
 from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan, take_plan
 from missions.services.missions import (
@@ -91,6 +92,7 @@ __all__ = [
     "explain_unreached_target",
     "lock_to_json",
     "locked_targets",
+    "look_by_hand",
     "make_credential",
     "make_plan",
     "mavlink_signing_key",

@@ -16,6 +16,7 @@ from missions.services.refused import Reason
 from missions.services.still_apart import separation_of_stored
 from missions.services.stored_routes import stored_routes
 from missions.stale_selectors import causes_on_the_routes
+from missions.uav_change_selectors import uav_changes
 
 TOO_NEAR = {"too_near", "hovers_in_the_way"}
 SAME = 1e-6  # figures that differ by less are the same
@@ -56,7 +57,7 @@ def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[Re
 
 def _ground(mission: Mission) -> Iterator[Reason]:
     """Zones, bases, assets and terrain as they are now, and what stands and hangs beside the routes."""
-    for cause in causes_on_the_routes(mission):
+    for cause in causes_on_the_routes(mission, uav_changes(mission.pk)):
         yield Reason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
     routes = stored_routes(mission)
     if routes is None:

@@ -1,7 +1,7 @@
 """One answer to a request on one set of zones: what can be flown there, who does what, and how it is drawn."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
@@ -17,7 +17,7 @@ from missions.services.drawing import Drawing
 from missions.services.places import Place
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import Grounding, LeftOut, Scene, asset_gone, groundings, place_height_m, refused_place, zone_at
-from missions.services.requests import PlanRequest
+from missions.services.requests import InvalidRequest, PlanRequest
 from missions.services.unreached import unreached_places
 from missions.services.visits import visits_of_places
 
@@ -44,6 +44,20 @@ class Attempt:
         """Drawn over this ground, one for each UAV of the request."""
         flown = self.drawing.routes(self.uavs, self.solution.sorties, ground)
         return [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
+
+    def drawn_alone(self, uav: int, order: Sequence[int], ground: GroundHeights | None) -> PlannedRoute | None:
+        """One flight of one UAV, by its number in the request, over these visits; None where the wind over the ground stops it.
+
+        Who may fly several times is not reckoned with as charging.
+        """
+        alone = [[order] if other == uav else [] for other in self.uavs]
+        drawing = self.drawing
+        if drawing.request.uavs[uav].sorties > 1:
+            drawing = replace(drawing, request=replace(drawing.request, charging_w=None))
+        try:
+            return drawing.routes(self.uavs, alone, ground)[uav]
+        except InvalidRequest:
+            return None
 
     def weights(self, request: PlanRequest) -> list[float]:
         """What the ways of each UAV's route cost for each metre: 1 along infrastructure, more away from it."""

@@ -181,7 +181,7 @@ def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Reason]
         )
         other = others.exclude(mission=mission).select_related("mission").first()
         if other is not None:
-            words = _("%(uav)s is busy with %(mission)s.") % values | {"mission": other.mission.name}
+            words = _("%(uav)s is busy with %(mission)s.") % {**values, "mission": other.mission.name}
             reasons.append(Reason("uav_busy", words, route["place"]))
     return reasons
 

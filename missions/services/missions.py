@@ -11,7 +11,6 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from missions.fleet_selectors import performance_of
 from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
 from missions.flight_plan.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
@@ -238,6 +237,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 sensors=tuple(row.sensors),
                 performance=_performance(row),
                 sorties=row.sorties,
+                own_figures=tuple(row.own_figures),
             )
             for row in mission.mission_uavs.all()
         ),
@@ -264,11 +264,9 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
 
 
 def _performance(row: MissionUav) -> Performance:
-    """As stored with the mission; a mission of before there were batteries has its UAV's of today."""
+    """As stored with the mission."""
     try:
-        if row.performance or row.uav is None:
-            return performance_from_json(row.performance)
-        return performance_of(row.uav)
+        return performance_from_json(row.performance)
     except InvalidPerformance as error:
         raise InvalidRequest({f"uavs.{row.sequence}.{error.place}": error.message}) from error
 
@@ -316,6 +314,7 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             sensors=list(uav.sensors),
             performance=performance_to_json(uav.performance),
             sorties=uav.sorties,
+            own_figures=list(uav.own_figures),
         )
         for sequence, uav in enumerate(uavs)
     )

@@ -17,6 +17,7 @@ from missions.flight_plan.heights import FloatArray, asset_height_m
 from missions.flight_plan.stretches import PlaceOnLine, nearest_on_line, stretch_between
 from missions.routing.problem import Task, default_task
 from missions.services.requests import InvalidRequest, TargetRequest
+from workspace.number_text import number_text
 
 NEAR_ASSET_M = 500.0  # a picked point farther from the asset than this is a mistake, not a point on it
 LINEAR = {AssetKind.LINE, AssetKind.RAILWAY}
@@ -181,6 +182,6 @@ def _refuse_far(where: str, metres: float) -> None:
         raise InvalidRequest(
             {
                 where: _("This point is %(metres)s m from the asset; up to %(near_asset_m)s m is taken as a point on it.")
-                % {"metres": f"{metres:,.0f}", "near_asset_m": f"{NEAR_ASSET_M:.0f}"}
+                % {"metres": number_text(metres), "near_asset_m": f"{NEAR_ASSET_M:.0f}"}
             }
         )

@@ -16,19 +16,18 @@ from inspection.selectors.planning import PlanningGround, edition_now, has_terra
 from missions.flight_plan.separation import Separation
 from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
-from missions.routing.problem import Reason
 from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
-from missions.services.battery import DrawnLack, battery_overruns, drawn_lacks, not_charged_for, with_drawn_reasons, without_overruns
+from missions.services.battery import battery_overruns, not_lasting_for, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
+from missions.services.lacks import OUT_OF_REACH, least_missing, with_lacks
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
 from missions.services.over_wires import spans_in_the_way, walls_of_spans, without_routes_barred
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
-from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
 from missions.services.unreached import WIND
@@ -39,7 +38,6 @@ from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
 MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
 MOST_TRIES = 6  # with more zones each time
-OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
 
 
 class GraphOutdated(Exception):
@@ -65,6 +63,10 @@ class Finished:
     met: frozenset[int]
     worth: Worth
     is_whole: bool  # the search could count on all of what the batteries hold, and on all ways
+
+    def beside(self, other: "Finished") -> "Finished":
+        """The same, with less missing for what is out of reach where the other plan shows that."""
+        return replace(self, found=replace(self.found, left_out=least_missing(self.found.left_out, other.found.left_out)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +97,12 @@ class _Planner:
             tried = self._finished(ground, choice, chosen, share / MOST_TRIES)
             freest = freest or tried
             if not tried.worth < best.worth:
+                best = best.beside(tried)
                 break
             if not tried.met:
-                best = tried
+                best = tried.beside(best)
                 break
+            best = best.beside(tried)
             chosen = choice.with_zones(chosen, tried.met)
         return best, freest or best
 
@@ -138,10 +142,8 @@ class _Planner:
         if settings.GRAPH_RULES.off_network_factor == 1.0 or not self._is_out_of_reach(preferred):
             return preferred
         shortest = self._drawn(ground, choice, chosen, share / 2, walls, is_by_length=True)
-        if shortest.worth.left_out < preferred.worth.left_out:
-            return shortest
-        left_out = _least_missing(preferred.found.left_out, shortest.found.left_out)
-        return replace(preferred, found=replace(preferred.found, left_out=left_out))
+        best, other = (shortest, preferred) if shortest.worth.left_out < preferred.worth.left_out else (preferred, shortest)
+        return best.beside(other)
 
     def _is_out_of_reach(self, plan: Finished) -> bool:
         """Whether a target is left out for which another way might do."""
@@ -158,7 +160,6 @@ class _Planner:
         has_terrain = has_terrain_at(ground.edition)
         terrain = ground_heights_m if has_terrain else None
         usable_share: dict[int, float] = {}
-        lacks: dict[int, DrawnLack] = {}
         kept_from: dict[int, frozenset[int]] = {}
         barred: frozenset[int] = frozenset()
         for number in range(MOST_TRIES):
@@ -173,7 +174,6 @@ class _Planner:
             in_the_way = spans_in_the_way(alone, scene.network, terrain)
             if not over and not in_the_way:
                 break
-            drawn = alone
             if number == MOST_TRIES - 1:
                 found, alone = without_overruns(self.request, found, alone, over)
                 found, alone = without_routes_barred(self.request, found, alone, in_the_way)
@@ -182,14 +182,14 @@ class _Planner:
                 wires = walls_of_spans(scene.network, barred)
                 scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires), is_by_length=is_by_length)
             if number < MOST_TRIES - 2:
-                for uav, targets in not_charged_for(self.request, found, alone, terrain).items():
+                for uav, targets in not_lasting_for(self.request, found, alone, over, terrain).items():
                     kept_from[uav] = kept_from.get(uav, frozenset()) | targets
                     over.pop(uav)
-            lacks |= drawn_lacks(self.request, drawn, over)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
-        if lacks:
-            found = replace(found, left_out=with_drawn_reasons(found.left_out, lacks, frozenset().union(*kept_from.values())))
+        on_all = (chosen == choice.widest).all()
+        is_clear = None if on_all else lambda route: not keys_of_zones_met([route], self.request.departs_at, choice.table)
+        found = replace(found, left_out=with_lacks(self.request, found, terrain, is_clear))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
@@ -211,19 +211,6 @@ class _Planner:
                 break
             window_s = 2.0 * ends_s
         return routes, separation, others
-
-
-def _least_missing(preferred: Sequence[LeftOut], shortest: Sequence[LeftOut]) -> list[LeftOut]:
-    """What both leave out as out of reach lacks no more than it does on the shortest ways, unless drawn routes show it otherwise."""
-    nearer = {item.target: item for item in shortest if item.reason in OUT_OF_REACH}
-
-    def least(item: LeftOut) -> LeftOut:
-        other = nearer.get(item.target, item)
-        if item.missing_wh is not None and other.missing_wh is not None and item.missing_wh <= other.missing_wh:
-            return item
-        return other
-
-    return [least(item) if item.reason in OUT_OF_REACH else item for item in preferred]
 
 
 def make_plan(

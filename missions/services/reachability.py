@@ -18,6 +18,7 @@ from missions.services.refusals import Scene, column_m, groundings, zone_at
 from missions.services.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.scenes import scene_on
 from missions.services.zone_choice import zone_choice
+from workspace.number_text import number_text
 
 Box = tuple[float, float, float, float]
 ENDS = {EndAction.HOVER: End.OPEN, EndAction.LAND: End.OPEN, EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
@@ -164,7 +165,7 @@ def _message(why: Verdict, zone: int, missing: np.ndarray, zone_names: Sequence[
             words = _("One battery gives %(least)s to %(most)s Wh too little: whether charging on the way suffices, a plan tells.")
         else:
             words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
-        return words % {"least": f"{np.ceil(missing.min()):,.0f}", "most": f"{np.ceil(missing.max()):,.0f}"}
+        return words % {"least": number_text(np.ceil(missing.min())), "most": number_text(np.ceil(missing.max()))}
     if why is Verdict.WIND:
         return _("The wind is too strong on every way to it, or back.")
     if why is Verdict.CUT_OFF:
@@ -181,4 +182,4 @@ def _message(why: Verdict, zone: int, missing: np.ndarray, zone_names: Sequence[
 
 
 def _km(length_m: float) -> str:
-    return f"{length_m:,.0f} m" if length_m < 1_000 else f"{length_m / 1_000:,.1f} km"
+    return f"{number_text(length_m)} m" if length_m < 1_000 else f"{number_text(length_m / 1_000, 1)} km"

@@ -42,12 +42,15 @@ class Scene:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A target that no route visits; `target` is its place in the request. missing_wh: where a drawn route showed what is missing."""
+    """A target that no route visits; `target` is its place in the request.
+
+    missing: metres or Wh without which no UAV can do it even alone, 0 where one could; None where that has no number.
+    """
 
     target: int
     reason: str
     message: str
-    missing_wh: float | None = None
+    missing: float | None = None
 
 
 def asset_gone(target: int) -> LeftOut:

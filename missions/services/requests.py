@@ -1,6 +1,6 @@
 """What is asked of the planner, as plain values; stored as JSON while a job waits."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
@@ -27,6 +27,7 @@ class UavRequest:
     sensors: tuple[str, ...] = ()
     performance: Performance = NO_BATTERY
     sorties: int = 1  # flights that it makes at most; several only where it returns
+    own_figures: tuple[str, ...] = field(default=(), compare=False)  # of a stored UAV: those that are said for this mission
 
 
 @dataclass(frozen=True)

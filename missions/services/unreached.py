@@ -57,7 +57,8 @@ def unreached_places(
             reason, message = _why(item, request.targets[place.target], request, asked, visits, ways) or _way_barred(
                 place, item, asked.problem, visits, ways, scene
             )
-        found.append(LeftOut(place.target, reason, message + (LOCKED if item.target in in_runs else "")))
+        missing = item.missing if reason == item.reason.value else None
+        found.append(LeftOut(place.target, reason, message + (LOCKED if item.target in in_runs else ""), missing))
     return found
 
 

@@ -41,6 +41,26 @@ class RouteWaypoints(APIView):
         return answer_mission(request.user, mission_id)
 
 
+class RouteWaypointsLook(APIView):
+    throttle_classes = [ScopedRate]
+    throttle_scope = "plans"
+
+    @extend_schema(
+        operation_id="look_at_route_by_hand",
+        summary="What flying a route over other waypoints would take, and what is wrong with it",
+        description="Nothing is kept. Unlike when it is to be kept, all that is wrong is told, and beside it length, time and battery.",
+        request=by_hand.HandRouteSerializer,
+        responses=by_hand.HandLookSerializer,
+    )
+    def post(self, request: Request, mission_id: UUID, uav: int) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        body = by_hand.HandRouteSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        with api_problems():
+            look = services.look_by_hand(mission=mission, uav=uav, points=body.points())
+        return Response(by_hand.hand_look_json(look))
+
+
 class RouteWaypointsUndo(APIView):
     throttle_classes = [ScopedRate]
     throttle_scope = "plans"

@@ -15,6 +15,7 @@ from missions.list_selectors import choices_of_filters
 from missions.models import Mission
 from missions.presence import report_presence
 from missions.serializers import inputs, shapes
+from missions.uav_change_selectors import uav_change_json, uav_changes
 from missions.views.missions import answer_mission, mission_or_404
 from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
@@ -107,4 +108,8 @@ class MissionPresence(APIView):
         others = report_presence(
             mission_id=mission_id, user=user, editor=serializer.validated_data["editor"], is_here=serializer.validated_data["here"]
         )
-        return Response({"others": [{"name": name, "is_me": pk == user.pk} for pk, name in others], "ground_revision": ground_revision()})
+        return Response({
+            "others": [{"name": name, "is_me": pk == user.pk} for pk, name in others],
+            "ground_revision": ground_revision(),
+            "uav_changes": [uav_change_json(change) for change in uav_changes(mission_id)],
+        })  # fmt: skip

@@ -20,6 +20,7 @@ from missions.serializers import inputs, shapes
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import Charging, Departure, MissionChange
 from missions.stale_selectors import bases_landed_at
+from missions.uav_change_selectors import missions_with_other_uavs
 from missions.views.mission_filters import FILTER_PARAMETERS, asked_filter, asked_order
 from missions.views.plans import is_small, job_answer, planning_job
 from missions.views.problems import api_problems
@@ -114,9 +115,11 @@ class MissionList(_PlansWhenAsked):
         page = page_of(request, rows, order=asked_order(request), default_limit=50, max_limit=200)
         by_state = counts_by_state(missions_found(organisation, replace(asked, states=())))
         drawings, ground = surroundings(page.rows), ground_revision()
-        bases = bases_landed_at(page.rows, organisation.pk)
+        bases, others = bases_landed_at(page.rows, organisation.pk), missions_with_other_uavs(page.rows)
         return Response({
-            "results": [mission_summary(mission, ground, drawings[mission.pk], bases) for mission in page.rows],
+            "results": [
+                mission_summary(mission, ground, drawings[mission.pk], bases, has_other_uavs=mission.pk in others) for mission in page.rows
+            ],
             "next": page.next,
             "total": sum(number for state, number in by_state.items() if not asked.states or state in asked.states),
             "by_state": by_state,

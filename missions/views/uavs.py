@@ -23,6 +23,8 @@ from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 
+WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
+
 INPUT = PolymorphicProxySerializer(
     component_name="UavWrite", serializers=[UavFlatSerializer, UavFeatureSerializer], resource_type_field_name=None
 )
@@ -56,15 +58,10 @@ def _values(request: Request, uav: Uav | None = None) -> dict[str, Any]:
     serializer = UavFlatSerializer(uav, data=flat_uav(request.data), partial=uav is not None, context=context)
     serializer.is_valid(raise_exception=True)
     values = dict(serializer.validated_data)
-    _refuse_unsigned(request.user, bool(uav and uav.allows_unsigned), values)
+    changed = [name for name in WAIVES_SAFETY if values.get(name, getattr(uav, name, False)) != getattr(uav, name, False)]
+    if changed and request.user.role not in ADMINISTRATORS:
+        raise ApiProblem(403, "permission_denied", _("Only administrators say that a UAV is simulated, or needs no signature."))
     return values
-
-
-def _refuse_unsigned(user: User, allowed_now: bool, values: dict[str, Any]) -> None:
-    """Who can speak to a UAV without its key can fly it: administrators alone open that door. Raises ApiProblem 403."""
-    if values.get("allows_unsigned", allowed_now) != allowed_now and user.role not in ADMINISTRATORS:
-        message = _("Only an administrator allows MAVLink without a signature.")
-        raise ApiProblem(403, "administrators_alone", message, details={"allows_unsigned": [message]})
 
 
 def _filters(request: Request) -> dict[str, Any]:

@@ -92,6 +92,12 @@ export function energyText(energy_wh) {
   return withUnit(grouped(Math.round(energy_wh)), "Wh");
 }
 
+/** To a tenth where there is one: of a battery, as it was typed. */
+export function exactEnergyText(energy_wh) {
+  const figure = Math.round(energy_wh * 10) / 10;
+  return withUnit(grouped(figure, Number.isInteger(figure) ? 0 : 1), "Wh");
+}
+
 export function powerText(power_w) {
   return withUnit(grouped(Math.round(power_w)), "W");
 }

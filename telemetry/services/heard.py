@@ -2,26 +2,23 @@
 
 from datetime import datetime
 
+from django.utils import timezone
+
 from missions.services.flying import mark_waypoint_reached
 from telemetry.models import UavLink
 from telemetry.selectors.log import newest_of
 from workspace.prepared import prepared_rows
 
-TOLD_EVERY_S = 2  # a row is not written oftener
-
-_HEARD = f"""
+_HEARD = """
     WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
-    INSERT INTO telemetry_uavlink AS link
-        (uav_id, heard_at, address, holder, autopilot, firmware, mode, loaded_sha256, signing, losses)
-    SELECT %s::bigint, statement_timestamp(), %s::text, '', '', '', '', '', '{{}}'::jsonb, '{{}}'::jsonb FROM quick
-    ON CONFLICT (uav_id) DO UPDATE SET heard_at = excluded.heard_at, address = excluded.address
-    WHERE link.heard_at IS NULL OR link.heard_at < excluded.heard_at - make_interval(secs => {TOLD_EVERY_S})
-        OR link.address <> excluded.address"""  # noqa: S608 - of constants
+    UPDATE telemetry_uavlink SET heard_at = statement_timestamp(), address = %s FROM quick WHERE uav_id = %s RETURNING uav_id"""
 
 
 def note_heard_over_http(*, uav_id: int, address: str) -> None:
     """Nobody waits for the disk: the next request says it again."""
-    prepared_rows(_HEARD, [uav_id, f"http {address}"[:100]])
+    words = f"http {address}"[:100]
+    if not prepared_rows(_HEARD, [words, uav_id]):
+        UavLink.objects.get_or_create(uav_id=uav_id, defaults={"heard_at": timezone.now(), "address": words})
 
 
 def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:

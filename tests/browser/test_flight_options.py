@@ -1,7 +1,6 @@
 """When, in what air and with which batteries a mission is flown: options, results, legal times, ways to plan it, changes by hand, reach."""
 
 import re
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -9,13 +8,13 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
+from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import opens_mission
 from tests.browser.test_planning_options import PHONE, route
 
 pytestmark = pytest.mark.browser
 
-Picture = Callable[[Page, str], None]
 DEPARTURE = "2027-03-02T09:30"
 
 
@@ -72,8 +71,8 @@ def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_wha
     expect(route(page, "Kite")).to_contain_text(re.compile(r"until \d\d:\d\d"))
     expect(route(page, "Kite")).to_contain_text(re.compile(r"\d+\s% ?at landing"))
     expect(page.locator("#target-list .target-when").first).to_have_text(re.compile(r"^\d\d:\d\d$"))
-    picture(page, "plan-battery-light")
     is_saved(page)
+    in_both_themes(page, picture, "plan-battery")
     page.reload()
     wait_for_map(page)
     expect(departure(page)).to_have_value(DEPARTURE)
@@ -121,7 +120,7 @@ def test_the_ways_of_planning_stand_side_by_side_and_one_click_takes_one(visitor
     expect(rows.filter(has_text="Least flying time")).to_contain_text(re.compile(r"\d\skm"))
     expect(rows.filter(has_text="Least energy")).to_contain_text("No UAV has a battery.")
     expect(panel.locator("[aria-current]")).to_contain_text("Finish soonest")
-    picture(page, "plan-ways-light")
+    in_both_themes(page, picture, "plan-ways")
     assert faults(page) == []
     panel.get_by_role("button", name="Least flying time").click()
     expect(panel.locator("[aria-current]")).to_contain_text("Least flying time")
@@ -148,7 +147,8 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     page.mouse.move(place["x"] + 60, place["y"] + 30, steps=4)
     page.mouse.up()
     expect(panel).to_contain_text("1 waypoint is changed.")
-    expect(panel).to_contain_text("Every changed leg is clear.")
+    expect(panel).to_contain_text("The whole route is clear.")
+    expect(panel.locator(".hand-figures")).to_contain_text(re.compile(r"km \(\+\d+\xa0m\)"))
     page.keyboard.press("Control+z")
     expect(panel).to_contain_text("Nothing is changed yet.")
     page.keyboard.press("Control+Shift+z")
@@ -160,8 +160,8 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     speed.press("Tab")
     expect(panel).to_contain_text("By hand; empty:")
     panel.get_by_role("button", name="Put one in after it").click()
-    expect(panel).to_contain_text("2 waypoints are changed. Every changed leg is clear.")
-    picture(page, "plan-by-hand-light")
+    expect(panel).to_contain_text("2 waypoints are changed. The whole route is clear.")
+    in_both_themes(page, picture, "plan-by-hand")
     assert faults(page) == []
     panel.get_by_role("button", name="Keep").click()
     expect(panel).to_be_hidden()
@@ -187,12 +187,12 @@ def test_what_can_be_inspected_is_a_layer_with_counts_and_the_reason_of_each_ass
     card = page.get_by_role("region", name="What can be inspected")
     expect(card).to_contain_text(re.compile(r"[\d,]+ of [\d,]+ assets can be inspected"))
     expect(card.get_by_role("list", name="Reasons")).to_contain_text("Inside Greenlawn heliport.")
+    in_both_themes(page, picture, "plan-reach")
     inside = asks(page, "/assets?kind=bridge&bbox=-83.025,39.943,-83.015,39.951&limit=1")["features"][0]
     place = look_at(page, inside["properties"]["centre"])
     page.mouse.move(place["x"] + 40, place["y"] + 40)
     page.mouse.move(place["x"], place["y"])
     expect(page.get_by_role("tooltip")).to_contain_text("Inside Greenlawn heliport.")
-    picture(page, "plan-reach-light")
     assert faults(page) == []
     page.get_by_role("button", name="Change Kite in this mission").click()
     page.get_by_role("dialog", name="Kite").get_by_label("Range").fill("3")

@@ -1,7 +1,6 @@
 """What UAVs do when their link is lost: chosen, rally points put on the map and moved, checked in words, undone, read by viewers."""
 
 import re
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -9,6 +8,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import TOO_WIDE, look_at, place_of, wait_for_map
+from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.test_accessibility import faults
 from tests.browser.test_flight_options import is_saved, mission_of
 from tests.browser.test_planning import opens_mission
@@ -16,7 +16,6 @@ from tests.browser.test_planning_options import PHONE
 
 pytestmark = pytest.mark.browser
 
-Picture = Callable[[Page, str], None]
 CLEAR = [-82.99, 39.86]  # south of both routes, away from the zones
 IN_RESERVE = "39.9100, -82.9100"  # within the zone "Alum Creek reserve"
 UNCOUNTED = "Energy is not checked for Heron, Kite: no battery is stated."
@@ -91,7 +90,8 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
         re.compile(r"If the link is lost: From \d+ of \d+ waypoints a UAV would not get home")
     )
     failures.get_by_role("button").first.click()
-    picture(page, "plan-lost-link-light")
+    expect(page.locator("#legend")).to_contain_text("Way back without a link that fails")
+    in_both_themes(page, picture, "plan-lost-link")
     assert faults(page) == []
 
     panel(page).get_by_role("button", name="Remove R2").click()

@@ -1,8 +1,7 @@
 """Routes round a zone at its times, routes of several flights, and why they are flown so: what a page says and shows of them."""
 
-import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -11,25 +10,16 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, wait_for_map
+from tests.browser.pictures import HAS_PICTURES, Picture, in_both_themes
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import EAST, WEST, sends
 
 pytestmark = pytest.mark.browser
 
-Picture = Callable[[Page, str], None]
 # Within the two days of the bar of legal times.
 DAY = datetime.now(UTC).replace(hour=0, minute=0, second=0, microsecond=0) + timedelta(days=1)
 CLOSE = 13.2
-HAS_PICTURES = os.environ.get("SPANWISE_SCREENSHOTS") == "1"
-THEMES = ("dark", "light") if HAS_PICTURES else ()
 HALF_DEG = 0.004
-
-
-def in_both_themes(page: Page, picture: Picture, name: str) -> None:
-    for theme in THEMES:
-        page.emulate_media(color_scheme=theme)
-        page.locator("#map[data-idle]").wait_for(state="attached")
-        picture(page, f"{name}-{theme}")
 
 
 def planned(page: Page, name: str, **options: Any) -> dict[str, Any]:
@@ -90,6 +80,8 @@ def test_a_route_goes_round_a_timed_zone_at_its_times_alone_and_the_page_says_so
     expect(dialog).to_contain_text(f"{DAY.day} {DAY:%B}, 14:00 to 17:00")
     expect(dialog).to_contain_text("Heron, start to A1, A1 to A2")
     in_both_themes(page, picture, "plan-legal-zone")
+    page.set_viewport_size({"width": 390, "height": 844})
+    in_both_themes(page, picture, "plan-legal-zone-phone")
 
 
 @pytest.mark.skipif(not HAS_PICTURES, reason="pictures are asked for with SPANWISE_SCREENSHOTS=1")

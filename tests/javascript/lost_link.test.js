@@ -83,6 +83,15 @@ test("the map shows each way back to where it would have led", () => {
   assert.deepEqual(lines.map(({ from, to }) => [from, to]), [[waypoints[1].position, waypoints[0].position], [waypoints[3].position, YARD]]);
 });
 
+test("ways back that do not fail lead quietly to the nearest of start and rally points; from the ground none does", () => {
+  const rally = link.withRallyPoint(back, YARD);
+  const kinds = ["start", "pass", "base", "target"];
+  const plan = planWith({ ...rally, failed: [failed(1, "wind")] }, { waypoints: waypoints.map((waypoint, index) => ({ ...waypoint, kind: kinds[index] })) });
+  assert.deepEqual(link.quietReturnsOf(plan), [{ from: waypoints[3].position, to: waypoints[0].position }]);
+  const near = link.withRallyPoint(back, [-82.975, 40]);
+  assert.deepEqual(link.quietReturnsOf(planWith({ ...near, failed: [] })).map(({ to }) => to), [waypoints[0].position, [-82.975, 40], [-82.975, 40]]);
+});
+
 test("energy that nobody counts is not taken for enough", () => {
   const uncounted = planWith({ ...back, failed: [] }, { energy_wh: null });
   assert.equal(link.checkText("home", uncounted), "From every waypoint the way back meets no zone.");
@@ -91,11 +100,11 @@ test("energy that nobody counts is not taken for enough", () => {
 });
 
 test("how high UAVs have to climb for the way back is told, and a mast in the way", () => {
-  assert.equal(spaces(link.heightsText(planWith({ ...back, failed: [], highest_m: [105] }))), "It is counted on ways back at up to this height above the start: Heron 105 m.");
+  assert.equal(spaces(link.heightsText(planWith({ ...back, failed: [], highest_m: [105] }))), "Highest way back, above the start: Heron 105 m.");
   assert.equal(link.heightsText(planWith({ ...back, failed: [], highest_m: [null] })), "");
   assert.equal(link.heightsText(planWith({ ...back, failed: [] })), "");
   const [barred] = link.failuresOf(planWith({ ...back, failed: [failed(1, "obstacle", { over_m: 5 })] }));
-  assert.equal(spaces(link.failureText(barred).why), "a mast or wires are in the way: over them it would be 5 m above the greatest height");
+  assert.equal(spaces(link.failureText(barred).why), "a mast or wires are in the way: over them it would be 5 m above the greatest allowed height");
 });
 
 test("places of waypoints are counted from 1 and run together", () => {

@@ -77,10 +77,10 @@ test("wishes go to the server only where there are some", () => {
   assert.deepEqual(wishesOf({ priority: null, uav: null, sensor: null }), { priority: "normal", uav: null, sensor: "" });
 });
 
-test("a UAV of the fleet brings its own sensors, another says them", () => {
+test("sensors are said as the mission has them, of UAVs of the fleet too", () => {
   const uavs = [{ ...heron, sensors: ["LiDAR"], most_targets: 3 }, { ...heron, id: null, sensors: ["Corona"] }];
   const body = requestOf({ ...picked, uavs }).uavs;
-  assert.deepEqual([body[0].sensors, body[0].most_targets, body[1].sensors], [undefined, 3, ["Corona"]]);
+  assert.deepEqual([body[0].sensors, body[0].most_targets, body[1].sensors], [["LiDAR"], 3, ["Corona"]]);
   assert.deepEqual(sensorsKnown({ ...picked, uavs }, [{ sensors: ["lidar"] }]), ["Corona", "LiDAR"]);
 });
 

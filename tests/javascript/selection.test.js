@@ -22,7 +22,7 @@ test("removing leaves the order of the rest", () => {
 test("the request has positions only where a point was picked", () => {
   const request = requestOf(withUav(withTargets(EMPTY, [tower, wholeLine, pointOnLine]), heron));
   assert.deepEqual(request.targets, [{ asset: 7 }, { asset: 9 }, { asset: 9, position: [10.5, 50.5] }]);
-  assert.deepEqual(request.uavs, [{ name: "Heron", position: [9, 49], id: 3, max_range_m: null, cruise_speed_mps: 12, end_action: "hover" }]);
+  assert.deepEqual(request.uavs, [{ name: "Heron", position: [9, 49], id: 3, max_range_m: null, cruise_speed_mps: 12, end_action: "hover", own_figures: [] }]);
 });
 
 test("a moved start asks for another plan, moved back for the same", () => {

@@ -30,7 +30,7 @@ HIGHEST_AGL_M = 120.0
 STAYS_S = 60.0  # more than any task of these missions takes
 REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path", "wind"}
 OF_WAYS = {"no_path", "wind", "beyond_range", "beyond_energy", "too_far_from_network"}
-NO_NUMBER = ("alone", "kept back", "charges on the way")  # beside others nothing is missing that has one number
+NO_NUMBER = ("alone",)  # beside others nothing is missing that has one number
 _MISSING = re.compile(r"([\d,.]+) (k?m|Wh) more than")
 
 
@@ -71,9 +71,11 @@ class RefusalJudge:
     def _bars(self, course: Any, request: PlanRequest) -> bool:
         """Whether a zone that a flight could meet there lies within its clearance, at some time of the flight."""
         begin = request.departs_at
+        is_alone = len(request.uavs) == 1 and request.organisation is None
+        longest_s = LONGEST_FLIGHT_S if is_alone else 2.0 * LONGEST_FLIGHT_S  # who is put off until others have landed comes so late
         return any(
             self.zones.is_at_height(self.zones.zones[zone], (0.0, HIGHEST_AGL_M), None, WIDER)
-            and (begin is None or self.zones.applies_between(zone, begin, begin + timedelta(seconds=LONGEST_FLIGHT_S), WIDER))
+            and (begin is None or self.zones.applies_between(zone, begin, begin + timedelta(seconds=longest_s), WIDER))
             for zone in self.zones.lie_near(course, WIDER.lateral_m)
         )
 

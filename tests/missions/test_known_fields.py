@@ -1,13 +1,15 @@
-"""A field that is not known is refused by its name wherever a plan or a mission is asked for."""
+"""A field that is not known is refused by its name wherever a plan, a mission or something of the fleet is asked for."""
 
 from typing import Any
 
 import pytest
 from django.test import Client
 
-from tests.missions.api import mission_body, plan_body, post
+from missions.models import Uav, UavCredential
+from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import world
 from tests.workspace.people import client_of, somebody
+from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
 
@@ -55,3 +57,43 @@ def test_of_a_long_list_the_nearest_names_are_looked_for_a_few_times_only() -> N
     told = details(client, "plans", plan_body(here.towers[1]) | {"targets": wrong})
     meant = [words for words in told.values() if "is position meant" in str(words)]
     assert 1 <= len(meant) <= 10
+
+
+UAV = {"name": "Kite", "position": [10.0, 56.0]}
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "place", "words"),
+    [
+        ("uavs", UAV | {"batery_wh": 40}, "batery_wh", "is battery_wh meant?"),
+        ("uavs", UAV | {"retired": True}, "retired", "There is no such field."),
+        ("uav-types", {"name": "Iris", "cruise_speed": 9}, "cruise_speed", "is cruise_speed_mps meant?"),
+        ("bases", {"name": "North", "position": [10.0, 56.0], "notes": "by the gate"}, "notes", "is note meant?"),
+        ("uavs", {"type": "Feature", "properties": {"name": "Kite", "mass": 2}}, "mass", "is mass_kg meant?"),
+        ("uavs", {"type": "Feature", "properties": {"name": "Kite"}, "mass_kg": 2}, "mass_kg", "stands in its properties"),
+        ("uavs", {"type": "Feature", "properties": {"name": "Kite"}, "geometry": {"type": "Polygon"}}, "position", "at a Point"),
+        ("uavs", {"type": "Feature", "properties": ["Kite"]}, "properties", "An object is needed."),
+    ],
+)
+def test_a_mistyped_field_of_the_fleet_is_named(path: str, body: dict[str, Any], place: str, words: str) -> None:
+    client = client_of(somebody(Role.ADMINISTRATOR))
+    assert words in str(details(client, path, body)[place])
+    assert not Uav.objects.exists()
+
+
+def test_a_mistyped_field_of_a_credential_is_named_and_nothing_is_made() -> None:
+    client = client_of(somebody(Role.ADMINISTRATOR))
+    uav = post(client, "uavs", UAV).json()["id"]
+    assert details(client, f"uavs/{uav}/credentials", {"kind": "link-token", "expires": "2027-01-01"}) == {
+        "expires": ["There is no such field."]
+    }
+    assert not UavCredential.objects.exists()
+
+
+@pytest.mark.parametrize("path", ["uavs", "uav-types", "bases"])
+def test_what_was_answered_may_be_sent_again(path: str) -> None:
+    client = client_of(somebody(Role.ADMINISTRATOR))
+    body = {"name": "Iris"} if path == "uav-types" else UAV
+    made = post(client, path, body).json()
+    again = patch(client, f"{path}/{made['id']}", made, **{"If-Match": "*"})
+    assert again.status_code == 200, again.content

@@ -159,7 +159,7 @@ def test_a_list_seen_again_asks_for_no_drawing_again(here: World, client: Client
     for number in range(4):
         created(client, here, f"M{number}", plan=False)
     client.get("/api/v1/missions")
-    with django_assert_max_num_queries(8):
+    with django_assert_max_num_queries(9):
         client.get("/api/v1/missions")
 
 

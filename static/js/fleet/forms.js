@@ -51,12 +51,11 @@ function placeFields(position, onMove) {
 
 /** By which door a UAV is told what to do, and what is taken for its word. */
 function linkFields(uav, isAdministrator) {
+  const waiver = (name, label, hint) => switchField(name, label, uav[name], { hint: isAdministrator ? hint : t("Only an administrator changes this."), disabled: !isAdministrator });
   return [
     choiceField("link", t("Told what to do by"), uav.link, Object.entries(LINKS).map(([value, { words }]) => [value, words])),
-    switchField("is_simulated", t("Simulated"), uav.is_simulated, { hint: t("No real aircraft: it may fly where there is no terrain data.") }),
-    switchField("allows_unsigned", t("MAVLink without a signature"), uav.allows_unsigned, {
-      hint: isAdministrator ? t("Whoever reaches the gateway can then fly it: only on a closed network.") : t("Only an administrator changes this."), disabled: !isAdministrator,
-    }),
+    waiver("is_simulated", t("Simulated"), t("No real aircraft: it may fly where there is no terrain data.")),
+    waiver("allows_unsigned", t("MAVLink without a signature"), t("Whoever reaches the gateway can then fly it: only on a closed network.")),
   ];
 }
 

@@ -22,7 +22,7 @@ export const KINDS = {
       { words: t("Name"), cell: (uav) => caption(uav.type_name || t("no type")) },
       { words: t("State"), cell: (uav) => stateChip(uav.state) },
       { words: t("Base"), class: "wide", cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))] },
-      { words: t("Battery"), class: "number", cell: (uav) => batteryMark(uav.battery_percent) },
+      { words: t("Battery"), class: "number", cell: (uav) => [batteryMark(uav.battery_percent), caption(uav.battery_wh !== null && wattHours(uav.battery_wh))] },
       { words: t("Range"), class: "number wide", cell: (uav) => rangeText(uav.max_range_m) },
       { words: t("Missions"), class: "number missions", cell: (uav) => `${uav.mission_count || "—"}` },
     ],

@@ -62,6 +62,12 @@ const ROWS = [
     draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 5.25, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.25 }), svg("path", { d: "M13.7 2L10.5 6.8H12.7L12.2 10L15.5 5.3H13.2Z", fill: "var(--ink)" })),
   },
   { layer: "route-stops", kind: "base", words: t("Base between two flights"), draw: () => sample(svg("rect", { x: 9, y: 2, width: 8, height: 8, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.5 })) },
+  { layer: "lost-link-quiet", words: t("Way back without a link"), draw: line("--ink-2", 1, { "stroke-dasharray": "2 3" }) },
+  {
+    layer: "lost-link-lines",
+    words: t("Way back without a link that fails"),
+    draw: () => sample(stroke("--critical", 1.5, { "stroke-dasharray": "4 3" }), svg("circle", { cx: 4, cy: 6, r: 3, fill: "var(--raised)", stroke: "var(--critical)", "stroke-width": 1.75 })),
+  },
   {
     layer: "many-targets",
     words: t("Target"),

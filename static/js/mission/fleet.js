@@ -2,10 +2,10 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
-import { lengthText, speedText } from "../units.js";
+import { exactEnergyText, lengthText, speedText } from "../units.js";
 
-/** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, range, speed and end. */
-const factsIn = ({ base, base_name, type_name, sensors, battery_percent, state, usual }) => ({ base, base_name, type_name, sensors, battery_percent, state, usual });
+/** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, figures, sensors and end. */
+const factsIn = ({ base, base_name, type_name, battery_percent, state, usual }) => ({ base, base_name, type_name, battery_percent, state, usual });
 
 /** Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet. */
 export function standingUavs({ selection, fleet }) {
@@ -46,10 +46,15 @@ export function isAskedFor({ base_name, sensors, type_name }, { base = "", senso
 
 const END_WORDS = { hover: t("hovers at the end"), land: t("lands at the end"), return: t("returns to start"), base: t("lands at the nearest base") };
 
-/** "range 80 km · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends. */
-export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, most_targets = null, sorties = 1, type_name, sensors = [] }, returnsToStart) {
+/** Of a full battery [Wh]: the mission's, else the fleet's; null where its energy is not counted. */
+const batteryOf = ({ battery_wh, usual }) => (battery_wh === undefined ? (usual?.battery_wh ?? null) : battery_wh);
+
+/** "range 80 km · 56.6 Wh · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends. */
+export function factsOfUav({ max_range_m, cruise_speed_mps, end_action, most_targets = null, sorties = 1, type_name, sensors = [], ...figures }, returnsToStart) {
   const most = most_targets === null ? [] : [tn(most_targets, "at most {count} target", "at most {count} targets")];
   const facts = [...most, max_range_m ? t("range {length}", { length: lengthText(max_range_m) }) : t("range not stated")];
+  const battery_wh = batteryOf(figures);
+  if (battery_wh !== null) facts.push(exactEnergyText(battery_wh));
   if (sorties > 1) facts.push(tn(sorties, "{count} flight", "up to {count} flights"));
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
   const end = END_WORDS[returnsToStart ? "return" : end_action];

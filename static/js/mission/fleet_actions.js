@@ -4,6 +4,7 @@ import { post } from "../api.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import * as picks from "./selection.js";
+import { openChanges, withPresentFigures } from "./uav_changes.js";
 
 /** context: see actions.js. */
 export function createFleetActions({ store, selection, change }) {
@@ -35,7 +36,14 @@ export function createFleetActions({ store, selection, change }) {
     say(tn(added, "{count} UAV is chosen.", "{count} UAVs are chosen."));
   }
 
+  function takePresentFigures() {
+    const before = selection();
+    change(withPresentFigures(before, openChanges(before, store.state.mission?.uav_changes)));
+    toast(t("The present figures are taken."), { label: t("Undo"), act: () => change(before) });
+  }
+
   return {
+    takePresentFigures,
     addUav, addUavOfFleet, addUavsOfFleet,
     removeUav: (sequence) => change(picks.withoutUavAt(selection(), sequence)),
     moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),

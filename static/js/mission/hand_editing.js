@@ -1,4 +1,4 @@
-/** Changing one route by hand: its points with undo and redo, each changed leg asked about at once, and keeping them. */
+/** Changing one route by hand: its points with undo and redo, what flying them would take asked about at once, and keeping them. */
 
 import { post, request } from "../api.js";
 import { say, toast } from "../page/toast.js";
@@ -6,11 +6,17 @@ import { t } from "../text.js";
 import { isPlanCurrent } from "./plan_view.js";
 import * as hand from "./hand_route.js";
 
-const MOST_ASKED = 200; // legs at once: missions/serializers/by_hand.py
+const MOST_KNOWN = 50; // routes as they were wished, with what the server said of them
+const NO_FAULTS = hand.faultsOf(null);
 
-/** saving: { save(), keepOpen(mission, asked) }. While somebody changes a route, store.state.hand says all of it; else it is null. */
+/**
+ * saving: { save(), keepOpen(mission, asked) }. While somebody changes a route, store.state.hand says all of it; else it is null.
+ *
+ * hand.look is what the server said last of the route as it is shown, and of as many points as it has now; hand.isLookOld tells that the
+ * points have moved on since. hand.legs has the changed legs, and whether each is clear; null while that is not known.
+ */
 export function createHandEditing({ store, history, selection, problem, wordsOf }, { save, keepOpen }) {
-  const verdicts = new Map(); // leg → { is_clear, zone, message }
+  const looks = new Map(); // body → { faults, length_m, … } as asked
   let [past, future] = [[], []];
   let isAsking = false;
 
@@ -27,8 +33,10 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
       return;
     }
     [past, future] = [[], []];
+    looks.clear();
     const original = hand.pointsOf(route);
-    store.update({ hand: { sequence, original, points: original, chosen: null, faults: hand.faultsOf(null), legs: new Map(), canUndo: false, canRedo: false, isSaving: false }, why: { byHand: sequence }, tool: "point" });
+    store.update({ hand: { sequence, original, points: original, chosen: null, dragged: null, look: null, isLookOld: true, unknown: "", faults: NO_FAULTS, legs: new Map(), canUndo: false, canRedo: false, isSaving: false }, why: { byHand: sequence }, tool: "point" });
+    void ask();
   }
 
   function end() {
@@ -36,7 +44,7 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
   }
 
   const show = (points, chosen) => {
-    put({ points, chosen: chosen !== null && points[chosen] ? chosen : null, faults: hand.faultsOf(null), canUndo: past.length > 0, canRedo: future.length > 0, legs: legsNow(points) });
+    put({ points, chosen: chosen !== null && points[chosen] ? chosen : null, canUndo: past.length > 0, canRedo: future.length > 0, ...knownOf(points) });
     void ask();
   };
 
@@ -49,29 +57,39 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     return true;
   }
 
-  /** index of each changed leg → what is known of it; null while that is asked. */
-  function legsNow(points) {
-    return new Map(hand.changedLegs(points, state().original).map((index) => [index, verdicts.get(hand.keyOfLeg(hand.legOf(points, index))) ?? null]));
+  const keyOf = (points) => JSON.stringify(hand.bodyOf(points));
+
+  /** What is known of these points, exactly or from a moment ago. */
+  function knownOf(points) {
+    const exact = looks.get(keyOf(points)) ?? null;
+    const { look: last, dragged, original } = state();
+    const look = exact ?? (last?.waypoints.length === points.length ? last : null);
+    const faults = look && (exact || dragged) ? hand.faultsOf(look.faults) : NO_FAULTS;
+    const isKnown = look !== null && (exact !== null || Boolean(dragged));
+    const legs = new Map(hand.changedLegs(points, original).map((index) => [index, isKnown ? { is_clear: hand.isLegClear(faults, index) } : null]));
+    return { look: exact ?? last, isLookOld: exact === null, faults, legs, unknown: "" };
   }
 
-  /** What is shown on the map at this moment, dragged or not: its legs are asked about one request after the other. */
+  /** What is shown on the map at this moment, dragged or not, is asked about: one request after the other. */
   async function ask() {
-    if (isAsking || !state()) return;
-    const points = state().dragged ?? state().points;
-    const legs = [...legsNow(points)].filter(([, verdict]) => verdict === null).slice(0, MOST_ASKED).map(([index]) => hand.legOf(points, index));
-    if (!legs.length) return;
+    const asked = state();
+    if (isAsking || !asked) return;
+    const points = asked.dragged ?? asked.points;
+    if (looks.has(keyOf(points))) return;
     isAsking = true;
     try {
-      const flyer = legs.some(({ speed_mps }) => speed_mps) ? { mission: store.state.mission.id, uav: state().sequence } : {};
-      const { data } = await post("/leg-checks", { legs, departs_at: store.state.plan?.result.departs_at ?? null, ...flyer });
-      legs.forEach((leg, index) => verdicts.set(hand.keyOfLeg(leg), data.legs[index]));
+      const { data } = await post(`/missions/${store.state.mission.id}/routes/${asked.sequence}/waypoints/look`, hand.bodyOf(points));
+      looks.set(keyOf(points), data);
+      if (looks.size > MOST_KNOWN) looks.delete(looks.keys().next().value);
+      if (state()?.sequence !== asked.sequence) return;
+      put({ look: data });
+      put(knownOf(state().dragged ?? state().points));
     } catch (error) {
-      legs.forEach((leg) => verdicts.set(hand.keyOfLeg(leg), { is_clear: false, zone: null, message: t("Not checked: {reason}", { reason: wordsOf(error) }), isUnknown: true }));
+      if (state()) put({ unknown: t("Not checked: {reason}", { reason: wordsOf(error) }) });
+      return;
     } finally {
       isAsking = false;
     }
-    if (!state()) return;
-    put({ legs: legsNow(state().dragged ?? state().points) });
     void ask();
   }
 
@@ -140,13 +158,13 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     chooseByHand: (chosen) => state() && put({ chosen }),
     /** While it is dragged: shown and asked about, no step of the history. */
     dragByHand(points, chosen) {
-      put({ dragged: points, chosen, legs: new Map() });
-      put({ legs: legsNow(points) });
+      put({ dragged: points, chosen });
+      put(knownOf(points));
       void ask();
     },
     dropByHand(points, chosen) {
       put({ dragged: null });
-      if (!points || !take(points, chosen)) put({ legs: legsNow(state().points) });
+      if (!points || !take(points, chosen)) put(knownOf(state().points));
     },
     moveByHand: (index, position) => take(hand.moved(state().points, index, position), index),
     raiseByHand: (index, height_m) => take(hand.raised(state().points, index, height_m), index),

@@ -21,8 +21,8 @@ export function mountHandMap(map, store, actions) {
   const stateOf = (legs, faults) => (index) => {
     if (faults.legs.has(index)) return "bad";
     if (!legs.has(index)) return "stored";
-    const verdict = legs.get(index);
-    return verdict === null ? "asked" : verdict.is_clear ? "clear" : "bad";
+    const known = legs.get(index);
+    return known === null ? "asked" : known.is_clear ? "clear" : "bad";
   };
 
   function draw({ hand }) {

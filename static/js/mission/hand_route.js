@@ -1,10 +1,8 @@
 /** A route that is changed by hand: waypoints moved, put in, taken out, flown higher or at another speed. Values in, values out.
  *
- * A point is { position, altitude_agl_m, speed_mps, was, kind, target, arrival_s, isByHand }; `was` is its place in the route as stored,
+ * A point is { position, altitude_agl_m, speed_mps, was, kind, target, isByHand }; `was` is its place in the route as stored,
  * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and targets stay.
  */
-
-import { distance_m } from "./span_strip.js";
 
 const DIGITS = 7; // some 0.01 m
 
@@ -16,10 +14,10 @@ const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(D
 /** Whether a leg leads to it that has a speed. */
 export const isFlownTo = ({ kind }) => kind !== "start" && kind !== "base";
 
-export function pointsOf({ waypoints, arrival_s, by_hand, speeds_by_hand }) {
+export function pointsOf({ waypoints, by_hand, speeds_by_hand }) {
   const byHand = new Set(by_hand ?? []);
   const speeds = new Map((speeds_by_hand ?? []).map(({ waypoint, speed_mps }) => [waypoint, speed_mps]));
-  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({ position, altitude_agl_m, speed_mps: speeds.get(was) ?? null, was, kind, target, arrival_s: arrival_s?.[was] ?? null, isByHand: byHand.has(was) }));
+  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({ position, altitude_agl_m, speed_mps: speeds.get(was) ?? null, was, kind, target, isByHand: byHand.has(was) }));
 }
 
 const replaced = (points, index, values) => points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
@@ -39,7 +37,7 @@ export function inserted(points, index, position = null) {
   const [before, after] = [points[index], points[index + 1]];
   if (!before || !after) return points;
   const middle = before.position.map((degrees, axis) => (degrees + after.position[axis]) / 2);
-  const point = { position: rounded(position ?? middle), altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m), speed_mps: after.speed_mps, was: null, kind: "pass", target: null, arrival_s: null, isByHand: true };
+  const point = { position: rounded(position ?? middle), altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m), speed_mps: after.speed_mps, was: null, kind: "pass", target: null, isByHand: true };
   return [...points.slice(0, index + 1), point, ...points.slice(index + 1)];
 }
 
@@ -64,20 +62,6 @@ export function changesOf(points, original) {
   return original.length - kept.length + points.filter((point) => !isAtPlace(point, original) || !isAsFast(point, original)).length;
 }
 
-/** A leg as it is asked about; times are those of the stored waypoints around it, and what its own speed takes where that is longer. */
-export function legOf(points, index) {
-  const end = ({ position, altitude_agl_m }, arrival_s) => ({ position, altitude_agl_m, arrival_s });
-  const before = points.slice(0, index + 1).findLast(({ arrival_s }) => arrival_s !== null)?.arrival_s ?? null;
-  const after = points.slice(index + 1).find(({ arrival_s }) => arrival_s !== null)?.arrival_s ?? null;
-  const { speed_mps } = points[index + 1];
-  if (speed_mps === null) return { start: end(points[index], before), end: end(points[index + 1], after) };
-  const slow_s = before === null ? null : before + distance_m(points[index].position, points[index + 1].position) / speed_mps;
-  return { start: end(points[index], before), end: end(points[index + 1], after === null || slow_s === null ? null : Math.max(after, slow_s)), speed_mps };
-}
-
-/** Legs that are alike are asked about once. */
-export const keyOfLeg = (leg) => JSON.stringify(leg);
-
 /** What the server takes for the whole route. */
 export const bodyOf = (points) => ({ waypoints: points.map(({ position, altitude_agl_m, was, speed_mps }) => ({ position, altitude_agl_m, was, speed_mps })) });
 
@@ -94,3 +78,5 @@ export function faultsOf(details) {
   return faults;
 }
 
+/** Whether a leg is as it should be, by the faults of it and of the points at its ends. */
+export const isLegClear = ({ legs, points }, index) => !legs.has(index) && !points.has(index) && !points.has(index + 1);

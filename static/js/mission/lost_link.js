@@ -1,5 +1,6 @@
 /** What UAVs do when their link is lost, where they may land then, and what the server's check of it means. Values in, values out. */
 
+import { distance_m } from "../draw/measure.js";
 import { routeLetter } from "../map/palette.js";
 import { language, localeOf, t, tn } from "../text.js";
 import { durationText, exactHeightText, numberText } from "../units.js";
@@ -7,6 +8,7 @@ import { durationText, exactHeightText, numberText } from "../units.js";
 export const MOST_RALLY_POINTS = 50; // missions/serializers/limits.py
 export const LONGEST_HOLD_S = 3600; // missions/routing/problem.py
 const USUAL_HOLD_S = 60;
+const LEAST_WAY_M = 20; // a shorter one is not seen
 const DIGITS = 6; // some 0.1 m
 
 export const BEHAVIOURS = [
@@ -109,8 +111,8 @@ export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_
     battery: isOne ? t("{energy} are missing with the reserve kept", { energy: lack }) : t("up to {energy} are missing with the reserve kept", { energy: lack }),
     wind: t("the wind is too strong for the way back"),
     zone: zone ? t("the way back meets {zone}", { zone }) : t("the way back meets a no-fly zone"),
-    too_high: t("the way back would be {height} above the greatest height", { height: exactHeightText(over_m) }),
-    obstacle: t("a mast or wires are in the way: over them it would be {height} above the greatest height", { height: exactHeightText(over_m) }),
+    too_high: t("the way back would be {height} above the greatest allowed height", { height: exactHeightText(over_m) }),
+    obstacle: t("a mast or wires are in the way: over them it would be {height} above the greatest allowed height", { height: exactHeightText(over_m) }),
     unknown_ground: t("the ground under the way back is not known"),
   }[trouble];
   return { where, why };
@@ -150,7 +152,24 @@ export function inZonesText(plan) {
 /** Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before. */
 export function heightsText(plan) {
   const heights = (plan.result.lost_link.highest_m ?? []).map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav })).filter(({ height_m }) => height_m !== null);
-  return heights.length ? t("It is counted on ways back at up to this height above the start: {heights}.", { heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", ") }) : "";
+  return heights.length ? t("Highest way back, above the start: {heights}.", { heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", ") }) : "";
+}
+
+const STAYS_DOWN = ["start", "base"];
+
+/** For the map: [{ from, to }], the ways back that do not fail: from each waypoint in the air to the nearest of the start and the rally points. */
+export function quietReturnsOf(plan) {
+  const { rally_points, failed } = plan.result.lost_link;
+  const fails = new Set(failed.map(({ route, waypoint }) => `${route} ${waypoint}`));
+  return plan.result.routes.flatMap(({ waypoints, geometry }, route) => {
+    if (!geometry) return [];
+    const havens = [waypoints[0].position, ...rally_points];
+    const nearest = (from) => havens.reduce((best, haven) => (distance_m(from, haven) < distance_m(from, best) ? haven : best));
+    return waypoints
+      .filter(({ kind }, index) => !STAYS_DOWN.includes(kind) && !fails.has(`${route} ${index}`))
+      .map(({ position }) => ({ from: position, to: nearest(position) }))
+      .filter(({ from, to }) => distance_m(from, to) > LEAST_WAY_M);
+  });
 }
 
 /** For the map: [{ key, from, to }], each waypoint that fails and where it would return to; key: of its group. */

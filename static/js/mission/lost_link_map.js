@@ -1,7 +1,7 @@
-/** Rally points and failing ways back on the mission's map, as the store has them. */
+/** Rally points and ways back on the mission's map, as the store has them: quietly, and where they fail not so. */
 
 import * as layer from "../map/layers/lost_link.js";
-import { checkStateOf, rallyName, returnLinesOf, usesRallyPoints, wholeLostLink } from "./lost_link.js";
+import { checkStateOf, quietReturnsOf, rallyName, returnLinesOf, usesRallyPoints, wholeLostLink } from "./lost_link.js";
 import { isPlanCurrent } from "./plan_view.js";
 
 /** Returns { recolour() }. */
@@ -14,8 +14,9 @@ export function mountLostLinkMap(map, store, actions, { canPlan }) {
   });
   store.listen(["selection", "plan", "litReturn", "hand"], (state) => {
     const { plan, selection, litReturn, hand } = state;
-    const isLost = !hand && checkStateOf(selection.lost_link, plan, isPlanCurrent(state)) === "lost";
-    layer.showFailures(map, isLost ? returnLinesOf(plan).map((line) => ({ ...line, lit: line.key === litReturn })) : []);
+    const isChecked = !hand && ["home", "lost"].includes(checkStateOf(selection.lost_link, plan, isPlanCurrent(state)));
+    const failing = isChecked ? returnLinesOf(plan).map((line) => ({ ...line, fails: true, lit: line.key === litReturn })) : [];
+    layer.showReturns(map, [...(isChecked ? quietReturnsOf(plan) : []), ...failing]);
   });
 
   return { recolour: () => layer.recolour(map) };

@@ -1,6 +1,7 @@
 /** Sentences of a plan in the reader's language. A plan is stored in English: what was put into a sentence is put into the translated one. */
 
 import { language, t } from "../text.js";
+import { numberText } from "../units.js";
 
 const WALL = /^the \S+ m around a mast or wires that cannot be flown over$/;
 
@@ -9,6 +10,12 @@ export function zoneOf(words) {
   if (WALL.test(words)) return t("the surroundings of a mast or wires that cannot be flown over");
   return /^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words;
 }
+/** "1,234.5" of an English sentence as the reader writes it. */
+function figure(text) {
+  const decimals = text.split(".")[1]?.length ?? 0;
+  return numberText(Number(text.replaceAll(",", "")), decimals);
+}
+
 const SENTENCES = [
   [/^It stands inside (.+)\.$/, (zone) => t("It stands inside {zones}.", { zones: zoneOf(zone) })],
   [/^It runs through (.+)\.$/, (zone) => t("It runs through {zones}.", { zones: zoneOf(zone) })],
@@ -19,11 +26,11 @@ const SENTENCES = [
   [/^(.+) has as many targets as it may have \((\d+)\)\.$/, (name, count) => t("{name} has as many targets as it may have ({count}).", { name, count })],
   [/^(.+) and (.+) have as many targets as they may have, and no other UAV has the range for it\.$/, (names, last) => t("{names} and {last} have as many targets as they may have, and no other UAV has the range for it.", { names, last })],
   [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
-  [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed, missing })],
+  [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed: figure(needed), missing: figure(missing) })],
   [/^(.+) states no top airspeed: it is taken to fly no faster than its speed, through the air\.$/, (name) => t("{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.", { name })],
   [/^The wind is too strong on every way to it, or back\.$/, () => t("The wind is too strong on every way to it, or back.")],
   [/^The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach\.$/, () => t("The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.")],
-  [/^As drawn, over the ground and what stands tall, a route with it takes ([\d,.]+) Wh more than the battery of (.+) may give\.$/, (missing, name) => t("As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.", { missing, name })],
+  [/^As drawn, over the ground and what stands tall, a route with it takes ([\d,.]+) Wh more than the battery of (.+) may give\.$/, (missing, name) => t("As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.", { missing: figure(missing), name })],
   [/^Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it\.$/, () => t("Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.")],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];

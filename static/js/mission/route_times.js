@@ -35,6 +35,12 @@ export function staysOf({ waypoints, charging }) {
   return [...bases, ...chargings].sort((a, b) => a.index - b.index);
 }
 
+/** How long it stands on the way with its rotors off. */
+export function standing_s(route) {
+  const charging_s = (route.charging ?? []).reduce((sum, stop) => sum + stop.charging_s, 0);
+  return staysOf(route).filter(({ kind }) => kind === "base").reduce((sum, { stay_s }) => sum + stay_s, charging_s);
+}
+
 /** "in 2 flights", "charges 3 times"; empty for one flight without. */
 export function staysText(route) {
   const stays = staysOf(route);

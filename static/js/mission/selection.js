@@ -176,6 +176,14 @@ export function withoutWishes(selection) {
   return { ...withoutLocks(selection), targets: selection.targets.map((target) => ({ ...target, ...NO_WISH })) };
 }
 
+const MAY_BE_NONE = ["battery_wh", "max_airspeed_mps", "hover_power_w"];
+
+/** What a mission keeps of a UAV of the fleet though the fleet says otherwise by now: figures that it has none of, sensors, and which are its own. */
+function asKept(uav) {
+  const none = Object.fromEntries(MAY_BE_NONE.filter((name) => uav[name] === null).map((name) => [name, null]));
+  return { ...none, ...(uav.sensors ? { sensors: uav.sensors } : {}), own_figures: uav.own_figures ?? [] };
+}
+
 /** The body of /plans and of a mission. */
 export function requestOf(selection) {
   return {
@@ -185,8 +193,8 @@ export function requestOf(selection) {
       if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
       for (const name of UAV_VALUES) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
       if (uav.sorties > 1) body.sorties = uav.sorties;
-      if (body.id === undefined && uav.sensors?.length) body.sensors = uav.sensors; // one of the fleet brings its own
-      return body;
+      if (body.id === undefined && uav.sensors?.length) body.sensors = uav.sensors;
+      return body.id === undefined ? body : { ...body, ...asKept(uav) };
     }),
     targets: selection.targets.map((target) => {
       const body = {};
@@ -207,9 +215,9 @@ export function requestOf(selection) {
   };
 }
 
-/** Equal selections ask for equal routes: what is done without a link does not change them. */
+/** Equal selections ask for equal routes: what is done without a link does not change them, nor whose figures a UAV has. */
 export function basisOf(selection) {
-  return storedBasisOf({ ...selection, lost_link: null });
+  return storedBasisOf({ ...selection, lost_link: null, uavs: selection.uavs.map((uav) => ({ ...uav, own_figures: [] })) });
 }
 
 /** Equal selections are stored as the same mission. */

@@ -5,8 +5,8 @@ import { get, post } from "../api.js";
 const POLL_MS = 3000;
 const PRESENCE_MS = 6000;
 
-/** editor: the name of this page; take(mission): see conflicts.js. */
-export function watchMission(store, { editor, take, connectedAgain, tellDeleted }) {
+/** editor: the name of this page; readFleet(): what flies, as it is now; take(mission): see conflicts.js. */
+export function watchMission(store, { editor, readFleet, take, connectedAgain, tellDeleted }) {
   let timer = 0;
   let isAsking = false;
   let reportedAt = 0;
@@ -45,11 +45,14 @@ export function watchMission(store, { editor, take, connectedAgain, tellDeleted 
     const { data } = await presence(true);
     store.update({ others: data.others, groundRevision: data.ground_revision });
     const { mission } = store.state;
-    if (!mission.plan || mission.is_stale || mission.plan.ground_revision === data.ground_revision) return;
-    const { data: fresh } = await get(`/missions/${mission.id}`); // the ground has changed, the mission has not
+    const isOnOtherGround = mission.plan && !mission.is_stale && mission.plan.ground_revision !== data.ground_revision;
+    const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(data.uav_changes);
+    if (!isOnOtherGround && !hasOtherUavs) return;
+    const fleet = hasOtherUavs ? await readFleet() : store.state.fleet;
+    const { data: fresh } = await get(`/missions/${mission.id}`); // the ground or a UAV has changed, the mission has not
     if (fresh.revision !== mission.revision || store.state.mission !== mission) return;
-    const { is_stale, stale_reason, stale_causes } = fresh;
-    store.update({ mission: { ...mission, is_stale, stale_reason, stale_causes } });
+    const { is_stale, stale_reason, stale_causes, uav_changes } = fresh;
+    store.update({ fleet, mission: { ...mission, is_stale, stale_reason, stale_causes, uav_changes } });
   }
 
   function start() {

@@ -41,6 +41,13 @@ export function editName(cell, mission, rename) {
   field.select();
 }
 
+function staleMark({ has_other_uavs }) {
+  const [words, title] = has_other_uavs
+    ? [t("UAV changed since"), t("A UAV has other figures than it was planned with, or flies no more. Open it to see which.")]
+    : [t("Ground changed since"), t("Assets, zones or terrain were changed after this was planned. Open it to see what that touches.")];
+  return h("span", { class: "stale", title }, icon("triangle-alert", "small"), words);
+}
+
 /** acts: { isChosen, choose, rename, duplicate, remove, restore }. */
 export function missionRow(mission, { canPlan, acts }) {
   const address = `/missions/${mission.id}`;
@@ -55,7 +62,7 @@ export function missionRow(mission, { canPlan, acts }) {
       "span",
       { class: "caption" },
       mission.author ?? "",
-      mission.is_stale && h("span", { class: "stale", title: t("Assets, zones or terrain were changed after this was planned. Open it to see what that touches.") }, icon("triangle-alert", "small"), t("Ground changed since")),
+      mission.is_stale && staleMark(mission),
     ),
   );
   const quick = (label, image, act) => h("button", { type: "button", class: "icon-button quick", "aria-label": `${label}: ${mission.name}`, title: label, onclick: act }, icon(image));

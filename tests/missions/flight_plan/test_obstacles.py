@@ -107,15 +107,23 @@ def test_over_a_valley_a_wire_hangs_higher_above_the_ground_than_at_its_towers()
     assert rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, ground, deep)[1] == (0,)
 
 
-def test_where_the_ground_at_its_towers_is_not_known_it_is_taken_to_be_that_under_the_leg() -> None:
+def test_what_stands_on_ground_that_is_not_known_is_cleared_at_no_height() -> None:
+    """One end of the wire stands in a gap of the terrain: the route is not to be flown, and does not rise for it either."""
+
     def ground(position: np.ndarray) -> np.ndarray:
-        return np.where(np.abs(position[:, 0] - 10.0) > 50.0 * EAST_DEG, np.nan, 100.0)
+        return np.where(position[:, 0] - 10.0 > 50.0 * EAST_DEG, np.nan, 100.0)
 
     points = route(60.0, 60.0).points
-    flown, _ = rising_over(
-        Waypoints(points, points.agl_m + 100.0, points.agl_m), spans((200.0, -200.0, 80.0, 200.0, 200.0, 80.0)), ground, RULES
-    )
+    over = Waypoints(points, points.agl_m + 100.0, points.agl_m)
+    crossed = spans((200.0, -200.0, 10.0, 200.0, 200.0, 10.0), tower(100.0, 0.0, 80.0), tower(300.0, 0.0, 10.0))
+    low = too_low(over, crossed, ground, RULES)
+    assert low is not None
+    assert dict(zip(low.span.tolist(), low.agl_m.tolist(), strict=True)) == {0: np.inf, 1: pytest.approx(95.0)}
+    flown, blocked = rising_over(over, crossed, ground, RULES)
+    assert blocked == (0,)
     assert flown.points.agl_m.max() == pytest.approx(95.0)
+    assert spans_too_near(over, crossed, ground, RULES) == {0, 1}
+    assert spans_too_near(flown, crossed, ground, RULES) == {0}
 
 
 def inspected(agl_m: float) -> Waypoints:

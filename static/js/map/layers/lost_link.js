@@ -1,4 +1,4 @@
-/** Rally points as marks that can be dragged, and the ways back that fail: a dot at each waypoint and a line to where it would land. */
+/** Rally points as marks that can be dragged, and the ways back: a line to where a UAV would land, and a dot at each waypoint where that fails. */
 
 import { h } from "../../dom.js";
 import { t } from "../../text.js";
@@ -10,11 +10,13 @@ const read = (token) => getComputedStyle(document.documentElement).getPropertyVa
 const isKind = (type) => ["==", ["geometry-type"], type];
 
 function layers() {
-  const [critical, casing] = ["--critical", "--map-casing"].map(read);
+  const [critical, casing, quiet] = ["--critical", "--map-casing", "--ink-2"].map(read);
   const lit = ["get", "lit"];
+  const fails = ["get", "fails"];
   return [
+    { id: "lost-link-quiet", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), ["!", fails]], paint: { "line-color": quiet, "line-width": 1, "line-opacity": 0.3, "line-dasharray": [2, 3] } },
     { id: "lost-link-casing", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), lit], paint: { "line-color": casing, "line-width": 5 } },
-    { id: "lost-link-lines", type: "line", source: SOURCE, filter: isKind("LineString"), paint: { "line-color": critical, "line-width": ["case", lit, 2, 1], "line-opacity": ["case", lit, 1, 0.35], "line-dasharray": [4, 3] } },
+    { id: "lost-link-lines", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), fails], paint: { "line-color": critical, "line-width": ["case", lit, 2, 1], "line-opacity": ["case", lit, 1, 0.35], "line-dasharray": [4, 3] } },
     {
       id: "lost-link-dots", type: "circle", source: SOURCE, filter: isKind("Point"),
       paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 9, ["case", lit, 4, 2], 13, ["case", lit, 7, 5]], "circle-color": ["case", lit, critical, read("--raised")], "circle-stroke-color": critical, "circle-stroke-width": 2 },
@@ -22,16 +24,16 @@ function layers() {
   ];
 }
 
-const feature = (type, coordinates, lit) => ({ type: "Feature", properties: { lit }, geometry: { type, coordinates } });
+const feature = (type, coordinates, { fails = false, lit = false }) => ({ type: "Feature", properties: { fails, lit }, geometry: { type, coordinates } });
 
-/** returns: [{ from, to, lit }]; none takes them away. */
-export function showFailures(map, returns) {
+/** returns: [{ from, to, fails, lit }]; none takes them away. */
+export function showReturns(map, returns) {
   if (!map.getSource(SOURCE)) {
     if (!returns.length) return;
     map.addSource(SOURCE, { type: "geojson", data: NOTHING });
     for (const layer of layers()) map.addLayer(layer);
   }
-  const features = returns.flatMap(({ from, to, lit }) => [feature("LineString", [from, to], lit), feature("Point", from, lit)]);
+  const features = returns.flatMap(({ from, to, ...how }) => [feature("LineString", [from, to], how), ...(how.fails ? [feature("Point", from, how)] : [])]);
   map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
 }
 

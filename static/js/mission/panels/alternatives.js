@@ -4,19 +4,26 @@ import { h, icon } from "../../dom.js";
 import { t } from "../../text.js";
 import { durationText, energyText, lengthText, numberText } from "../../units.js";
 import { isWithoutBattery, longestDuration_s, OBJECTIVES } from "../plan_view.js";
+import { standing_s } from "../route_times.js";
 import { basisOf } from "../selection.js";
+import { openChanges } from "../uav_changes.js";
+
+function missed({ unassigned }) {
+  return unassigned.length;
+}
 
 const COLUMNS = [
   { words: t("Distance"), valueOf: ({ total_length_m }) => total_length_m, textOf: lengthText, least: 50 },
   { words: t("Done in"), valueOf: longestDuration_s, textOf: durationText, least: 30 },
   { words: t("In the air"), valueOf: flying_s, textOf: durationText, least: 30 },
   { words: t("Energy"), valueOf: ({ total_energy_wh }) => total_energy_wh ?? null, textOf: energyText, least: 1 },
-  { words: t("Not reached"), valueOf: ({ unassigned }) => unassigned.length, textOf: (count) => numberText(count), least: 0.5 },
+  { words: t("Not reached"), valueOf: missed, textOf: (count) => numberText(count), least: 0.5 },
 ];
 
-/** Of all UAVs together. */
-export function flying_s({ total_duration_s, routes }) {
-  return total_duration_s ?? routes.reduce((sum, { duration_s }) => sum + duration_s, 0);
+/** Of all UAVs together, without what they stand at a base between two flights or on a tower to charge. */
+export function flying_s({ routes }) {
+  const used = routes.filter(({ waypoints }) => waypoints?.length);
+  return used.reduce((sum, route) => sum + route.duration_s - standing_s(route), 0);
 }
 
 /** [{ objective, words, meaning, result or null, fault, isPresent, isBeingMade }] in the order in which they are offered. */
@@ -29,11 +36,13 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
   });
 }
 
-/** For each column whether a way is as good as the best there, and not all are. */
+/** For each column whether a way is as good as the best there, and not all are. Who reaches fewer targets than another wins nothing. */
 export function isBestIn(ways) {
   const made = ways.map(({ result }) => result);
+  const fewest = Math.min(...made.filter(Boolean).map(missed));
   return COLUMNS.map(({ valueOf, least }) => {
-    const values = made.map((result) => (result ? valueOf(result) : null));
+    const counts = (result) => result && (valueOf === missed || missed(result) === fewest);
+    const values = made.map((result) => (counts(result) ? valueOf(result) : null));
     const known = values.filter((value) => value !== null);
     const best = Math.min(...known);
     const areAlike = known.every((value) => value - best < least);
@@ -56,7 +65,7 @@ export function alternatives(state, actions, canPlan) {
   const isBusy = ways.some(({ isBeingMade }) => isBeingMade);
   const canAsk = canPlan && !isBusy && ways.some(({ result, fault }) => !result && !fault);
   return [
-    h("p", { class: "quiet-text" }, t("One plan of the same targets for each. The best figure of a column is bold.")),
+    h("p", { class: "quiet-text" }, [t("One plan of the same targets for each. The best figure of a column is bold."), differ(ways) && t("Plans that reach fewer targets do not count for it."), openChanges(state.selection, state.mission?.uav_changes).length > 0 && t("All are planned with the figures that this mission has of its UAVs.")].filter(Boolean).join(" ")),
     h(
       "div",
       { class: "ways-place" },
@@ -66,6 +75,9 @@ export function alternatives(state, actions, canPlan) {
     canAsk && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.planAlternatives }, t("Plan the others"))),
   ].filter(Boolean);
 }
+
+/** Whether some reach more targets than others. */
+const differ = (ways) => new Set(ways.filter(({ result }) => result).map(({ result }) => missed(result))).size > 1;
 
 const said = (value, textOf) => (value === null ? "—" : textOf(value));
 

@@ -2,7 +2,8 @@
 
 import { h, icon } from "../../dom.js";
 import { t, tn } from "../../text.js";
-import { SHORT_UNIT, SPEED_UNIT, speedText } from "../../units.js";
+import { SHORT_UNIT, SPEED_UNIT } from "../../units.js";
+import { figuresOfLook, speedWords } from "../hand_figures.js";
 import { changesOf, isFlownTo, isFree } from "../hand_route.js";
 
 const MOST_SAID = 4;
@@ -13,6 +14,7 @@ const typedSpeed = (mps) => Number((mps / SPEED_UNIT.mps).toFixed(1));
 export function createByHand(store, actions) {
   const hand = () => store.state.hand;
   const said = h("p", { class: "why-sentence", role: "status" });
+  const figures = h("p", { class: "hand-figures" });
   const faults = h("ul", { class: "hand-faults", "aria-label": t("What is wrong") });
   const which = h("span", { class: "hand-which" });
   const go = (step) => () => actions.chooseByHand(Math.min(hand().points.length - 1, Math.max(0, (hand().chosen ?? (step > 0 ? -1 : hand().points.length)) + step)));
@@ -38,17 +40,12 @@ export function createByHand(store, actions) {
   const takeBack = h("button", { type: "button", class: "button", onclick: actions.takeBackByHand }, icon("undo-2", "small"), t("Take back the last change"));
   const backSaid = h("p", { class: "quiet-text" });
   const back = h("div", { class: "stack hand-back" }, backSaid, h("div", { class: "hand-acts" }, takeBack));
-  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-acts hand-end" }, keep, leave));
+  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-end" }, figures, h("div", { class: "hand-acts" }, keep, leave)));
 
   const ownSpeed = () => store.state.mission?.uavs[hand().sequence]?.cruise_speed_mps ?? null;
 
-  /** Over the leg to a point: as set by hand, or the UAV's own. */
-  function speedWords(point) {
-    if (!isFlownTo(point)) return t("No leg leads here.");
-    const own = ownSpeed();
-    if (point.speed_mps !== null) return own ? t("By hand; empty: {speed} as planned.", { speed: speedText(own) }) : t("By hand.");
-    return own ? t("{speed} over ground, as planned.", { speed: speedText(own) }) : t("As planned.");
-  }
+  /** Of the leg to a point as the server flies it; null while that is not known. */
+  const flownSpeed = ({ look, points }, index) => (look?.waypoints.length === points.length ? (look.waypoints[index]?.speed_mps ?? null) : null);
 
   function kindWords(point, plan) {
     if (point.kind === "start") return t("start");
@@ -58,23 +55,34 @@ export function createByHand(store, actions) {
     return point.kind === "target" ? `${plan.targets[point.target]?.label ?? t("Target")}${point.isByHand ? `, ${hand}` : ""}` : hand;
   }
 
-  function faultsNow({ legs, faults: told, points }) {
+  function faultsNow({ faults: told, points, unknown }) {
     const leg = (index) => t("Leg {from} to {to}", { from: index + 1, to: index + 2 });
-    const fromLegs = [...legs].filter(([index, verdict]) => verdict && !verdict.is_clear && !told.legs.has(index)).map(([index, { message }]) => `${leg(index)}: ${message}`);
-    const fromServer = [...[...told.legs].map(([index, words]) => `${leg(Math.min(index, points.length - 2))}: ${words}`), ...[...told.points].map(([index, words]) => `${t("Waypoint {number}", { number: index + 1 })}: ${words}`), ...told.other];
-    return [...fromServer, ...fromLegs];
+    const ofLegs = [...told.legs].map(([index, words]) => `${leg(Math.min(index, points.length - 2))}: ${words}`);
+    const ofPoints = [...told.points].map(([index, words]) => `${t("Waypoint {number}", { number: index + 1 })}: ${words}`);
+    return [...(unknown ? [unknown] : []), ...told.other, ...ofLegs, ...ofPoints];
+  }
+
+  let shownPoint = null;
+  /** What somebody is typing stays, whatever the server answers meanwhile. */
+  function write(input, value, chosen) {
+    if (input !== document.activeElement || chosen !== shownPoint) input.value = value;
   }
 
   function refresh({ hand: now, plan }) {
     if (!now) return;
-    const { points, original, chosen, legs } = now;
+    const { original, chosen } = now;
+    const points = now.dragged ?? now.points;
     const list = faultsNow(now);
-    const isAsking = [...legs.values()].some((verdict) => verdict === null);
+    const isAsking = now.isLookOld && !now.unknown;
     const changes = changesOf(points, original);
     const parts = [changes ? tn(changes, "{count} waypoint is changed.", "{count} waypoints are changed.") : t("Nothing is changed yet.")];
-    if (isAsking) parts.push(t("The changed legs are being checked."));
-    else if (changes && !list.length) parts.push(t("Every changed leg is clear."));
+    if (isAsking) parts.push(t("The route is being checked."));
+    else if (changes && !list.length) parts.push(t("The whole route is clear."));
     said.textContent = parts.join(" ");
+    const told = figuresOfLook(now.look, plan?.result.routes[now.sequence]);
+    figures.hidden = !told;
+    figures.textContent = told;
+    figures.classList.toggle("old", now.isLookOld);
     const rest = list.length - MOST_SAID;
     faults.hidden = list.length === 0;
     faults.replaceChildren(...[...list.slice(0, MOST_SAID), ...(rest > 0 ? [tn(rest, "and {count} more", "and {count} more")] : [])].map((words) => h("li", {}, icon("circle-x", "small"), h("span", {}, words))));
@@ -94,12 +102,15 @@ export function createByHand(store, actions) {
     takeBack.disabled = changes > 0 || now.isSaving;
     if (!point) return;
     const free = isFree(point);
-    height.value = typed(point.altitude_agl_m);
-    [longitude.value, latitude.value] = point.position.map((degrees) => Number(degrees.toFixed(6)));
-    speed.value = point.speed_mps === null ? "" : typedSpeed(point.speed_mps);
-    speed.placeholder = ownSpeed() && isFlownTo(point) ? typedSpeed(ownSpeed()) : "";
+    write(height, typed(point.altitude_agl_m), chosen);
+    [longitude, latitude].forEach((input, axis) => write(input, Number(point.position[axis].toFixed(6)), chosen));
+    write(speed, point.speed_mps === null ? "" : typedSpeed(point.speed_mps), chosen);
+    shownPoint = chosen;
+    const flown_mps = flownSpeed(now, chosen);
+    const usual_mps = point.speed_mps === null ? (flown_mps ?? ownSpeed()) : ownSpeed();
+    speed.placeholder = usual_mps && isFlownTo(point) ? typedSpeed(usual_mps) : "";
     speed.disabled = !isFlownTo(point);
-    speedSaid.textContent = speedWords(point);
+    speedSaid.textContent = speedWords(point, ownSpeed(), flown_mps);
     latitude.disabled = longitude.disabled = !free;
     drop.disabled = !free;
     put.disabled = chosen === points.length - 1;

@@ -9,6 +9,7 @@ import { departureText } from "../flight_options.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
+import { uavNotice } from "./uav_changes.js";
 
 const STATE_WORDS = { draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"), failed: t("Failed") };
 const MOST_CAUSES = 3;
@@ -25,8 +26,8 @@ async function copyAddress(mission) {
   }
 }
 
-/** showPlace(position): on the map. */
-export function mountHeader(store, actions, canPlan, { showPlace }) {
+/** canCopy: who plans missions may copy one that nobody can change; showPlace(position): on the map. */
+export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
   const name = byId("mission-name");
   name.addEventListener("input", () => actions.rename(name.value));
   name.addEventListener("blur", () => {
@@ -45,10 +46,9 @@ export function mountHeader(store, actions, canPlan, { showPlace }) {
         items.push({ icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) });
         items.push({ icon: "history", label: t("History"), act: () => void showHistory(mission) });
       }
-      if (canPlan && mission) {
-        items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
-        items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
-      } else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });
+      if (canCopy && mission) items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
+      if (canPlan && mission) items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
+      else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });
       items.push({ icon: "clipboard-list", label: t("All missions"), act: () => void (location.href = "/") });
       return menuOf(t("This mission"), items);
     }),
@@ -125,7 +125,10 @@ function noticesOf(state, actions, { canPlan, showPlace, askWhy }) {
       ]),
     );
   }
-  if (state.mission?.is_stale && state.planIsStored && isPlanCurrent(state)) notices.push(staleNotice(state.mission, actions, { canPlan, showPlace }));
+  const changed = uavNotice(state, actions, canPlan);
+  if (changed) notices.push(changed);
+  const isOtherwiseStale = state.mission?.is_stale && !(state.mission.stale_causes ?? []).every(({ what }) => what === "uav");
+  if (isOtherwiseStale && state.planIsStored && isPlanCurrent(state)) notices.push(staleNotice(state.mission, actions, { canPlan, showPlace }));
   if (isPlanCurrent(state)) {
     for (const warning of state.plan.result.warnings ?? []) notices.push(notice("warning", "triangle-alert", "", inWords(warning.message)));
     const unreached = unreachedOf(state.plan);
@@ -142,10 +145,11 @@ function noticesOf(state, actions, { canPlan, showPlace, askWhy }) {
   return notices;
 }
 
-/** What changed since the plan was made, what of the mission that touches, and the way out. */
+/** What of the ground changed since the plan was made, what of the mission that touches, and the way out. UAVs have a notice of their own. */
 function staleNotice(mission, actions, { canPlan, showPlace }) {
-  const [headline, ...rest] = (mission.stale_reason || t("The ground has changed since this was planned.")).split(/(?<=\.) /);
-  const causes = mission.stale_causes ?? [];
+  const causes = mission.stale_causes.filter(({ what }) => what !== "uav");
+  const isOfGround = causes[0] === mission.stale_causes[0];
+  const headline = isOfGround ? mission.stale_reason.split(/(?<=\.) /)[0] : t("The ground has changed since this was planned.");
   const planAgain = canPlan && way({ label: t("Plan again"), act: actions.plan });
   const lines = causes.slice(0, MOST_CAUSES).map((cause) => h("li", {}, cause.message, " ", cause.from && `${t("There from {start} to {end}.", { start: departureText(cause.from), end: clockText(cause.to) })} `, cause.position && way({ label: t("See the place"), act: () => showPlace(cause.position) })));
   const more = causes.length - lines.length;
@@ -156,8 +160,8 @@ function staleNotice(mission, actions, { canPlan, showPlace }) {
     h(
       "div",
       {},
-      h("p", {}, h("strong", {}, headline), !causes.length && ` ${rest.join(" ")}`),
-      lines.length > 0 && h("ul", { class: "causes" }, lines),
+      h("p", {}, h("strong", {}, headline)),
+      h("ul", { class: "causes" }, lines),
       more > 0 && h("p", { class: "caption" }, tn(more, "{count} more place", "{count} more places")),
       planAgain && h("p", {}, planAgain),
     ),

@@ -11,6 +11,7 @@ import { departureText } from "../flight_options.js";
 import { STEP_MS, legalTimesOf, legsText, marginText, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
 
 const HOUR_MS = 3_600_000;
+const [LAST_ROOM, LAST_ROOM_WIDE] = [0.78, 0.93]; // a label that begins later has no room to the right, on a phone and on a desk
 
 /** To which side a label has no room. */
 const sideOf = (share) => (share < 0.15 ? "at-begin" : share > 0.85 ? "at-end" : "within");
@@ -92,7 +93,8 @@ export function showLegalTimes(store, actions) {
 
   function axis() {
     const ticks = ticksOf(times).map(({ at_ms, words, isDay }) => {
-      const tick = h("span", { class: isDay ? "day" : null }, words);
+      const share = shareOf(times, at_ms);
+      const tick = h("span", { class: [isDay && "day", share > LAST_ROOM && "late", share > LAST_ROOM_WIDE && "at-end"].filter(Boolean).join(" ") || null }, words);
       tick.style.left = `${shareOf(times, at_ms) * 100}%`;
       return tick;
     });

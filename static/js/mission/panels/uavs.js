@@ -7,6 +7,7 @@ import { percentText } from "../../units.js";
 import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor, standingUavs } from "../fleet.js";
 import { isPlanCurrent } from "../plan_view.js";
 import { GROUNDING, inWords } from "../plan_words.js";
+import { saidInMission } from "../uav_changes.js";
 import { uavDialog } from "./uav_dialog.js";
 
 const LEAST_TO_NARROW = 4; // a fleet of fewer is seen at a glance
@@ -75,13 +76,14 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   }
 
   function changeUav(sequence) {
-    const uav = standingUavs(store.state)[sequence]; // with the sensors that the fleet knows
+    const uav = standingUavs(store.state)[sequence];
+    const known = store.state.fleet.find(({ id }) => id === uav.id);
     uavDialog({
       title: uav.name,
       note: t("In this mission only; the fleet stays as it is. Its start can be dragged on the map as well."),
       uav,
       act: t("Change"),
-      submit: ({ name, base_name, cruise_speed_mps, ...values }) => actions.changeUav(sequence, { ...values, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }),
+      submit: ({ name, base_name, cruise_speed_mps, ...values }) => actions.changeUav(sequence, saidInMission(uav, { ...values, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }, known)),
     });
   }
 

@@ -6,7 +6,7 @@ class Migration(migrations.Migration):
 
     dependencies = [
         ("missions", "0017_command_axes"),
-        ("telemetry", "0001_initial"),
+        ("telemetry", "0002_boots_of_a_link"),
     ]
 
     operations = [

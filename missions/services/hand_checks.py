@@ -1,0 +1,300 @@
+"""What is wrong with a route as somebody wishes it by hand, and what it would take: the same whether it is dragged or to be kept."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.graph.network import Network
+from inspection.graph.spans import spans_of
+from inspection.models import AssetKind
+from inspection.selectors import ground_heights_m, has_terrain
+from inspection.selectors.planning import planning_read
+from missions.flight_plan.clearance import TAKE_OFF
+from missions.flight_plan.heights import asset_height_m, with_heights
+from missions.flight_plan.leg_speeds import ground_speeds, speeds_out_of_range
+from missions.flight_plan.obstacles import too_low
+from missions.flight_plan.power import NoHeadway
+from missions.flight_plan.route_points import line_of, with_short_legs
+from missions.flight_plan.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
+from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
+from missions.flight_plan.timing import Timing
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from missions.leg_selectors import LegFlyer, speed_words, too_low_text
+from missions.models import EndAction, Mission, Waypoint
+from missions.routing.terminals import tallest_support_m
+from missions.services.last_look import flown_route
+from missions.services.missions import request_of_mission
+from missions.services.plan_json import PlannedRoute
+from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
+from missions.zone_selectors import MetZone, zones_met
+from workspace.number_text import number_text
+
+MOVED_M = 0.1  # less is rounding
+HIGHER_M = 0.05
+MOST_WAYPOINTS = 5_000
+LONGEST_M = 1_000_000.0
+
+
+@dataclass(frozen=True)
+class HandPoint:
+    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
+
+    speed_mps: over ground on the leg that leads here; None: the UAV's own.
+    """
+
+    position: LonLat
+    agl_m: float
+    was: int | None = None
+    speed_mps: float | None = None
+
+
+@dataclass(frozen=True)
+class HandPointFlown:
+    """What is flown at a wished point: seconds after the departure, battery left then, and the speed over ground on the way there."""
+
+    arrival_s: float
+    battery_left_percent: float | None
+    speed_mps: float | None
+
+
+@dataclass(frozen=True)
+class HandLook:
+    """A route as it is wished. faults: what is wrong, by its place, all of it; without `flown` it cannot be drawn or flown at all.
+
+    points: for each wished point.
+    """
+
+    faults: dict[str, str]
+    flown: PlannedRoute | None = None
+    points: tuple[HandPointFlown, ...] = field(default=())
+
+
+def look_by_hand(*, mission: Mission, uav: int, points: Sequence[HandPoint]) -> HandLook:
+    """What would be refused of these points, and what flying them would take. Nothing is kept. Raises InvalidRequest where nobody flies."""
+    route = mission.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
+    if route is None:
+        raise InvalidRequest({"uav": _("This UAV flies no route.")})
+    until_now = list(route.waypoints.select_related("asset", "target"))
+    faults = list_faults(points, until_now)
+    if faults:
+        return HandLook(faults)
+    wished = route_points(points, until_now)
+    faults = obstacle_faults(wished) | point_faults(points, until_now)
+    request = request_of_mission(mission=mission)
+    try:
+        flown = flown_by_hand(request, uav, wished, route.departs_s)
+    except InvalidRequest as error:
+        return HandLook(error.faults | faults)
+    for found in faults_as_flown(flown, wished, mission, request, uav):
+        faults = found | faults
+    return HandLook(faults, flown, _points_flown(flown, wished, request, uav))
+
+
+def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest, uav: int) -> tuple[HandPointFlown, ...]:
+    assert flown.waypoints is not None and flown.timing is not None  # noqa: S101 - just drawn
+    asked, clock = request.uavs[uav], flown.timing
+    speeds_mps = ground_speeds(
+        flown.waypoints, cruise_speed_mps=asked.cruise_speed_mps, performance=asked.performance, conditions=request.conditions
+    )
+    leads_to = _leads_to(wished, flown.waypoints.points)
+    last = {number: place for place, number in enumerate(leads_to)}
+    slowest: dict[int, float] = {}
+    for number, speed_mps in zip(leads_to, speeds_mps, strict=True):
+        if speed_mps is not None:
+            slowest[number] = min(speed_mps, slowest.get(number, speed_mps))
+    left = clock.battery_left_percent
+    return tuple(
+        HandPointFlown(
+            float(clock.arrival_s[last[number]]) + flown.departs_s,
+            None if left is None else float(left[last[number]]),
+            slowest.get(number),
+        )
+        for number in range(len(wished))
+    )
+
+
+def list_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> dict[str, str]:
+    """What is wrong with the list itself: with such a fault nothing else can be said of it."""
+    if len(points) > MOST_WAYPOINTS:
+        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MOST_WAYPOINTS}}
+    kept = [point.was for point in points if point.was is not None]
+    if any(not 0 <= was < len(until_now) for was in kept) or any(right <= left for left, right in pairwise(kept)):
+        return {"waypoints": _("The waypoints are not in the order of the route.")}
+    fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
+    if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
+        return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
+    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(LONGEST_M / 1_000)}}
+    return {}
+
+
+def point_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> dict[str, str]:
+    """What is wrong with single points: their places, heights and speeds."""
+    faults: dict[str, str] = {}
+    flight, network = settings.FLIGHT_RULES, planning_read().ground().network()
+    for number, point in enumerate(points):
+        waypoint = None if point.was is None else until_now[point.was]
+        if waypoint is not None and waypoint.kind != WaypointKind.PASS and apart_m(point, waypoint) > MOVED_M:
+            faults[f"waypoints.{number}.position"] = _("Start, end and targets stay where they are.")
+        low_m = _least_agl_m(waypoint, network, is_moved=waypoint is None or apart_m(point, waypoint) > MOVED_M)
+        if not low_m - HIGHER_M <= point.agl_m <= flight.max_agl_m + HIGHER_M:
+            limits = {"low": number_text(low_m), "high": number_text(flight.max_agl_m)}
+            faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
+        if point.speed_mps is not None and waypoint is not None and waypoint.kind in {WaypointKind.START, WaypointKind.BASE}:
+            faults[f"waypoints.{number}.speed_mps"] = _("No leg leads here.")
+    return faults
+
+
+def obstacle_faults(points: RoutePoints) -> dict[str, str]:
+    """Where waypoints and legs as they are wished, straight from one to the next, pass something tall too low."""
+    flight, ground = settings.FLIGHT_RULES, ground_heights_m if has_terrain() else None
+    under_m = np.full(len(points), np.nan) if ground is None else ground(points.position)
+    amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
+    waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network())
+    low = too_low(waypoints, spans, ground, flight)
+    if low is None:
+        return {}
+    near = legs_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
+    stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # straight up or down to the next one
+    faults: dict[str, str] = {}
+    for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
+        legs = [place] if is_leg else [leg for leg in (place - 1, place) if stands[leg]]
+        if any((leg, span) in near for leg in legs):
+            faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
+    return faults
+
+
+def _wire_faults(flown: PlannedRoute) -> dict[str, str]:
+    """The last look at the route as it is drawn over the ground."""
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    ground = None if flown.is_flat else ground_heights_m
+    near = spans_too_near(flown.waypoints, spans_of(planning_read().ground().network()), ground, settings.FLIGHT_RULES)
+    return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
+
+
+def _least_agl_m(waypoint: Waypoint | None, network: Network, *, is_moved: bool) -> float:
+    """How low a point may be: with clearance above what is there, and where that is not known as high as between targets."""
+    flight = settings.FLIGHT_RULES
+    if waypoint is None or is_moved:
+        return flight.transit_agl_m
+    if waypoint.asset is not None:
+        asset = waypoint.asset
+        height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
+        if waypoint.target is not None and waypoint.target.stretch is not None:
+            course = [LonLat(*vertex) for vertex in waypoint.target.stretch.coords]
+            height_m = max(height_m, tallest_support_m(network, asset.pk, course))
+        elif asset.kind in {AssetKind.TOWER, AssetKind.BRIDGE}:  # by its line's voltage it may be taken to be taller
+            height_m = float(np.fmax.reduce(network.node_height_m[network.node_asset == asset.pk], initial=height_m))
+        least_m = height_m + flight.clearance_m
+        return least_m if waypoint.target_id is not None else max(least_m, flight.transit_agl_m)
+    return min(waypoint.altitude_agl_m, flight.transit_agl_m)
+
+
+def apart_m(point: HandPoint, waypoint: Waypoint) -> float:
+    return float(distance_m(np.array([point.position]), np.array([waypoint.position.coords]))[0])
+
+
+def route_points(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> RoutePoints:
+    """A point that was moved passes nothing."""
+    drawn = []
+    for point in points:
+        waypoint = None if point.was is None else until_now[point.was]
+        if waypoint is None or (waypoint.kind == WaypointKind.PASS and apart_m(point, waypoint) > MOVED_M):
+            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m, speed_mps=point.speed_mps))
+            continue
+        target = None if waypoint.target is None else waypoint.target.sequence
+        at = LonLat(*waypoint.position.coords)
+        task = task_from_json(waypoint.task)
+        drawn.append(RoutePoint(at, WaypointKind(waypoint.kind), point.agl_m, waypoint.asset_id, target, task, point.speed_mps))
+    return RoutePoints.of(drawn)
+
+
+def flown_by_hand(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float) -> PlannedRoute:
+    flight, action = settings.FLIGHT_RULES, request.end_action(uav)
+    points, length_m = with_short_legs(points, flight.longest_leg_m)
+    waypoints, is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)
+    clock = _clock(waypoints, request, uav)
+    return PlannedRoute(
+        waypoints=waypoints, line=line_of(waypoints.points), length_m=length_m, duration_s=clock.total_s, end_action=action,
+        is_flat=is_flat, departs_s=departs_s,
+        timing=clock,
+    )  # fmt: skip
+
+
+def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
+    asked = request.uavs[uav]
+    try:
+        return timing_of_route(
+            waypoints,
+            cruise_speed_mps=asked.cruise_speed_mps,
+            performance=asked.performance,
+            conditions=request.conditions,
+            lands=request.end_action(uav) is not EndAction.HOVER,
+            rules=settings.FLIGHT_RULES,
+        )
+    except NoHeadway as error:
+        raise InvalidRequest({"waypoints": _("The wind is too strong for %(uav)s on a leg.") % {"uav": asked.name}}) from error
+
+
+def faults_as_flown(flown: PlannedRoute, wished: RoutePoints, mission: Mission, request: PlanRequest, uav: int) -> Iterator[dict[str, str]]:
+    """What is wrong with a route as it is drawn, one kind after the other: speeds, wires, zones at their times, range and battery."""
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    leads_to = _leads_to(wished, flown.waypoints.points)
+    yield _speed_faults(flown, leads_to, request, uav)
+    yield _wire_faults(flown)
+    yield _zone_faults(flown, leads_to, mission)
+    yield _reach_faults(flown, request, uav)
+
+
+def _leads_to(wished: RoutePoints, flown: RoutePoints) -> list[int]:
+    """For each point that is flown the wished one that its leg leads to: where a leg is divided, its parts lead to one."""
+    leads_to, number = [], 0
+    for position, agl_m in zip(flown.position, flown.agl_m.tolist(), strict=True):
+        leads_to.append(number)
+        if number < len(wished) - 1 and agl_m == wished.agl_m[number] and (position == wished.position[number]).all():
+            number += 1
+    return leads_to
+
+
+def _speed_faults(flown: PlannedRoute, leads_to: Sequence[int], request: PlanRequest, uav: int) -> dict[str, str]:
+    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    asked = request.uavs[uav]
+    flyer = LegFlyer(asked.name, asked.cruise_speed_mps, asked.performance, request.conditions)
+    found = speeds_out_of_range(
+        flown.waypoints, cruise_speed_mps=asked.cruise_speed_mps, performance=asked.performance, conditions=request.conditions
+    )
+    return {f"waypoints.{leads_to[place]}.speed_mps": speed_words(found[place], flyer) for place in sorted(found, reverse=True)}
+
+
+def _zone_faults(flown: PlannedRoute, leads_to: Sequence[int], mission: Mission) -> dict[str, str]:
+    (met,) = zones_met([flown_route(flown, mission.departs_at)])
+    last = len(leads_to) - 1
+
+    def leg(meeting: MetZone) -> int:
+        return max(leads_to[min(leg_of(meeting) + 1, last)] - 1, 0)
+
+    return {f"legs.{leg(meeting)}": _("This leg meets %(zone)s.") % {"zone": meeting.name} for meeting in reversed(met)}
+
+
+def leg_of(meeting: MetZone) -> int:
+    """The leg's number, the column up to the first waypoint counting as part of the first."""
+    return max(meeting.breach.leg, TAKE_OFF + 1)
+
+
+def _reach_faults(flown: PlannedRoute, request: PlanRequest, uav: int) -> dict[str, str]:
+    asked = request.uavs[uav]
+    longest_m = max(lengths_of_sorties(flown.waypoints)) if flown.waypoints else 0.0
+    if asked.max_range_m is not None and longest_m > asked.max_range_m:
+        values = {"length": number_text(longest_m / 1_000, 1), "range": number_text(asked.max_range_m / 1_000, 1), "uav": asked.name}
+        return {"waypoints": _("This is %(length)s km; the range of %(uav)s is %(range)s km.") % values}
+    usable_wh = asked.performance.usable_wh
+    most_wh = max(wh_of_sorties(flown.timing), default=0.0) if flown.timing else 0.0
+    if usable_wh is None or most_wh <= usable_wh:
+        return {}
+    missing = {"missing": number_text(most_wh - usable_wh, 1), "uav": asked.name}
+    return {"waypoints": _("The battery of %(uav)s lacks %(missing)s Wh for this.") % missing}

@@ -1,0 +1,67 @@
+"""How many Wh are missing for what no battery lasts for: as the best route to it alone is drawn, over the ground and what stands tall."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from missions.flight_plan.heights import GroundHeights
+from missions.routing.problem import End, Reason
+from missions.services.assignment import route_end
+from missions.services.attempts import Attempt
+from missions.services.battery import KEPT_BACK
+from missions.services.least_lacks import IsClear, Lack, LeastLacks
+from missions.services.refusals import LeftOut
+from missions.services.requests import PlanRequest
+from missions.services.unreached import LOCKED
+
+OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
+ALONE = "It is within what the battery may give alone, but not within what is left after the other targets."
+_THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
+
+
+def with_lacks(request: PlanRequest, found: Attempt, ground: GroundHeights | None, is_clear: IsClear | None = None) -> list[LeftOut]:
+    """The targets left out, with the Wh that are missing for those for which no battery lasts. Locked runs keep their reasons.
+
+    is_clear: whether a drawn route keeps clear of all zones, where the plan stands on fewer: a way that does not is none.
+    """
+    told = list(found.left_out)
+    rows = [row for row, item in enumerate(told) if item.reason in OUT_OF_REACH and not item.message.endswith(LOCKED)]
+    if rows:
+        lacks = LeastLacks(request, found, ground, is_clear)
+        for row in rows:
+            told[row] = _told(told[row], request, lacks)
+    return told
+
+
+def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[LeftOut]:
+    """What another plan leaves out as out of reach, too, may lack less on its ways; who has the range on one way lacks the battery."""
+    theirs = {item.target: item for item in other if item.missing is not None}
+
+    def least(item: LeftOut) -> LeftOut:
+        same = theirs.get(item.target)
+        if same is None or item.missing is None:
+            return item
+        if item.reason != same.reason:
+            return item if item.reason == Reason.BEYOND_ENERGY.value else same
+        return item if item.missing <= same.missing else same
+
+    return [least(item) for item in plan]
+
+
+def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
+    if item.reason == Reason.BEYOND_RANGE.value:
+        return item if lacks.is_clear is None or item.missing is None or lacks.of_range(item.target) else replace(item, missing=None)
+    least = lacks.of_battery(item.target)
+    if least is None:
+        return item if lacks.is_clear is None else replace(item, missing=None)
+    if least.missing <= 0.0:
+        return replace(item, message=item.message if item.message == KEPT_BACK else ALONE, missing=0.0)
+    return replace(item, message=_message(least, request), missing=least.missing)
+
+
+def _message(lack: Lack, request: PlanRequest) -> str:
+    uav = request.uavs[lack.uav]
+    more = f"{lack.missing:,.1f} Wh more than the battery of {uav.name} may give."
+    if lack.route.lacks_wh > 0.0:
+        return f"However {uav.name} charges on the way, it alone takes {more}"
+    needed, there = f"{lack.missing + (uav.performance.usable_wh or 0.0):,.1f} Wh", _THERE[route_end(request, lack.uav)]
+    return f"Over the ground and what stands tall it takes {needed} {there}, {more}"

@@ -1,0 +1,44 @@
+/** Says which UAV of the mission is no longer as it was planned with, and takes its present figures. */
+
+import { h, icon } from "../../dom.js";
+import { t, tn } from "../../text.js";
+import { isPlanCurrent } from "../plan_view.js";
+import { changeWords, openChanges } from "../uav_changes.js";
+
+const CHANGEABLE = ["draft", "planned"];
+const MOST_TOLD = 4;
+
+/** What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know of. */
+export function toldChanges({ mission, selection, plan, planIsStored }) {
+  if (!mission) return [];
+  const isOfPlan = planIsStored && isPlanCurrent({ plan, selection });
+  return openChanges(selection, mission.uav_changes)
+    .map((change) => (isOfPlan ? change : { ...change, state: null }))
+    .filter(({ figures, state }) => figures.length > 0 || state !== null);
+}
+
+/** Null where nothing has changed. */
+export function uavNotice(state, actions, canPlan) {
+  const changes = toldChanges(state);
+  if (!changes.length) return null;
+  const mayChange = canPlan && CHANGEABLE.includes(state.mission.state);
+  const hasFigures = changes.some(({ figures }) => figures.length > 0);
+  const act = hasFigures ? { label: t("Use the present figures"), act: actions.takePresentFigures } : { label: t("Plan again"), act: actions.plan };
+  const headline = isPlanCurrent(state)
+    ? tn(changes.length, "A UAV changed since this was planned.", "{count} UAVs changed since this was planned.")
+    : tn(changes.length, "A UAV changed since this mission was made.", "{count} UAVs changed since this mission was made.");
+  const more = changes.length - MOST_TOLD;
+  return h(
+    "div",
+    { class: "notice warning" },
+    icon("triangle-alert"),
+    h(
+      "div",
+      {},
+      h("p", {}, h("strong", {}, headline)),
+      h("ul", { class: "causes" }, changes.slice(0, MOST_TOLD).map((change) => h("li", {}, changeWords(change)))),
+      more > 0 && h("p", { class: "caption" }, tn(more, "{count} more UAV", "{count} more UAVs")),
+      mayChange && h("p", {}, h("button", { type: "button", class: "text-button", onclick: act.act }, act.label)),
+    ),
+  );
+}

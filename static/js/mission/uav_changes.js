@@ -1,0 +1,86 @@
+/** What has become of UAVs since a mission took their figures over, and which figures are the mission's own. Values in, values out. */
+
+import { t } from "../text.js";
+import { OWN_FIGURES } from "../uav_figures.js";
+import { LONG_UNIT, numberText, SPEED_UNIT } from "../units.js";
+import { PERFORMANCE } from "./selection.js";
+
+/** In the order in which the server writes them down. */
+const FIGURES = ["max_range_m", "cruise_speed_mps", ...PERFORMANCE, "sensors"];
+const MOST_DIGITS = 6;
+const SPACE = "\u00a0";
+
+const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+/** Of a stored mission's changes those that the selection has not taken over: its UAVs still have the figures of before. */
+export function openChanges(selection, changes) {
+  return (changes ?? [])
+    .map((change) => {
+      const uav = selection.uavs.find(({ id }) => id === change.id);
+      return { ...change, isThere: Boolean(uav), figures: change.figures.filter(({ name, kept }) => uav && uav[name] !== undefined && isSame(uav[name], kept)) };
+    })
+    .filter(({ isThere, figures, state }) => isThere && (figures.length > 0 || state !== null));
+}
+
+/** The same selection with the figures that the fleet has now. */
+export function withPresentFigures(selection, changes) {
+  const taken = new Map(changes.map(({ id, figures }) => [id, Object.fromEntries(figures.map(({ name, now }) => [name, now]))]));
+  return { ...selection, uavs: selection.uavs.map((uav) => (taken.has(uav.id) ? { ...uav, ...taken.get(uav.id) } : uav)) };
+}
+
+/** Values typed for a UAV in a mission. `known` is the UAV of the fleet: what is left empty is as there, what is typed otherwise is the mission's own. */
+export function saidInMission(uav, values, known) {
+  if (!known) return values;
+  const said = { ...values };
+  const own = new Set(uav.own_figures ?? []);
+  for (const name of FIGURES.filter((figure) => figure in values)) {
+    const ofFleet = OWN_FIGURES.includes(name) ? known.usual[name] : known[name];
+    if (values[name] === null && OWN_FIGURES.includes(name)) {
+      said[name] = undefined;
+      own.delete(name);
+    } else if (values[name] !== uav[name]) own[values[name] === ofFleet ? "delete" : "add"](name);
+  }
+  return { ...said, own_figures: FIGURES.filter((name) => own.has(name)) };
+}
+
+const FIGURE_WORDS = {
+  max_range_m: { words: t("range|figure"), unit: LONG_UNIT.unit, scale: LONG_UNIT.metres, none: t("not stated|range") },
+  cruise_speed_mps: { words: t("speed|figure"), unit: SPEED_UNIT.unit, scale: SPEED_UNIT.mps },
+  battery_wh: { words: t("battery|figure"), unit: "Wh", none: t("not counted") },
+  mass_kg: { words: t("mass|figure"), unit: "kg", digits: 3 },
+  reserve_percent: { words: t("reserve|figure"), unit: "%" },
+  max_airspeed_mps: { words: t("highest airspeed|figure"), unit: SPEED_UNIT.unit, scale: SPEED_UNIT.mps, none: t("not stated|airspeed") },
+  rotor_disk_m2: { words: t("rotor area|figure"), unit: "m²", digits: 3 },
+  hover_power_w: { words: t("power in the hover|figure"), unit: "W", none: t("worked out") },
+};
+
+/** "battery 56.6 → 40 Wh" */
+function figureWords({ name, kept, now }) {
+  if (name === "sensors") return t("sensors {kept} → {now}", { kept: kept.join(", ") || t("none|sensor"), now: now.join(", ") || t("none|sensor") });
+  const { words, unit, scale = 1, none = "", digits = 1 } = FIGURE_WORDS[name];
+  const [before, after] = toldApart(...[kept, now].map((value) => (value === null ? null : value / scale)), digits);
+  return `${words} ${before ?? none} → ${after === null ? none : `${after}${SPACE}${unit}`}`;
+}
+
+/** With as many decimals as it takes to tell one from the other. */
+function toldApart(kept, now, digits) {
+  const [before, after] = [kept, now].map((value) => (value === null ? null : shortText(value, digits)));
+  return before === after && before !== null && digits < MOST_DIGITS ? toldApart(kept, now, digits + 1) : [before, after];
+}
+
+function shortText(value, digits) {
+  const rounded = Number(value.toFixed(digits));
+  return numberText(rounded, Number.isInteger(rounded) ? 0 : `${rounded}`.split(".")[1].length);
+}
+
+const STATE_WORDS = {
+  active: t("flies again, and the plan leaves it on the ground"),
+  maintenance: t("is in maintenance"),
+  retired: t("is retired"),
+};
+
+/** "Kite: battery 56.6 → 40 Wh, is in maintenance." */
+export function changeWords({ name, figures, state, message }) {
+  const told = [...figures.map(figureWords), ...(state ? [STATE_WORDS[state]] : [])];
+  return told.length ? `${name}: ${told.join(", ")}.` : message;
+}

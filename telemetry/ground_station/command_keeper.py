@@ -1,0 +1,93 @@
+"""One order to one vehicle, carried out and seen in what the vehicle reports."""
+
+from collections.abc import Mapping
+
+from telemetry.ground_station.command import CommandEnd, CommandMachine, CommandOutcome
+from telemetry.ground_station.ends import Ends, Message, Messages
+from telemetry.ground_station.orders import CannotOrder, Order, OrderPlan, plan_of
+from telemetry.ground_station.rules import CommandRules
+from telemetry.ground_station.steps import Course, Steps
+from telemetry.ground_station.vehicle_state import VehicleState
+
+
+class CommandKeeper:
+    """Drives an order to its goal. `state` is to have taken each message before the keeper gets it.
+
+    Where the vehicle is already so, it ends at once as applied, and nothing is sent. That is told by its last heartbeat; it must be younger
+    than `fresh_s` and, where something else was sent to the vehicle shortly before, received after `unsettled_until_s`.
+    """
+
+    def __init__(
+        self,
+        order: Order,
+        state: VehicleState,
+        ends: Ends,
+        rules: CommandRules,
+        *,
+        parameters: Mapping[str, float] | None = None,
+        unsettled_until_s: float | None = None,
+    ) -> None:
+        self.order = order
+        self.is_acknowledged = False  # the vehicle said yes to a command of it
+        self._state = state
+        self._ends = ends
+        self._rules = rules
+        self._parameters = dict(parameters or {})
+        self._unsettled_until_s = unsettled_until_s
+        self._now_s = 0.0
+        self._steps = Steps(self._course())
+
+    @property
+    def outcome(self) -> CommandOutcome | None:
+        return self._steps.outcome
+
+    @property
+    def wake_at_s(self) -> float | None:
+        return self._steps.wake_at_s
+
+    def start(self, now_s: float) -> Messages:
+        self._now_s = now_s
+        return self._steps.start(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        self._now_s = now_s
+        return self._noting(self._steps.receive(message, now_s))
+
+    def tick(self, now_s: float) -> Messages:
+        self._now_s = now_s
+        return self._noting(self._steps.tick(now_s))
+
+    def _noting(self, messages: Messages) -> Messages:
+        step = self._steps.step
+        self.is_acknowledged = self.is_acknowledged or (isinstance(step, CommandMachine) and step.is_acknowledged)
+        return messages
+
+    def _course(self) -> Course[CommandOutcome]:
+        try:
+            plan = plan_of(self.order, self._state, self._parameters)
+        except CannotOrder as refusal:
+            return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
+        if self._is_already(plan):
+            return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
+        failure = CommandOutcome(CommandEnd.FAILED)
+        for way in plan.ways:
+            for step in way:
+                machine = CommandMachine(step, self._state, self._ends, self._rules)
+                yield machine
+                ended = machine.outcome
+                if ended is None or ended.state is CommandEnd.FAILED:
+                    code, words = ("", "") if ended is None else (ended.code, ended.words)
+                    failure = CommandOutcome(CommandEnd.FAILED, code, f"Could not {self.order.value}, at {step.words}. {words}".strip())
+                    break
+                self.is_acknowledged = True
+            else:
+                return CommandOutcome(CommandEnd.APPLIED)
+            if failure.code == "silent":  # it may have been heard: another way could undo it
+                break
+        return failure
+
+    def _is_already(self, plan: OrderPlan) -> bool:
+        if plan.goal is None or not self._state.is_fresh(self._now_s, self._rules.fresh_s):
+            return False
+        heard_s = self._state.heartbeat_at_s or 0.0
+        return (self._unsettled_until_s is None or heard_s >= self._unsettled_until_s) and bool(plan.goal(self._state))

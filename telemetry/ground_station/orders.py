@@ -1,0 +1,176 @@
+"""What a UAV can be told, and the commands by which each flavour of autopilot does it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from telemetry.ground_station.command import CommandStep, Effect
+from telemetry.ground_station.flavour import COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
+from telemetry.ground_station.vehicle_state import VehicleState
+
+OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
+NAN = math.nan
+
+
+class Order(StrEnum):
+    """As a UAV's commands are called."""
+
+    ARM = "arm"
+    DISARM = "disarm"
+    TAKE_OFF = "take-off"
+    START = "start"
+    PAUSE = "pause"
+    RESUME = "resume"
+    HOLD = "hold"
+    RETURN = "return"
+    LAND = "land"
+    ABORT = "abort"
+    CHANGE_SPEED = "change-speed"
+
+
+class CannotOrder(ValueError):
+    """This cannot be asked of this vehicle now; `code` names why."""
+
+    def __init__(self, code: str, words: str) -> None:
+        super().__init__(words)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class OrderPlan:
+    """`goal` is what the vehicle's state shows once it is done. `ways` are tried one after the other, each step by step."""
+
+    goal: Effect | None
+    ways: tuple[tuple[CommandStep, ...], ...]
+
+
+def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
+    """For the vehicle as it is now. parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at. Raises CannotOrder."""
+    if state.flavour not in (Flavour.PX4, Flavour.ARDUPILOT):
+        raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
+    if order in (Order.PAUSE, Order.HOLD):
+        return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
+    if order is Order.RETURN:
+        return OrderPlan(_or_on_ground(_is_in(Mode.RETURN)), ((_mode(state, Mode.RETURN),),))
+    if order is Order.LAND:
+        return OrderPlan(_or_on_ground(_is_in(Mode.LAND)), ((_mode(state, Mode.LAND),),))
+    if order is Order.ABORT:
+        return _abort(state)
+    if order is Order.CHANGE_SPEED:
+        return OrderPlan(None, ((_speed(parameters),),))
+    if order is Order.ARM:
+        return OrderPlan(_is_armed, ((*_armable(state), _ARM),))
+    if order is Order.DISARM:
+        return OrderPlan(_is_disarmed, ((_DISARM,),))
+    if order is Order.RESUME:
+        if state.is_in_air is False:
+            raise CannotOrder("not-flying", "The UAV is on the ground: a mission is started there, not resumed.")
+        return OrderPlan(_is_in(Mode.MISSION), ((_mode(state, Mode.MISSION),),))
+    return _take_off(state, parameters) if order is Order.TAKE_OFF else _start(state)
+
+
+# effects
+
+
+def _is_armed(state: VehicleState) -> bool:
+    return bool(state.is_armed)
+
+
+def _is_disarmed(state: VehicleState) -> bool:
+    return state.is_armed is False
+
+
+def _is_flying(state: VehicleState) -> bool:
+    return bool(state.is_armed and state.is_in_air)
+
+
+def _flies_mission(state: VehicleState) -> bool:
+    return _is_flying(state) and state.is_in(Mode.MISSION)
+
+
+def _is_in(mode: Mode) -> Effect:
+    return lambda state: state.is_in(mode)
+
+
+def _or_on_ground(effect: Effect) -> Effect:
+    """A UAV that stands disarmed holds, has returned, and has landed."""
+    return lambda state: effect(state) or (state.is_armed is False and not state.is_in_air)
+
+
+# steps
+
+_ARM = CommandStep("arm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_armed)
+_DISARM = CommandStep("disarm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_disarmed)
+_LEAVE_GROUND = CommandStep("leave the ground", None, effect=_is_flying, is_slow=True)
+_MISSION_START = CommandStep("start the mission", mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
+
+
+def _mode(state: VehicleState, mode: Mode) -> CommandStep:
+    """Source of PX4's numbers: main mode and sub mode are the second and third parameter."""
+    words = f"mode {mode.value}"
+    if state.flavour is Flavour.PX4:
+        numbers = (OWN_MODE, float(PX4_AUTO), float(PX4_SUB_MODES[mode]), 0.0, 0.0, 0.0, 0.0)
+    else:
+        numbers = (OWN_MODE, float(COPTER_MODES[mode]), 0.0, 0.0, 0.0, 0.0, 0.0)
+    return CommandStep(words, mavlink.MAV_CMD_DO_SET_MODE, numbers, _is_in(mode))
+
+
+def _armable(state: VehicleState) -> tuple[CommandStep, ...]:
+    """ArduCopter cannot be armed in AUTO and others, and is by GUIDED."""
+    is_barred = state.flavour is Flavour.ARDUPILOT and not state.is_armed and state.custom_mode in COPTER_NOT_ARMABLE
+    return (_mode(state, Mode.GUIDED),) if is_barred else ()
+
+
+def _start(state: VehicleState) -> OrderPlan:
+    """PX4: the mission's mode, then arming. ArduCopter: GUIDED, arming, AUTO, and then it must be told to start.
+
+    ArduCopter agrees to start while it is disarmed, and does nothing: only flying is a start.
+    """
+    if state.is_in_air:
+        return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
+    if state.flavour is Flavour.PX4:
+        return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION), _ARM, _LEAVE_GROUND),))
+    begin = () if state.is_armed else (_mode(state, Mode.GUIDED), _ARM)
+    return OrderPlan(_flies_mission, ((*begin, _mode(state, Mode.MISSION), _MISSION_START),))
+
+
+def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
+    """PX4 wants the height above sea level, and is armed afterwards; ArduCopter wants it above home, armed in GUIDED before."""
+    relative_m = _positive(parameters, "altitude_relative_m")
+    if state.flavour is Flavour.PX4:
+        ground_m = state.altitude_amsl_m if state.home_amsl_m is None else state.home_amsl_m
+        if ground_m is None:
+            raise CannotOrder("no-home", "The UAV has not told its height above sea level.")
+        numbers = (-1.0, 0.0, 0.0, NAN, NAN, NAN, ground_m + relative_m)
+        up = CommandStep("take off", mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_in(Mode.TAKE_OFF))
+        return OrderPlan(_is_flying, ((up, _ARM, _LEAVE_GROUND),))
+    numbers = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, relative_m)
+    up = CommandStep("take off", mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_flying, is_slow=True)
+    return OrderPlan(_is_flying, ((_mode(state, Mode.GUIDED), _ARM, up),))
+
+
+def _abort(state: VehicleState) -> OrderPlan:
+    """In the air: return, and land where that is refused. On the ground: disarm."""
+    if state.is_in_air is False:
+        return OrderPlan(_is_disarmed, ((_DISARM,),))
+
+    def is_ending(seen: VehicleState) -> bool:
+        return seen.is_in(Mode.RETURN) or seen.is_in(Mode.LAND) or (seen.is_armed is False and not seen.is_in_air)
+
+    return OrderPlan(is_ending, ((_mode(state, Mode.RETURN),), (_mode(state, Mode.LAND),)))
+
+
+def _speed(parameters: Mapping[str, float]) -> CommandStep:
+    """Over ground; no message of every vehicle shows it, so its yes has to be enough."""
+    numbers = (1.0, _positive(parameters, "speed_mps"), -1.0, 0.0, 0.0, 0.0, 0.0)
+    return CommandStep("change speed", mavlink.MAV_CMD_DO_CHANGE_SPEED, numbers)
+
+
+def _positive(parameters: Mapping[str, float], name: str) -> float:
+    value = parameters.get(name)
+    if value is None or not (math.isfinite(value) and value > 0):
+        raise CannotOrder("parameters", f"{name} must be above 0.")
+    return float(value)

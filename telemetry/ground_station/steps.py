@@ -1,0 +1,66 @@
+"""One conversation after another, written as one course of events."""
+
+from collections.abc import Generator
+from typing import Any, Generic, Protocol, TypeVar
+
+from telemetry.ground_station.ends import Message, Messages
+
+Result = TypeVar("Result")
+
+
+class Machine(Protocol):
+    """A conversation with a vehicle: every call answers with the messages to be sent."""
+
+    @property
+    def outcome(self) -> Any:
+        """None while it runs."""
+
+    @property
+    def wake_at_s(self) -> float | None:
+        """When `tick` is wanted; None: not before a message."""
+
+    def start(self, now_s: float) -> Messages: ...
+
+    def receive(self, message: Message, now_s: float) -> Messages: ...
+
+    def tick(self, now_s: float) -> Messages: ...
+
+
+Course = Generator[Machine, None, Result]
+
+
+class Steps(Generic[Result]):
+    """Runs a course: a generator that yields one machine after another, each run to its outcome, and returns the outcome of all."""
+
+    def __init__(self, course: Course[Result]) -> None:
+        self.outcome: Result | None = None
+        self.step: Machine | None = None
+        self._course = course
+
+    @property
+    def wake_at_s(self) -> float | None:
+        return None if self.step is None else self.step.wake_at_s
+
+    def start(self, now_s: float) -> Messages:
+        return self._onward(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        return [] if self.step is None else [*self.step.receive(message, now_s), *self.go_on(now_s)]
+
+    def tick(self, now_s: float) -> Messages:
+        return [] if self.step is None else [*self.step.tick(now_s), *self.go_on(now_s)]
+
+    def go_on(self, now_s: float) -> Messages:
+        """To the next step where the present one has ended."""
+        return self._onward(now_s) if self.step is not None and self.step.outcome is not None else []
+
+    def _onward(self, now_s: float) -> Messages:
+        messages: Messages = []
+        while self.step is None or self.step.outcome is not None:
+            try:
+                self.step = next(self._course)
+            except StopIteration as end:
+                self.step, self.outcome = None, end.value
+                break
+            messages += self.step.start(now_s)
+        return messages
