@@ -9,6 +9,7 @@ from uuid import UUID
 from missions.models import LinkKind, MissionUav
 from telemetry.decoding.companion_reports import FaultyReport, Report, read_report
 from telemetry.decoding.measurement import Measurement
+from telemetry.services.heard import note_state_over_http
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
 
 
@@ -44,6 +45,8 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
         refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
     records = [_new_record(report, uav_id, stream, received_at) for report in read.values()]
     counts = store_records(records) if records else StoredCount()
+    if counts.stored:
+        note_state_over_http(uav_id=uav_id, received_at=received_at)
     return TakenReports(counts, sorted(refused, key=lambda fault: fault.index))
 
 
