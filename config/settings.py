@@ -356,6 +356,15 @@ COMMAND_RULES = CommandRules(
     upload_s=_float("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
     speed_s=_float("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
 )
+# The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
+GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
+GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
+GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
+GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
+FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
+LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
+TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
+TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"

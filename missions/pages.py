@@ -5,8 +5,9 @@ from typing import Any
 from django.http import Http404
 
 from inspection.selectors import ground_extent
-from missions.models import Mission
-from missions.selectors import mission_bounds
+from missions.models import MissionState
+from missions.selectors import mission_bounds, state_of_mission
+from missions.services.missions import EDITABLE
 from workspace.pages import SignedInPage, raster_maps
 
 
@@ -15,16 +16,24 @@ class MissionsPage(SignedInPage):
 
 
 class MissionPage(SignedInPage):
-    """The operator's map, for a new mission or a stored one of the user's organisation."""
+    """The operator's map, for a new mission or a stored one of the user's organisation.
+
+    One that is approved is shown as to those who cannot plan: nothing of it can be changed.
+    """
 
     template_name = "mission.html"
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         mission_id = kwargs.get("mission_id")
         user = self.request.user
-        if mission_id and not Mission.objects.filter(id=mission_id, organisation=user.organisation, deleted_at=None).exists():
+        state = state_of_mission(user.organisation_id, mission_id) if mission_id else MissionState.DRAFT
+        if state is None:
             raise Http404
+        is_frozen = state not in EDITABLE
         return {
+            "canPlan": user.can_plan and not is_frozen,
+            "canFly": user.can_plan,
+            "isFrozen": is_frozen,
             "mission": str(mission_id) if mission_id else None,
             "extent": ground_extent(),
             "bounds": mission_bounds(mission_id) if mission_id else None,

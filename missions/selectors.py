@@ -6,7 +6,7 @@ from django.contrib.gis.db.models import Extent
 from django.db.models import Prefetch, Q, QuerySet
 
 from inspection.selectors import UNREAD_OF_A_LINE
-from missions.models import Approval, InspectionTarget, Mission, MissionUav, Route, Waypoint
+from missions.models import Approval, InspectionTarget, Mission, MissionState, MissionUav, Route, Waypoint
 from workspace.models import OPEN_STATES, AuditEntry, Job, Organisation
 
 PLAN_MISSION = "missions.tasks.plan_mission"
@@ -30,6 +30,12 @@ def revision_of_mission(organisation_id: int, mission_id: UUID) -> int | None:
     return Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("revision", flat=True).first()
 
 
+def state_of_mission(organisation_id: int, mission_id: UUID) -> MissionState | None:
+    """None for a mission that is not there."""
+    found = Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("state", flat=True).first()
+    return None if found is None else MissionState(found)
+
+
 def open_plan_of_mission(mission: Mission) -> UUID | None:
     """The job that is planning the mission at present, the youngest if there are several."""
     jobs = Job.objects.filter(organisation=mission.organisation_id, state__in=OPEN_STATES, task=PLAN_MISSION)
@@ -38,7 +44,8 @@ def open_plan_of_mission(mission: Mission) -> UUID | None:
 
 def approval_in_force(mission: Mission) -> Approval | None:
     """By which the mission is frozen; None for one that nobody has approved, or whose approval is revoked."""
-    return Approval.objects.select_related("approved_by", "revoked_by").filter(mission=mission, revoked_at=None).first()
+    found = Approval.objects.select_related("approved_by", "revoked_by").filter(mission=mission, revoked_at=None)
+    return found.defer("document").first()  # which is large, and read by few
 
 
 def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:

@@ -97,6 +97,18 @@ class FrozenRoute:
         return Flight(number, take_off, above, self.end_action)
 
 
+def flight_to_json(flight: Flight, route: FrozenRoute) -> dict[str, Any]:
+    """One flight of a route by itself, for a companion computer; heights are those of this flight."""
+    return {
+        "flight": flight.number + 1,
+        "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},
+        "cruise_speed_mps": route.cruise_speed_mps,
+        "end_action": flight.end_action,
+        "departs_s": route.departs_s,
+        "waypoints": [_waypoint_to_json(waypoint) for waypoint in flight.waypoints],
+    }
+
+
 def route_to_json(route: FrozenRoute) -> dict[str, Any]:
     return {
         "uav": route.uav,

@@ -9,6 +9,8 @@ from numba import njit
 from missions.routing.problem import BoolArray, FloatArray, IntArray, Problem
 from missions.routing.quantities import NO_WAY_M, Classes, Kind, Quantities, classes_of, quantities_of
 
+MOST_TRIED = 8
+
 
 @dataclass(frozen=True)
 class LeastRoute:
@@ -21,8 +23,8 @@ class LeastRoute:
 class LeastRoutes:
     """Of the UAVs and visits of a problem, in one quantity.
 
-    The best way there and the best way back may both lead over the same visit, which no route does: then one of the two goes round it,
-    whichever makes the route the lesser.
+    Of up to MOST_TRIED targets each order is tried. Of more, the best way there and the best way back may both lead over the same visit,
+    which no route does: then one of the two goes round it, whichever makes the route the lesser.
     """
 
     def __init__(self, problem: Problem, kind: Kind) -> None:
@@ -33,12 +35,16 @@ class LeastRoutes:
         self.alone: FloatArray = self._found.first[0] + self._found.end[0]  # (u, v), without any other visit
 
     def route(self, uav: int, visit: int) -> LeastRoute:
-        """Whether the UAV may fly the visit itself is not looked at."""
+        """Whether the UAV may fly the visit itself is not looked at; in place of it another of its target may be flown."""
         first, end = self._found.first[0, uav], self._found.end[0, uav]
         onward = self._found.onward[0, self._classes.of_uav[uav]]
         others = self._target != self._target[visit]
         if self._allowed is not None:
             others &= self._allowed[uav]
+        if self._target.max() < MOST_TRIED:
+            others |= self._target == self._target[visit]
+            amount, order = _least_of_all_orders(first, onward, end, self._target, others, self._target[visit])
+            return LeastRoute(_closed(amount), tuple(order.tolist()) or (visit,))
         alone = LeastRoute(_closed(float(first[visit] + end[visit])), (visit,))
         ways = self._one_round_the_other(first, onward, end, visit, others)
         swapped = self._one_round_the_other(end, onward.T, first, visit, others)
@@ -53,7 +59,9 @@ class LeastRoutes:
         there, before = least_way(from_here, onward, visit, others)
         free = others & ~np.isin(self._target, self._target[before])
         back, after = least_way(to_end, np.ascontiguousarray(onward.T), visit, free)
-        return _closed(there + back), before.tolist(), after.tolist()
+        passed = self._target[np.concatenate([before, after])]
+        is_route = len(np.unique(passed)) == len(passed)  # a stretch is not flown from both of its ends
+        return _closed(there + back) if is_route else math.inf, before.tolist(), after.tolist()
 
 
 def least_way(from_here: FloatArray, onward: FloatArray, visit: int, others: BoolArray) -> tuple[float, IntArray]:
@@ -87,3 +95,33 @@ def _least_way(from_here: FloatArray, onward: FloatArray, visit: int, others: Bo
         way.append(place)
         place = before[place]
     return amount[visit], np.array(way[::-1], dtype=np.int64)
+
+
+@njit(cache=True, nogil=True)
+def _least_of_all_orders(
+    first: FloatArray, onward: FloatArray, end: FloatArray, target: IntArray, may: BoolArray, wanted: int
+) -> tuple[float, IntArray]:
+    """Over any visits, one of each target at most and one of the wanted (Held and Karp 1962): what it takes, and the visits in order."""
+    visits = len(first)
+    done = 1 << (target.max() + 1)
+    amount, before = np.full((done, visits), np.inf), np.full((done, visits), -1, dtype=np.int64)
+    for visit in range(visits):
+        if may[visit]:
+            amount[1 << target[visit], visit] = first[visit]
+    least, least_done, last = np.inf, 0, -1
+    for own in range(1, done):
+        for here in range(visits):
+            so_far = amount[own, here]
+            if so_far == np.inf:
+                continue
+            if own >> wanted & 1 and so_far + end[here] < least:
+                least, least_done, last = so_far + end[here], own, here
+            for onto in range(visits):
+                more = own | 1 << target[onto]
+                if more != own and may[onto] and so_far + onward[here, onto] < amount[more, onto]:
+                    amount[more, onto], before[more, onto] = so_far + onward[here, onto], here
+    order = [0 for _ in range(0)]
+    while last >= 0:
+        order.append(last)
+        least_done, last = least_done & ~(1 << target[last]), before[least_done, last]
+    return least, np.array(order[::-1], dtype=np.int64)

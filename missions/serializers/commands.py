@@ -31,6 +31,16 @@ class ApprovalSerializer(serializers.Serializer):
     revoke_reason = serializers.CharField()
 
 
+class FlightsSerializer(serializers.Serializer):
+    uav = serializers.IntegerField(help_text="its place in the mission")
+    flights = serializers.IntegerField(help_text="in how many it flies its route")
+    flown = serializers.IntegerField()
+
+
+class MissionApprovalSerializer(ApprovalSerializer):
+    flights = FlightsSerializer(many=True)
+
+
 class ApprovalDocumentSerializer(ApprovalSerializer):
     document = serializers.JSONField(
         help_text="routes with their flights and items, zones, conditions, ground, lost link, separation, figures of UAVs: as approved"

@@ -10,6 +10,7 @@ from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Ro
 from missions.selectors import approval_in_force, open_plan_of_mission
 from missions.serializers.commands import approval_json
 from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
+from missions.services.missions import EDITABLE
 from missions.services.requests import lost_link_from_json, lost_link_to_json
 from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
 from missions.uav_change_selectors import uav_change_json, uav_changes
@@ -46,7 +47,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "plan": _plan(mission),
         "last_plan": mission.last_plan,
         "planning_job": open_plan_of_mission(mission),
-        "approval": approval_json(approval_in_force(mission)),
+        "approval": _approval(mission),
     }
 
 
@@ -79,6 +80,22 @@ def mission_summary(
         "places": drawing["places"],
         "lines": drawing["lines"],
     }
+
+
+def _approval(mission: Mission) -> dict[str, Any] | None:
+    """With how many flights each UAV has, and how many of them it has flown."""
+    found = None if mission.state in EDITABLE else approval_json(approval_in_force(mission))
+    if found is not None:
+        found["flights"] = [
+            {
+                "uav": route.mission_uav.sequence,
+                "flights": 1 + sum(waypoint.kind == WaypointKind.BASE for waypoint in route.waypoints.all()),
+                "flown": route.flights_flown,
+            }
+            for route in mission.routes.all()
+            if route.geometry is not None
+        ]
+    return found
 
 
 def _uav(row: MissionUav) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from missions.fleet_selectors import FIGURES
 from missions.flight_plan.lost_link import LostLink, Trouble
 from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, UavState, WaypointKind
 from missions.routing.problem import TaskKind
-from missions.serializers.commands import ApprovalSerializer
+from missions.serializers.commands import MissionApprovalSerializer
 
 
 class LineSerializer(serializers.Serializer):
@@ -367,7 +367,7 @@ class MissionSerializer(serializers.Serializer):
     plan = PlanSerializer(allow_null=True)
     last_plan = LastPlanSerializer(allow_null=True, help_text="the plan before the present one, in short")
     planning_job = serializers.UUIDField(allow_null=True, help_text="the job that is planning it at present")
-    approval = ApprovalSerializer(allow_null=True, help_text="that freezes it; null: it can be changed")
+    approval = MissionApprovalSerializer(allow_null=True, help_text="that freezes it; null: it can be changed")
 
 
 class MissionSummarySerializer(serializers.Serializer):

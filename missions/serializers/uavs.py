@@ -8,13 +8,16 @@ from rest_framework import serializers
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.fleet_selectors import bases_of_organisation, performance_with, types_of_organisation
 from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerformance
-from missions.models import CredentialKind, EndAction, Uav, UavState
+from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
 
-OWN = ("name", "base_name", "state", "serial_number", "mavlink_system_id", "heading_deg", "battery_percent", "sensor", "end_action")
+OWN = (
+    "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "heading_deg",
+    "battery_percent", "sensor", "end_action",
+)  # fmt: skip
 FEATURE = {"type", "id", "geometry", "properties", "bbox"}  # RFC 7946
 FROM_TYPE = ("max_range_m", "cruise_speed_mps", *OWN_PERFORMANCE_KEYS)
 
@@ -32,6 +35,13 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
     state = serializers.ChoiceField(choices=UavState.choices, required=False)
     serial_number = serializers.CharField(max_length=100, allow_blank=True, required=False)
     mavlink_system_id = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=254, help_text="one vehicle each")
+    link = serializers.ChoiceField(choices=LinkKind.choices, required=False, help_text="the door by which it is told what to do")
+    is_simulated = serializers.BooleanField(
+        required=False, help_text="no real aircraft: may fly without terrain data; changed by administrators alone"
+    )
+    allows_unsigned = serializers.BooleanField(
+        required=False, help_text="MAVLink without a signature is taken for its own; changed by administrators alone"
+    )
     max_range_m = AboveZeroField(
         allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
     )

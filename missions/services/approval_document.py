@@ -19,9 +19,10 @@ from missions.flight_plan.conditions import conditions_from_json, conditions_to_
 from missions.flight_plan.waypoints import WaypointKind
 from missions.flight_plan.zone_facts import zones_near
 from missions.mavlink.content import load_to_json
-from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, route_to_json
+from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
 from missions.mavlink.items import CannotBeFlown, flight_loads
 from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
+from missions.services.approved_targets import approved_targets
 from missions.services.refused import Reason, Refused
 from missions.services.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
 from missions.zone_selectors import zone_margins
@@ -71,17 +72,7 @@ def approval_document(mission: Mission) -> dict[str, Any]:
         "lost_link_check": mission.lost_link_check,
         "separation": mission.separation,
         "zones": _zones(flown),
-        "targets": [
-            {
-                "sequence": target.sequence,
-                "asset": target.asset_id,
-                "label": target.label,
-                "position": None if target.position is None else list(target.position.coords),
-                "stretch": [list(end) for end in target.stretch.coords] if target.stretch else None,
-                "task": target.task,
-            }
-            for target in mission.targets.all()
-        ],
+        "targets": approved_targets(mission),
         "routes": _routes(flown, mission),
     }
 
@@ -151,20 +142,22 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
 
 
 def _flights(route: FrozenRoute, *, by_mavlink: bool) -> list[dict[str, Any]]:
-    """With the items of each flight for an autopilot; a companion computer flies from the route itself."""
+    """With what each flight is flown from: items for an autopilot, the flight in plain values for a companion computer."""
     loads = flight_loads(route) if by_mavlink else [None] * len(route.flights)
-    return [
-        {
-            "number": flight.number + 1,
-            "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},
-            "waypoints": [waypoint.sequence for waypoint in flight.waypoints],
-            "items": None if load is None else load_to_json(load),
-            "content_sha256": content_sha256({"route": route_to_json(route), "flight": flight.number + 1})
-            if load is None
-            else load.content_sha256,
-        }
-        for flight, load in zip(route.flights, loads, strict=True)
-    ]
+    found = []
+    for flight, load in zip(route.flights, loads, strict=True):
+        content = flight_to_json(flight, route) if load is None else None
+        found.append(
+            {
+                "number": flight.number + 1,
+                "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},
+                "waypoints": [waypoint.sequence for waypoint in flight.waypoints],
+                "items": None if load is None else load_to_json(load),
+                "content": content,
+                "content_sha256": content_sha256(content) if load is None else load.content_sha256,
+            }
+        )
+    return found
 
 
 def _zones(routes: list[Route]) -> list[dict[str, Any]]:

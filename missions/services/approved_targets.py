@@ -22,6 +22,7 @@ def approved_targets(mission: Mission) -> list[dict[str, Any]]:
         kind, geometry = known.get(target.asset_id, (None, None))
         found.append(
             {
+                "id": target.pk,
                 "sequence": target.sequence,
                 "asset": target.asset_id,
                 "label": target.label,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.sorties import wh_of_sorties
 from missions.services.attempts import Attempt
+from missions.services.least_lacks import LeastLacks, lack_wh
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
@@ -49,18 +50,6 @@ def not_lasting_for(
     return {uav: targets for uav, targets in barred.items() if targets}
 
 
-def lack_wh(request: PlanRequest, uav: int, route: PlannedRoute | None) -> float:
-    """Wh by which a drawn route takes more than the battery of its UAV may give, below 0 what is left; inf where it cannot be flown."""
-    usable_wh = request.uavs[uav].performance.usable_wh
-    if route is None:
-        return math.inf
-    if usable_wh is None or route.timing is None:
-        return -math.inf
-    if route.charging or route.lacks_wh > 0.0:
-        return route.lacks_wh
-    return max(wh_of_sorties(route.timing), default=0.0) - usable_wh
-
-
 def _too_much_for(uav: int, request: PlanRequest, found: Attempt, ground: GroundHeights | None, *, charges: bool) -> frozenset[int]:
     start = found.uavs.index(uav)
     order = [visit for sortie in found.solution.sorties[start] for visit in sortie]
@@ -73,7 +62,9 @@ def _too_much_for(uav: int, request: PlanRequest, found: Attempt, ground: Ground
         return math.isfinite(found.problem.route_length_m(start, visits))
 
     target_of = {visit: found.drawing.places[found.problem.visits[visit].target].target for visit in order}
-    hopeless = frozenset(target_of[visit] for visit in order if has_way([visit]) and lack_wh(request, uav, drawn([visit])) > 0.0)
+    lacks = LeastLacks(request, found, ground)
+    least = {target: lacks.of_battery(target, only=uav) for target in target_of.values()}
+    hopeless = frozenset(target for target, lack in least.items() if lack is not None and lack.missing > 0.0)
     if hopeless or not charges:
         return hopeless
     rests = [(visit, [other for other in order if other != visit]) for visit in order]

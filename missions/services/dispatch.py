@@ -45,8 +45,8 @@ class DamagedApproval(Exception):
 class ApprovedLoad:
     """What one flight of a UAV is flown from, as it was approved.
 
-    `load` is None for a UAV with a companion computer, which flies from `route`. `flight` counts from 1 to `flights`; `waypoints` are the
-    places in the route that belong to it. `content_sha256` names exactly this load.
+    `load` is None for a UAV with a companion computer, which flies from `content`: the flight in plain values. `flight` counts from 1 to
+    `flights`; `waypoints` are the places in the route that belong to it. `content_sha256` names exactly this load.
     """
 
     approval: UUID
@@ -58,6 +58,7 @@ class ApprovedLoad:
     waypoints: tuple[int, ...]
     route: FrozenRoute
     load: FlightLoad | None
+    content: dict[str, Any] | None
     content_sha256: str
 
 
@@ -150,6 +151,7 @@ def approved_load(approval: Approval, *, uav_id: int, flight: int) -> ApprovedLo
         waypoints=tuple(own["waypoints"]),
         route=route_from_json(route["route"]),
         load=None if own["items"] is None else load_from_json(own["items"]),
+        content=own["content"],
         content_sha256=own["content_sha256"],
     )
 
@@ -179,7 +181,7 @@ def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Reason]
         )
         other = others.exclude(mission=mission).select_related("mission").first()
         if other is not None:
-            words = _("%(uav)s is busy with %(mission)s.") % values | {"mission": other.mission.name}
+            words = _("%(uav)s is busy with %(mission)s.") % {**values, "mission": other.mission.name}
             reasons.append(Reason("uav_busy", words, route["place"]))
     return reasons
 

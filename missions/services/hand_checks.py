@@ -160,9 +160,11 @@ def obstacle_faults(points: RoutePoints) -> dict[str, str]:
     if low is None:
         return {}
     near = legs_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
+    stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # straight up or down to the next one
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
-        if (place, span) in near or (not is_leg and (place - 1, span) in near):
+        legs = [place] if is_leg else [leg for leg in (place - 1, place) if stands[leg]]
+        if any((leg, span) in near for leg in legs):
             faults.setdefault(f"legs.{place}" if is_leg else f"waypoints.{place}.altitude_agl_m", too_low_text(agl_m))
     return faults
 

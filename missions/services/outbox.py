@@ -15,7 +15,7 @@ from django.db.models import Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Now
 
 from missions.command_rules import axes_overtaken_by, axis_of, priority_of
-from missions.models import OPEN_COMMANDS, Approval, CommandKind, CommandState, Mission, Uav, UavCommand, UavCommandEvent
+from missions.models import OPEN_COMMANDS, Approval, CommandKind, CommandState, LinkKind, Mission, Uav, UavCommand, UavCommandEvent
 from workspace.models import User
 from workspace.services import record_change
 
@@ -26,6 +26,7 @@ _CLAIM = """
     WITH wanted AS (
         SELECT id FROM missions_uavcommand
         WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
+            AND (%s::text IS NULL OR link = %s::text)
             AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
             AND (expires_at IS NULL OR expires_at > statement_timestamp())
         ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
@@ -88,14 +89,16 @@ def queue_command(
     return command
 
 
-def claim_commands(*, uav_ids: Collection[int], holder: str, lease_s: float, limit: int) -> list[UavCommand]:
+def claim_commands(*, uav_ids: Collection[int], holder: str, lease_s: float, limit: int, link: LinkKind | None = None) -> list[UavCommand]:
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
+
+    With `link` only those that go by this door.
 
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
     with transaction.atomic():
-        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), limit, holder, lease_s]))
+        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, limit, holder, lease_s]))
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
 
 

@@ -16,14 +16,13 @@ from inspection.selectors.planning import PlanningGround, edition_now, has_terra
 from missions.flight_plan.separation import Separation
 from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
-from missions.routing.problem import Reason
 from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
 from missions.services.battery import battery_overruns, not_lasting_for, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
-from missions.services.lacks import least_missing, with_lacks
+from missions.services.lacks import OUT_OF_REACH, least_missing, with_lacks
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
 from missions.services.over_wires import spans_in_the_way, walls_of_spans, without_routes_barred
@@ -39,7 +38,6 @@ from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
 MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
 MOST_TRIES = 6  # with more zones each time
-OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
 
 
 class GraphOutdated(Exception):
@@ -65,6 +63,10 @@ class Finished:
     met: frozenset[int]
     worth: Worth
     is_whole: bool  # the search could count on all of what the batteries hold, and on all ways
+
+    def beside(self, other: "Finished") -> "Finished":
+        """The same, with less missing for what is out of reach where the other plan shows that."""
+        return replace(self, found=replace(self.found, left_out=least_missing(self.found.left_out, other.found.left_out)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,10 +97,12 @@ class _Planner:
             tried = self._finished(ground, choice, chosen, share / MOST_TRIES)
             freest = freest or tried
             if not tried.worth < best.worth:
+                best = best.beside(tried)
                 break
             if not tried.met:
-                best = tried
+                best = tried.beside(best)
                 break
+            best = best.beside(tried)
             chosen = choice.with_zones(chosen, tried.met)
         return best, freest or best
 
@@ -139,7 +143,7 @@ class _Planner:
             return preferred
         shortest = self._drawn(ground, choice, chosen, share / 2, walls, is_by_length=True)
         best, other = (shortest, preferred) if shortest.worth.left_out < preferred.worth.left_out else (preferred, shortest)
-        return replace(best, found=replace(best.found, left_out=least_missing(best.found.left_out, other.found.left_out)))
+        return best.beside(other)
 
     def _is_out_of_reach(self, plan: Finished) -> bool:
         """Whether a target is left out for which another way might do."""
@@ -183,7 +187,9 @@ class _Planner:
                     over.pop(uav)
             for uav, share_left in over.items():
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
-        found = replace(found, left_out=with_lacks(self.request, found, terrain))
+        on_all = (chosen == choice.widest).all()
+        is_clear = None if on_all else lambda route: not keys_of_zones_met([route], self.request.departs_at, choice.table)
+        found = replace(found, left_out=with_lacks(self.request, found, terrain, is_clear))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not

@@ -13,8 +13,9 @@ from missions.services.fleet_rows import deleted, facts_to_restore, locked, stor
 from workspace.models import Organisation, User
 
 FIELDS = (
-    "name", "base_name", "state", "serial_number", "mavlink_system_id", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg",
-    "reserve_percent", "max_airspeed_mps", "heading_deg", "battery_percent", "sensor", "end_action",
+    "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "max_range_m",
+    "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "heading_deg", "battery_percent", "sensor",
+    "end_action",
 )  # fmt: skip
 
 

@@ -35,7 +35,7 @@ def _body(serializer: type, request: Request) -> dict[str, Any]:
 
 def _sent(user: User, mission_id: UUID, commands: list[UavCommand]) -> Response:
     mission = mission_or_404(user, mission_id)
-    rows = commands_of_organisation(user.organisation).filter(pk__in=[command.pk for command in commands]).order_by("uav", "sequence")
+    rows = commands_of_organisation(user.organisation).filter(pk__in=[command.pk for command in commands]).order_by("uav_id", "sequence")
     body = {
         "mission": str(mission.pk),
         "state": mission.state,

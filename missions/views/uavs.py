@@ -4,6 +4,7 @@ from typing import Any
 
 from django.http import Http404
 from django.urls import reverse
+from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -18,8 +19,11 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
+from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+
+WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
 
 INPUT = PolymorphicProxySerializer(
     component_name="UavWrite", serializers=[UavFlatSerializer, UavFeatureSerializer], resource_type_field_name=None
@@ -53,7 +57,11 @@ def _values(request: Request, uav: Uav | None = None) -> dict[str, Any]:
     context = {"organisation": request.user.organisation}
     serializer = UavFlatSerializer(uav, data=flat_uav(request.data), partial=uav is not None, context=context)
     serializer.is_valid(raise_exception=True)
-    return dict(serializer.validated_data)
+    values = dict(serializer.validated_data)
+    changed = [name for name in WAIVES_SAFETY if values.get(name, getattr(uav, name, False)) != getattr(uav, name, False)]
+    if changed and request.user.role not in ADMINISTRATORS:
+        raise ApiProblem(403, "permission_denied", _("Only administrators say that a UAV is simulated, or needs no signature."))
+    return values
 
 
 def _filters(request: Request) -> dict[str, Any]:

@@ -29,14 +29,14 @@ class Download:
         self._is_paced = self._is_pausing = False
         self._refused: tuple[int, float] | None = None
         self._restarts = 0
-        self._begun_s = self._progress_s = self._asked_anew_s = 0.0
+        self._progress_s = self._asked_anew_s = 0.0
 
     @property
     def items_done(self) -> int:
         return len(self._items)
 
     def start(self, now_s: float) -> Messages:
-        self._begun_s = self._progress_s = now_s
+        self._progress_s = now_s
         return self._asked(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
@@ -56,8 +56,7 @@ class Download:
             return []
         if self._refused is not None and now_s >= self._refused[1] + self._rules.timeout_s:
             return self._end(TransferState.REFUSED, result_name(self._refused[0]))
-        longest_s = self._rules.longest_s(self._count or 0)
-        if now_s >= self._progress_s + self._rules.silence_s or now_s >= self._begun_s + longest_s:
+        if now_s >= self._progress_s + self._rules.silence_s:
             return self._end(TransferState.SILENT, "silent")
         if self._count is None or now_s >= max(self._progress_s, self._asked_anew_s) + self._rules.restart_s:
             self._count = None
@@ -104,10 +103,9 @@ class Download:
         if self._count is None:
             return []  # busy: it is asked again in time
         self._restarts += 1
-        longest = self._rules.retries * self._rules.attempts
-        if self._restarts > longest:
+        if self._restarts > self._rules.retries * self._rules.attempts:
             return self._end(TransferState.REFUSED, result_name(result))
-        self._count, self._items, self._is_paced = None, [], True
+        self._count, self._items, self._is_paced, self._progress_s = None, [], True, now_s
         return self._asked(now_s)
 
     def _asked(self, now_s: float) -> Messages:

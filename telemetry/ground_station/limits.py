@@ -1,6 +1,6 @@
 """What a vehicle cannot take: lists that are too long, and legs longer than its parameters allow."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -11,13 +11,10 @@ from inspection.geodesy import LonLat, path_length_m
 from missions.mavlink.content import FlightLoad, MissionItem, MissionType
 from telemetry.ground_station.flavour import Flavour
 
-# ArduPilot: 650 with home, seen on its simulator; on small boards it may be fewer, which it then says itself. PX4: its dataman's
-# NUM_MISSIONS_SUPPORTED of boards with a card, fence and safe points likewise.
-MOST_ITEMS = {
-    (Flavour.ARDUPILOT, MissionType.MISSION): 649,
-    (Flavour.PX4, MissionType.MISSION): 2_000,
-    (Flavour.PX4, MissionType.RALLY): 32,
-}
+# ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
+# the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.
+MOST_ITEMS = {(Flavour.ARDUPILOT, MissionType.MISSION): 649}
+USUAL_ITEMS = {(Flavour.PX4, MissionType.MISSION): 500, (Flavour.PX4, MissionType.FENCE): 64, (Flavour.PX4, MissionType.RALLY): 8}
 FIRST_LEG = "MIS_DIST_1WP"  # PX4, in metres; 0 or below: not limited
 ANY_LEG = "MIS_DIST_WPS"
 PARAMETERS = (FIRST_LEG, ANY_LEG)
@@ -34,12 +31,22 @@ class LimitWarning:
 
 
 def too_many(load: FlightLoad, flavour: Flavour) -> LimitWarning | None:
-    """The first list that the flavour cannot take."""
+    """The first list that no vehicle of the flavour takes."""
+    return next(_longer(load, flavour, MOST_ITEMS, "takes", "too-many-items"), None)
+
+
+def count_warnings(load: FlightLoad, flavour: Flavour) -> tuple[LimitWarning, ...]:
+    """Lists that are longer than most vehicles of the flavour take."""
+    return tuple(_longer(load, flavour, USUAL_ITEMS, "on most boards takes", "many-items"))
+
+
+def _longer(
+    load: FlightLoad, flavour: Flavour, most_items: Mapping[tuple[Flavour, MissionType], int], takes: str, code: str
+) -> Iterator[LimitWarning]:
     for kind in MissionType:
-        most = MOST_ITEMS.get((flavour, kind))
+        most = most_items.get((flavour, kind))
         if most is not None and len(load.of(kind)) > most:
-            return LimitWarning("too-many-items", f"The {kind.name.lower()} has {len(load.of(kind))} items; {flavour.value} takes {most}.")
-    return None
+            yield LimitWarning(code, f"The {kind.name.lower()} has {len(load.of(kind))} items; {flavour.value} {takes} {most}.")
 
 
 def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: LonLat | None) -> tuple[LimitWarning, ...]:

@@ -115,7 +115,8 @@ class MissionKeeper:
         for kind in ORDER:
             if not (yield from self._bring(kind)):
                 return (yield from self._give_up())
-        words = f"The vehicle holds the approved mission: {len(self.load.mission)} items."
+        held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
+        words = f"The vehicle holds {held}."
         return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes))
 
     def _cannot_begin(self) -> KeeperOutcome | None:
@@ -230,7 +231,7 @@ class MissionKeeper:
         ]
         reason, mixes = self._reason or "differs", tuple(self.mixes)
         if mixed:
-            words = " ".join(f"Its {_name(kind)} is a mix: {self._mix_words(kind, self._now[kind] or ())}." for kind in mixed)
+            words = " ".join(self._left_in_words(kind, self._now[kind] or ()) for kind in mixed)
             lost = " ".join(f"Its {_name(kind)} could not be read." for kind in unread)
             shown = self._differences(mixed[0])
             return KeeperOutcome(KeeperState.MIXED, reason, f"{words} {lost}".strip(), "", True, mixes, shown)
@@ -257,6 +258,11 @@ class MissionKeeper:
         mix = Mix(kind, self._mix_words(kind, held))
         if mix not in self.mixes:
             self.mixes.append(mix)
+
+    def _left_in_words(self, kind: MissionType, held: Held) -> str:
+        if not held:
+            return f"Its {_name(kind)} could not be put back: it holds none."
+        return f"Its {_name(kind)} is a mix: {self._mix_words(kind, held)}."
 
     def _mix_words(self, kind: MissionType, held: Held) -> str:
         return mix_in_words(held, self.load.of(kind), self.before.get(kind), self._flavour)

@@ -35,11 +35,14 @@ def found(held: Held, wanted: Sequence[MissionItem], known: Sequence[Sequence[Mi
 def mix_in_words(held: Held, wanted: Sequence[MissionItem], before: Held | None, flavour: Flavour) -> str:
     """Which items are whose: "items 0-2 of 7 are new, 3-6 are of the list before"; `before` is None where it is not known."""
     new = _of_list(held, wanted, flavour)
-    whose = []
+    whose: list[str] = []
     for place, there in enumerate(held):
-        if place in new:
+        is_old = before is not None and place < len(before) and is_identical(before[place], there)
+        if place in new and is_old and whose:
+            whose.append(whose[-1])  # the lists agree here
+        elif place in new:
             whose.append("new")
-        elif before is not None and place < len(before) and is_identical(before[place], there):
+        elif is_old:
             whose.append("of the list before")
         else:
             whose.append("of neither list" if before is not None else "not approved")

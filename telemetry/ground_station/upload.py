@@ -57,7 +57,7 @@ class Upload:
             return []
         if self._refused is not None and now_s >= self._refused[1] + self._rules.timeout_s:
             return self._after_refusal(self._refused[0], now_s)
-        if now_s >= self._progress_s + self._rules.silence_s or now_s >= self._begun_s + self._rules.longest_s(len(self.items)):
+        if now_s >= self._progress_s + self._rules.silence_s:
             return self._end(TransferState.SILENT, "silent")
         if self._at is None:
             return self._announced(now_s)
@@ -77,6 +77,8 @@ class Upload:
     def _requested(self, number: int, now_s: float) -> Messages:
         if number >= len(self.items):
             return []
+        if self.outcome is None and now_s >= self._begun_s + self._rules.longest_s(len(self.items)):
+            return self._end(TransferState.SILENT, "too-slow")
         if self.outcome is None:
             if number != self._at:
                 self._at, self._progress_s, self._may_be_ahead = number, now_s, False

@@ -6,8 +6,8 @@ from datetime import datetime, timedelta
 from typing import Any
 from uuid import UUID
 
-from django.db.models import F, FloatField, Func, Max, Min, QuerySet, Value
-from django.db.models.functions import Extract, Floor
+from django.db.models import F, FloatField, Func, Max, Min, QuerySet, Value, Window
+from django.db.models.functions import Extract, Floor, RowNumber
 
 from inspection.selectors import Box
 from inspection.selectors.assets import area_of
@@ -51,13 +51,13 @@ def records_that_match(organisation: Organisation, wanted: LogFilter) -> QuerySe
 def one_each(records: QuerySet[TelemetryRecord], every_s: float) -> QuerySet[TelemetryRecord]:
     """The first of each UAV in each stretch of so many seconds, chosen in the database; none of the future."""
     stretch = Floor(Extract("measured_at", "epoch") / Value(every_s), output_field=FloatField())
-    in_time = records.filter(is_from_future=False).annotate(stretch=stretch)
-    chosen = in_time.order_by("uav_id", "stretch", "measured_at", "pk").distinct("uav_id", "stretch")
-    return TelemetryRecord.objects.filter(pk__in=chosen.values("pk"))
+    place = Window(RowNumber(), partition_by=[F("uav_id"), stretch], order_by=[F("measured_at"), F("pk")])
+    in_time = records.filter(is_from_future=False).order_by()
+    return TelemetryRecord.objects.filter(pk__in=in_time.annotate(place=place).filter(place=1).values("pk"))
 
 
 def spacing_for(records: QuerySet[TelemetryRecord], most: int) -> float | None:
-    """How many seconds apart at most so many of them lie; None where they are no more than that."""
+    """How many seconds apart at most so many of them lie, but up to two a UAV; None where they are no more than that."""
     in_time = records.filter(is_from_future=False).order_by()
     if len(in_time.values_list("pk")[: most + 1]) <= most:
         return None

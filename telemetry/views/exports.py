@@ -8,7 +8,7 @@ from uuid import UUID
 from django.db.models import QuerySet
 from django.http import Http404, StreamingHttpResponse
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import extend_schema
+from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.views import APIView
 
@@ -45,6 +45,7 @@ ABOUT = (
     "Each record has the times of measurement, receipt and storage. CSV and GeoJSON have every record, flagged where its time is wrong; "
     "the tracks of GPX and KML leave out those without a place and those from the future."
 )
+KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
 FILES = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()}
 
 
@@ -53,7 +54,7 @@ class MissionTelemetryFile(APIView):
 
     @extend_schema(
         operation_id="export_mission_telemetry", summary="What was flown in a mission, as CSV, GPX, KML or GeoJSON", description=ABOUT,
-        parameters=TIMES, responses=FILES,
+        parameters=[KIND, *TIMES], responses=FILES,
     )  # fmt: skip
     def get(self, request: Request, mission_id: UUID, kind: str) -> StreamingHttpResponse:
         organisation = request.user.organisation
@@ -69,7 +70,7 @@ class UavTelemetryFile(APIView):
 
     @extend_schema(
         operation_id="export_uav_telemetry", summary="What a UAV has flown, as CSV, GPX, KML or GeoJSON", description=ABOUT,
-        parameters=TIMES, responses=FILES,
+        parameters=[KIND, *TIMES], responses=FILES,
     )  # fmt: skip
     def get(self, request: Request, uav_id: int, kind: str) -> StreamingHttpResponse:
         uav = uav_or_404(request.user, uav_id)

@@ -25,7 +25,7 @@ FILTERS = [
     OpenApiParameter("mission", str, description="id of a mission"),
     BOX,
     OpenApiParameter("every_s", float, description="of each UAV the first record in so many seconds, and none from the future"),
-    OpenApiParameter("most", int, description="so many records at most over all pages, evenly chosen; `next` then has the every_s"),
+    OpenApiParameter("most", int, description="so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s"),
 ]
 
 

@@ -34,12 +34,19 @@ def density(amsl_m: float, temperature_c: float) -> float:
     return 101_325.0 * (1.0 - 0.0065 * amsl_m / 288.15) ** 5.25588 / (287.05287 * (temperature_c + 273.15))
 
 
-def speeds_mps(uav: Any, way: tuple[float, float], wind: tuple[float, float]) -> tuple[float, float] | None:
+def limit_mps(uav: Any) -> float:
+    """Of its speed through the air."""
+    return float(uav.performance.max_airspeed_mps or uav.cruise_speed_mps)
+
+
+def speeds_mps(
+    uav: Any, way: tuple[float, float], wind: tuple[float, float], by_hand_mps: float | None = None
+) -> tuple[float, float] | None:
     """Over ground and through the air: the wanted speed over ground, or what the airspeed's limit leaves of it; None for no headway."""
     length = math.hypot(*way)
     along = (way[0] * wind[0] + way[1] * wind[1]) / length
     across = (way[0] * wind[1] - way[1] * wind[0]) / length
-    wanted, limit = uav.cruise_speed_mps, uav.performance.max_airspeed_mps or uav.cruise_speed_mps
+    wanted, limit = uav.cruise_speed_mps if by_hand_mps is None else by_hand_mps, limit_mps(uav)
     air_mps = math.hypot(wanted - along, across)
     if air_mps <= limit:
         return wanted, air_mps

@@ -116,7 +116,7 @@ def stored_route(row: Route) -> dict[str, Any]:
                 "position": list(point["position"].coords), "kind": point["kind"], "asset": point["asset_id"], "task": point["task"],
                 "target": None if point["target_id"] is None else targets[point["target_id"]],
                 "altitude_agl_m": point["altitude_agl_m"], "altitude_amsl_m": point["altitude_amsl_m"],
-                "altitude_relative_m": point["altitude_relative_m"],
+                "altitude_relative_m": point["altitude_relative_m"], "speed_mps": point["speed_mps"],
             }
             for point in points
         ],

@@ -155,7 +155,7 @@ def _fly(
         wind = wind_mps(request, middle_m)
         air = density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
         if length_m > 0.01:
-            flown = speeds_mps(uav, way, wind)
+            flown = speeds_mps(uav, way, wind, point.get("speed_mps"))
             ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
             spend(length_m / ground_mps, air_mps, 0.0, air)
         spend(abs(rise_m) / CLIMB_MPS, math.hypot(*wind), CLIMB_MPS if rise_m > 0 else 0.0, air)

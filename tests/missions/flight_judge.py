@@ -84,7 +84,8 @@ def _wrong_routes(request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
         if set(at) != set(route["targets"]):
             yield f"{uav.name} does not fly to its targets"
         last = next(point for point in reversed(points) if point["target"] is not None)
-        if route["end_action"] in {"land", "hover"} and apart_m(places[-1], last["position"]) > 0.2:
+        ends = [last["position"], course_of(request, last["target"]).coords[-1], course_of(request, last["target"]).coords[0]]
+        if route["end_action"] in {"land", "hover"} and min(apart_m(places[-1], end) for end in ends) > 0.2:
             yield f"{uav.name} does not end at its last target"
         for target, place in at.items():
             course = course_of(request, target)

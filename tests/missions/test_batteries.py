@@ -199,7 +199,7 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     plan = make_plan(request=request(here.towers[5], uavs=(small,)))
     assert reasons(plan) == {0: "beyond_energy"}
     said = f"it takes {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the battery of Tern may give."
-    assert plan["unassigned"][0]["message"] == f"As drawn, over the ground and what stands tall, {said}"
+    assert plan["unassigned"][0]["message"] == f"Over the ground and what stands tall {said}"
 
 
 def test_of_targets_that_are_come_to_one_from_the_other_the_farther_is_left_out_if_charging_does_not_suffice() -> None:

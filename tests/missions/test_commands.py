@@ -9,9 +9,10 @@ from django.conf import settings
 from django.db import IntegrityError, connection, transaction
 
 from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
-from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, UavCommand
+from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, UavCommand
 from missions.services.commands import (
     CHANNEL,
+    claim_commands,
     expire_overdue,
     note_acknowledged,
     note_applied,
@@ -131,6 +132,14 @@ def test_commands_to_uavs_that_are_not_asked_for_are_left_alone() -> None:
     give(kite, CommandKind.HOLD)
     assert claim(tern) == []
     assert claim() == []
+
+
+def test_each_door_has_its_own_commands() -> None:
+    kite, tern = a_uav("Kite", link=LinkKind.HTTP), a_uav("Tern")
+    by_http, by_mavlink = give(kite, CommandKind.HOLD), give(tern, CommandKind.HOLD)
+    asked = {"uav_ids": [kite.pk, tern.pk], "holder": "gateway-1", "lease_s": LEASE_S, "limit": 10}
+    assert claim_commands(**asked, link=LinkKind.MAVLINK) == [by_mavlink]
+    assert claim_commands(**asked) == [by_http]
 
 
 def test_what_is_held_is_taken_by_nobody_else_until_the_lease_runs_out() -> None:

@@ -2,6 +2,7 @@
 
 import random
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,8 @@ FLOWN_SHARE = 0.2  # of the missions with such refusals are planned again with w
 BY_HAND_EVERY = 20  # of so many missions one is kept and changed by hand
 SEEN = (
     "inside_zone", "beyond_range", "beyond_energy", "put off or higher", "several flights", "charges", "returns that fail",
-    "beside approved ones", "changed by hand", "by hand refused", "refusals flown", "over or under a zone", "before or after its time",
+    "beside approved ones", "changed by hand", "speeds by hand", "taken back", "by hand refused", "refusals flown", "alone",
+    "over or under a zone", "before or after its time",
 )  # fmt: skip
 
 
@@ -101,13 +103,15 @@ def _count(seen: Counter[str], plan: dict[str, Any]) -> None:
 def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.Random, seen: Counter[str]) -> list[str]:
     """Of a target that is refused for range or battery: not to be had before all others, and with what is said to be missing it is.
 
-    What is said to be in reach alone is flown when it comes before all others.
+    What is said to be in reach alone is flown when it comes before all others; where UAVs charge on the way, when there are no others.
     """
     refused = [item for item in plan["unassigned"] if item["reason"] in {"beyond_range", "beyond_energy"}]
     if not refused or draw.random() > FLOWN_SHARE:
         return []
     item = draw.choice(refused)
     target, lacks, said = item["target"], missing(item), item["message"]
+    if asked.charging_w is not None and item["reason"] == "beyond_energy":  # by way of others there may be more towers to charge at
+        asked, target = replace(asked, targets=(asked.targets[target],)), 0
     if lacks is None:
         seen["alone"] += 1
         first = make_plan(request=first_of_all(asked, target))

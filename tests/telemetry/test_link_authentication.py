@@ -1,9 +1,9 @@
 """A UAV is let in by its own token, a user by theirs, and neither by the other's."""
 
+from datetime import timedelta
+
 import pytest
-from django.db import connection
 from django.test import Client
-from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
 
 from missions.models import CredentialKind, UavCredential, UavState
@@ -30,12 +30,12 @@ def test_a_uav_is_let_in_and_has_been_heard() -> None:
 def test_the_use_of_a_token_is_noted_once_a_minute() -> None:
     kite = linked_uav()
     kite.report(report())
-    with CaptureQueriesContext(connection) as asked:
-        kite.report(report(2))
-    assert not [query for query in asked if "UPDATE missions_uavcredential" in query["sql"]]
     first = UavCredential.objects.get(uav=kite.uav).last_used_at
-    kite.report(report(3))
+    kite.report(report(2))
     assert UavCredential.objects.get(uav=kite.uav).last_used_at == first
+    UavCredential.objects.update(last_used_at=first - timedelta(minutes=1))
+    kite.report(report(3))
+    assert UavCredential.objects.get(uav=kite.uav).last_used_at > first
 
 
 @pytest.mark.parametrize("header", ["", "Bearer", "Bearer spu_wrong", "Bearer spu_\xe4", "Bearer " + "x" * 300, "Basic a2l0ZTpraXRl"])
@@ -60,7 +60,7 @@ def test_a_replaced_a_revoked_and_a_retired_uavs_token_count_no_more_at_once() -
 @pytest.mark.parametrize("role", Role)
 def test_a_user_is_no_uav(role: Role) -> None:
     user = somebody(role)
-    token = create_api_token(user=user, name="script", expires_at=timezone.now() + timezone.timedelta(days=1))
+    token = create_api_token(user=user, name="script", expires_at=timezone.now() + timedelta(days=1))
     with_token = Client().get(f"{LINK}/route", headers={"Authorization": f"Bearer {token}"})
     with_session = client_of(user).get(f"{LINK}/route")
     assert (with_token.status_code, with_session.status_code) == (401, 401)
@@ -82,7 +82,6 @@ def test_a_session_beside_a_uavs_token_changes_nothing() -> None:
 
 def test_a_network_that_guesses_is_slowed_down_and_a_right_token_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(uav_authentication, "WRONG_TOKENS", 3)
-    monkeypatch.setattr(uav_authentication, "GUESSING", f"guessing in a test {timezone.now()}")
     kite = linked_uav()
     wrong = [Client().get(f"{LINK}/route", headers={"Authorization": f"Bearer spu_{guess}"}) for guess in range(5)]
     assert [answer.status_code for answer in wrong] == [401, 401, 401, 429, 429]

@@ -5,5 +5,5 @@ from workspace.throttling import _counters
 
 def forget_counts() -> None:
     counters = _counters()
-    for key in counters.scan_iter("throttle_plans*"):
+    for key in counters.scan_iter("throttle_*"):
         counters.delete(key)

@@ -1,6 +1,7 @@
 """Who may do what, for every operation that the OpenAPI document has."""
 
 import re
+from typing import Any
 
 import pytest
 from django.contrib.auth import get_user_model
@@ -23,7 +24,8 @@ ASKED_BY_ALL = {
     "explain_unreached_target", "explain_route", "plan_legal_windows", "reachable_assets", "check_legs",
 }  # fmt: skip
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
-SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(people|invitations|sign-ins)(/|$)")
+SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(people|invitations|sign-ins|unknown-vehicles)(/|$)")
+FOR_UAVS_ALONE = re.compile(r"/api/v1/uav-link(/|$)")
 ONES_OWN = re.compile(r"/api/v1/account(/|$)")
 
 
@@ -39,7 +41,13 @@ def operations() -> list[tuple[str, str, str]]:
     return found
 
 
-def stand_in(schema: dict[str, str]) -> str:
+def operations_of_users() -> list[tuple[str, str, str]]:
+    return [(method, address, name) for method, address, name in operations() if not FOR_UAVS_ALONE.match(address)]
+
+
+def stand_in(schema: dict[str, Any]) -> str:
+    if "enum" in schema:
+        return str(schema["enum"][0])
     return "0" if schema["type"] == "integer" else "00000000-0000-4000-8000-000000000000"
 
 
@@ -51,14 +59,22 @@ def test_strangers_are_refused_everywhere() -> None:
     assert {status(Client(), method, address) for method, address, _ in operations()} == {401}
 
 
+def test_what_is_for_uavs_is_for_no_user() -> None:
+    asked = [(method, address) for method, address, _ in operations() if FOR_UAVS_ALONE.match(address)]
+    assert len(asked) == 4
+    for role in Role:
+        assert {status(client_of(somebody(role)), method, address) for method, address in asked} == {401}
+
+
 def test_whoever_is_signed_in_may_read_everything_but_what_has_not_been_decided() -> None:
     for role in Role:
         client = client_of(somebody(role))
-        refused = {address for method, address, _ in operations() if method in SAFE and status(client, method, address) in {401, 403}}
+        read = [(method, address) for method, address, _ in operations_of_users() if method in SAFE]
+        refused = {address for method, address in read if status(client, method, address) in {401, 403}}
         hidden_from = [(SEEN_BY_CURATORS_ALONE, {Role.CURATOR, Role.ADMINISTRATOR}), (SEEN_BY_ADMINISTRATORS_ALONE, {Role.ADMINISTRATOR})]
         hidden = {
             address
-            for method, address, _ in operations()
+            for method, address, _ in operations_of_users()
             for what, roles in hidden_from
             if method in SAFE and what.match(address) and role not in roles
         }
@@ -68,7 +84,7 @@ def test_whoever_is_signed_in_may_read_everything_but_what_has_not_been_decided(
 @pytest.mark.parametrize("role", Role)
 def test_operators_change_what_is_flown_curators_the_ground_administrators_people_and_everybody_their_own(role: Role) -> None:
     client = client_of(somebody(role))
-    for method, address, name in operations():
+    for method, address, name in operations_of_users():
         if method in SAFE or name in ASKED_BY_ALL:
             continue
         allowed = {Role.ADMINISTRATOR, Role.CURATOR if CURATED.match(address) else Role.OPERATOR}

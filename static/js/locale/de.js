@@ -7,6 +7,7 @@ import assets from "./de/assets.js";
 import draw from "./de/draw.js";
 import fleet from "./de/fleet.js";
 import flight from "./de/flight.js";
+import flying from "./de/flying.js";
 import gaps from "./de/gaps.js";
 import general from "./de/general.js";
 import ground from "./de/ground.js";
@@ -20,4 +21,4 @@ import terrain from "./de/terrain.js";
 import uavChanges from "./de/uav_changes.js";
 import zones from "./de/zones.js";
 
-export default { ...account, ...admin, ...administration, ...assets, ...draw, ...fleet, ...flight, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...planning, ...terrain, ...uavChanges, ...zones };
+export default { ...account, ...admin, ...administration, ...assets, ...draw, ...fleet, ...flight, ...flying, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...planning, ...terrain, ...uavChanges, ...zones };

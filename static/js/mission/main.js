@@ -8,12 +8,15 @@ import { createHistory, createStore } from "../store.js";
 import { t } from "../text.js";
 import { createActions } from "./actions.js";
 import { createDrafts } from "./draft.js";
+import { createFlying } from "./flying_actions.js";
 import { standingUavs } from "./fleet.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map_panel.js";
+import { mountApprove } from "./panels/approve.js";
 import { mountEndings } from "./panels/endings.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFlightOptions } from "./panels/flight_options.js";
+import { mountFlying } from "./panels/flying.js";
 import { mountFoot } from "./panels/foot.js";
 import { mountHeader } from "./panels/header.js";
 import { mountLostLink } from "./panels/lost_link.js";
@@ -40,17 +43,22 @@ const store = createStore({
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
   tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], litReturn: null, hand: null,
+  commands: null, isDispatching: false,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 const drafts = createDrafts({ user: page.userId, editor });
 const actions = createActions(store, history, page, drafts);
+const flying = createFlying(store, { failed: actions.failed, page });
 
 let uavPanel = null;
 const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
 const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
-mountHeader(store, actions, page.canPlan, { showPlace: (position) => map.goTo({ position, zoom: 14 }) });
+mountHeader(store, actions, page.canPlan, { canCopy: page.canFly, showPlace: (position) => map.goTo({ position, zoom: 14 }) });
+const flyingKeys = page.isFrozen ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) }) : [];
+if (page.canPlan) mountApprove(store, flying);
+flying.watch();
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
 uavPanel = mountUavs(store, actions, page.canPlan, { mapCentre: () => map.centre() });
@@ -80,6 +88,7 @@ startChrome({
   bindings: [
     { keys: ["/"], words: t("Find an asset"), act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
+    ...flyingKeys,
     ...map.bindings,
     { keys: ["f"], words: t("Fit the mission"), act: () => map.fit() },
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },

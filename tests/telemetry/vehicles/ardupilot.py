@@ -33,7 +33,7 @@ def float32(value: float) -> float:
 
 @dataclass
 class ArduPilot(Vehicle):
-    refuses: dict[int, int] = field(default_factory=dict)  # number of an item: the result it is refused with
+    refuses: dict[int, int] = field(default_factory=dict)  # number of a mission item: the result it is refused with
     has_fence: bool = True  # else fence and rally points are answered by 0 items
     heard_items: int = 0
     autopilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
@@ -73,7 +73,9 @@ class ArduPilot(Vehicle):
             return [self._ack(mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)]
         self.heard_items += 1
         item = item_of(message)
-        result = self.refuses.get(message.seq, self._checked(item, kind))
+        result = self._checked(item, kind)
+        if kind is MissionType.MISSION:
+            result = self.refuses.get(message.seq, result)
         if result != mavlink.MAV_MISSION_ACCEPTED:
             self.upload_kind = None
             return [self._ack(result, kind)]
@@ -177,6 +179,10 @@ class ArduPilot(Vehicle):
         if self.upload_kind is not None:
             times += [self._got_s + GIVE_UP_S, self._asked_s + REQUEST_S]
         return min(times, default=None)
+
+    def restart(self) -> None:
+        self.is_alive = True
+        self.upload_kind = None
 
     def carry_out(self, command: int, values: tuple[float, ...]) -> int:
         if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM:

@@ -34,13 +34,14 @@ class Channel:
     to_vehicle: list[Any] = field(default_factory=list)  # all that was sent, lost or not
     to_ground: list[Any] = field(default_factory=list)
     listeners: list[Any] = field(default_factory=list)  # hear what the ground station hears, before it
-    cut_to_vehicle_after: int | None = None  # messages, after which nothing passes any more
-    cut_to_ground_after: int | None = None
+    ground_dies_after: int | None = None  # messages sent: then it sends and hears nothing more
+    vehicle_dies_after: int | None = None  # messages heard
 
     def __post_init__(self) -> None:
         self._random = random.Random(self.seed)
         self._due: list[tuple[float, int, bool, bytes]] = []
         self._order = count()
+        self._heard = 0
         self._ground_frames = mavlink.MAVLink(None, srcSystem=GROUND_SYSTEM, srcComponent=mavlink.MAV_COMP_ID_MISSIONPLANNER)
         self._vehicle_frames = mavlink.MAVLink(None, srcSystem=self.vehicle.system, srcComponent=1)
         self._parser = mavlink.MAVLink(None)
@@ -52,7 +53,7 @@ class Channel:
         return self.go_on(until_s)
 
     def go_on(self, until_s: float = 3_600.0) -> Any:
-        while self.ground.outcome is None:
+        while self.ground.outcome is None and not self.is_ground_dead:
             times = [time for time in (self.ground.wake_at_s, self.vehicle.wake_at_s) if time is not None]
             times += [self._due[0][0]] if self._due else []
             if not times or min(times) > until_s:
@@ -65,6 +66,10 @@ class Channel:
             if self.ground.outcome is None and self.ground.wake_at_s is not None and self.ground.wake_at_s <= self.now_s:
                 self._send(self.ground.tick(self.now_s), to_vehicle=True)
         return self.ground.outcome
+
+    @property
+    def is_ground_dead(self) -> bool:
+        return self.ground_dies_after is not None and len(self.to_vehicle) > self.ground_dies_after
 
     def let_pass(self, seconds: float) -> None:
         """What is under way arrives at the vehicle, with nobody at the ground station."""
@@ -91,6 +96,9 @@ class Channel:
         message = self._parser.parse_char(frame)
         assert message is not None
         if to_vehicle:
+            self._heard += 1
+            if self.vehicle_dies_after is not None and self._heard > self.vehicle_dies_after:
+                self.vehicle.is_alive = False
             self._send(self.vehicle.receive(message, self.now_s), to_vehicle=False)
             self.vehicle._plan_wake()
         else:
@@ -100,10 +108,9 @@ class Channel:
 
     def _send(self, messages: list[Any], *, to_vehicle: bool) -> None:
         sent, frames = (self.to_vehicle, self._ground_frames) if to_vehicle else (self.to_ground, self._vehicle_frames)
-        cut = self.cut_to_vehicle_after if to_vehicle else self.cut_to_ground_after
         for message in messages:
             sent.append(message)
-            if cut is not None and len(sent) > cut:
+            if to_vehicle and self.is_ground_dead:
                 continue
             frame = bytes(message.pack(frames))
             frames.seq = (frames.seq + 1) % 256

@@ -23,7 +23,7 @@ MISSION, HOLD, RETURN, LAND, TAKE_OFF = 4, 3, 5, 6, 2
 @dataclass
 class Px4(Vehicle):
     state: str = IDLE
-    refuses: dict[int, int] = field(default_factory=dict)  # number of an item: the result it is refused with
+    refuses: dict[int, int] = field(default_factory=dict)  # number of a mission item: the result it is refused with
     heard_items: int = 0
     autopilot = mavlink.MAV_AUTOPILOT_PX4
     _kind: MissionType = MissionType.MISSION
@@ -62,7 +62,9 @@ class Px4(Vehicle):
         if message.seq != self._at:
             return []
         self.heard_items += 1
-        refusal = self.refuses.get(message.seq, self._checked(item_of(message)))
+        refusal = self._checked(item_of(message))
+        if self._kind is MissionType.MISSION:
+            refusal = self.refuses.get(message.seq, refusal)
         if refusal != mavlink.MAV_MISSION_ACCEPTED:
             self.state = IDLE
             return [self._ack(refusal, self._kind)]
@@ -150,6 +152,10 @@ class Px4(Vehicle):
             return None
         give_up_s = self._heard_s + GIVE_UP_S
         return min(give_up_s, self._sent_s + RETRY_S) if self.state == GETTING else give_up_s
+
+    def restart(self) -> None:
+        self.is_alive = True
+        self.state = IDLE
 
     def carry_out(self, command: int, values: tuple[float, ...]) -> int:
         if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM:

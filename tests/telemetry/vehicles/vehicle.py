@@ -25,6 +25,8 @@ class Vehicle:
     is_in_air: bool = False
     heartbeats: bool = False
     deaf_commands: int = 0  # so many commands are answered by yes, and nothing is done
+    is_mute: bool = False  # commands are carried out and never answered
+    says: str = ""  # with every refusal
     denied: dict[int, int] = field(default_factory=dict)  # MAV_CMD: the result that is answered
     taken: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)  # commands that were carried out
     _next_heartbeat_s: float = 0.0
@@ -55,6 +57,10 @@ class Vehicle:
     def start(self, now_s: float) -> list[Any]:
         return self.tick(now_s)
 
+    def restart(self) -> None:
+        """Its lists are kept, what was under way is forgotten."""
+        raise NotImplementedError
+
     def reports(self) -> list[Any]:
         base_mode = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | (mavlink.MAV_MODE_FLAG_SAFETY_ARMED if self.is_armed else 0)
         status = mavlink.MAV_STATE_ACTIVE if self.is_in_air else mavlink.MAV_STATE_STANDBY
@@ -80,7 +86,8 @@ class Vehicle:
             return mavlink.MAVLink_command_ack_message(message.command, result, 0, 0, *GROUND)
 
         if message.command in self.denied:
-            return [ack(self.denied[message.command])]
+            words = mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_CRITICAL, self.says.encode())
+            return [*([words] if self.says else []), ack(self.denied[message.command])]
         if self.deaf_commands:
             self.deaf_commands -= 1
             return [ack(mavlink.MAV_RESULT_ACCEPTED)]
@@ -88,7 +95,7 @@ class Vehicle:
         result = self.carry_out(message.command, values)
         if result == mavlink.MAV_RESULT_ACCEPTED:
             self.taken.append((message.command, values))
-        return [ack(result), *(self.reports() if self.heartbeats else [])]
+        return [*([] if self.is_mute else [ack(result)]), *(self.reports() if self.heartbeats else [])]
 
     def carry_out(self, command: int, values: tuple[float, ...]) -> int:
         return int(mavlink.MAV_RESULT_UNSUPPORTED)

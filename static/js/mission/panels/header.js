@@ -26,8 +26,8 @@ async function copyAddress(mission) {
   }
 }
 
-/** showPlace(position): on the map. */
-export function mountHeader(store, actions, canPlan, { showPlace }) {
+/** canCopy: who plans missions may copy one that nobody can change; showPlace(position): on the map. */
+export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
   const name = byId("mission-name");
   name.addEventListener("input", () => actions.rename(name.value));
   name.addEventListener("blur", () => {
@@ -46,10 +46,9 @@ export function mountHeader(store, actions, canPlan, { showPlace }) {
         items.push({ icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) });
         items.push({ icon: "history", label: t("History"), act: () => void showHistory(mission) });
       }
-      if (canPlan && mission) {
-        items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
-        items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
-      } else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });
+      if (canCopy && mission) items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
+      if (canPlan && mission) items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
+      else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });
       items.push({ icon: "clipboard-list", label: t("All missions"), act: () => void (location.href = "/") });
       return menuOf(t("This mission"), items);
     }),

@@ -8,7 +8,7 @@ import { exactText, lengthText, whenText } from "../../units.js";
 import { lostLinkText } from "../lost_link.js";
 
 const TOGETHER_MS = 10 * 60_000;
-const ICONS = { create: "plus", change: "pencil", rename: "pencil", plan: "waypoints", delete: "trash-2", restore: "archive-restore", duplicate: "copy" };
+const ICONS = { create: "plus", change: "pencil", rename: "pencil", plan: "waypoints", delete: "trash-2", restore: "archive-restore", duplicate: "copy", approve: "badge-check", revoke: "undo-2", "revoke-asked": "undo-2", dispatch: "send", start: "plane-takeoff", complete: "circle-check", fail: "circle-x", abort: "octagon-alert" };
 
 const names = (list, count) => (count > list.length ? t("{names} and {count} more", { names: list.join(", "), count: count - list.length }) : list.join(", "));
 
@@ -33,6 +33,14 @@ export function wordsOfEntry(entry) {
   if (action === "plan") return { title: t("Planned"), detail: [lengthText(after?.total_length_m), after?.unassigned ? tn(after.unassigned, "{count} target is not reached", "{count} targets are not reached") : ""].filter(Boolean).join(", ") };
   if (action === "by-hand") return { title: t("Changed by hand"), detail: t("the route of {name}", { name: after?.uav }) };
   if (action === "by-hand-undone") return { title: t("Change by hand taken back"), detail: t("the route of {name}", { name: after?.uav }) };
+  if (action === "approve") return { title: t("Approved"), detail: t("as {hash}", { hash: (after?.sha256 ?? "").slice(0, 12) }) };
+  if (action === "revoke") return { title: t("Approval revoked"), detail: after?.reason ?? "" };
+  if (action === "revoke-asked") return { title: t("Approval is being revoked"), detail: after?.reason ?? "" };
+  if (action === "dispatch") return { title: t("Sent to UAVs"), detail: [tn(after?.sent?.length ?? 0, "{count} UAV", "{count} UAVs"), after?.why].filter(Boolean).join(", ") };
+  if (action === "start") return { title: t("Started"), detail: "" };
+  if (action === "complete") return { title: t("Completed"), detail: "" };
+  if (action === "fail") return { title: t("Failed"), detail: "" };
+  if (action === "abort") return { title: t("Aborted"), detail: after?.why ?? "" };
   if (action === "delete") return { title: t("Deleted"), detail: "" };
   if (action === "restore") return { title: t("Brought back"), detail: "" };
   if (action === "rename") return { title: t("Renamed"), detail: t("from “{before}” to “{after}”", { before: entry.before?.name, after: after?.name }) };

@@ -1,0 +1,138 @@
+/** A mission on its way: what its UAVs were told, what became of it, and what can be done next. Values in, values out. */
+
+import { routeLetter } from "../map/palette.js";
+import { t } from "../text.js";
+import { clockText } from "../units.js";
+
+export const KINDS = {
+  "upload-mission": t("Send the mission"),
+  "clear-mission": t("Take the mission off"),
+  arm: t("Arm"),
+  "take-off": t("Take off"),
+  start: t("Start"),
+  pause: t("Pause"),
+  resume: t("Resume"),
+  hold: t("Hold"),
+  return: t("Return"),
+  land: t("Land here"),
+  abort: t("Abort"),
+  "change-speed": t("Change speed"),
+};
+
+const STATES = {
+  queued: { words: t("waiting"), image: "timer" },
+  sent: { words: t("sent"), image: "send" },
+  acknowledged: { words: t("acknowledged"), image: "check" },
+  applied: { words: t("done"), image: "circle-check" },
+  failed: { words: t("failed"), image: "circle-x" },
+  expired: { words: t("expired"), image: "circle-dashed" },
+};
+
+const ON_ITS_WAY = ["dispatched", "active"];
+
+export const isFrozen = (mission) => !["draft", "planned"].includes(mission.state);
+export const isOnItsWay = (mission) => ON_ITS_WAY.includes(mission.state);
+export const isOpen = ({ state }) => ["queued", "sent", "acknowledged"].includes(state);
+const isOfMission = ({ kind }) => kind === "upload-mission" || kind === "clear-mission";
+
+/** UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown }]. */
+export function flyersOf(mission) {
+  const flights = new Map((mission.approval?.flights ?? []).map((entry) => [entry.uav, entry]));
+  return (mission.plan?.routes ?? [])
+    .map((route, place) => ({ place, letter: routeLetter(place), name: route.uav, uav: route.uav_id, flights: flights.get(place)?.flights ?? 1, flown: flights.get(place)?.flown ?? 0, route }))
+    .filter(({ route }) => route.geometry);
+}
+
+/** The last word about what the UAV is to have on board; `commands` the newest first. */
+export function boardOf(commands, uav) {
+  return commands.find((command) => command.uav.id === uav && isOfMission(command)) ?? null;
+}
+
+/** The last word about how it flies. */
+export function flightOf(commands, uav) {
+  return commands.find((command) => command.uav.id === uav && !isOfMission(command)) ?? null;
+}
+
+/** A mix is what nobody approved: it is said loudest. */
+export const isMixed = ({ state, outcome_code }) => state === "failed" && outcome_code.includes("mix");
+
+/** What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way. */
+export function boardWords(command) {
+  if (!command) return { words: t("Not sent yet"), image: "circle-dashed" };
+  const { kind, state, progress, outcome, parameters } = command;
+  const why = outcome || STATES[state].words;
+  if (kind === "clear-mission") {
+    if (state === "applied") return { words: t("Taken off the UAV"), image: "circle-check" };
+    if (isOpen(command)) return { words: t("Being taken off the UAV"), image: "loader-circle" };
+    return { words: t("Still on the UAV: {why}", { why }), image: "octagon-alert", level: "critical" };
+  }
+  if (isMixed(command)) return { words: t("Mixed mission on the UAV – {why}", { why }), image: "octagon-alert", level: "critical" };
+  if (state === "applied") {
+    const flight = parameters.flight ?? 1;
+    return { words: flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved"), image: "circle-check", level: "good" };
+  }
+  if (state === "failed" || state === "expired") return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
+  if (progress?.total) return { words: t("Sending, {done} of {total} items", progress), image: "loader-circle", share: progress.done / progress.total };
+  return { words: state === "queued" ? t("Waiting for the UAV") : t("Sending"), image: state === "queued" ? "timer" : "loader-circle", share: 0 };
+}
+
+/** "Hold: done 14:05", with the reason where it did not come to that: { words, image, level }. */
+export function commandWords(command) {
+  const { words, image } = STATES[command.state];
+  const at = command.finished_at ?? command.acknowledged_at ?? command.sent_at ?? command.created_at;
+  const said = t("{kind}: {state} {time}", { kind: KINDS[command.kind], state: words, time: clockText(at) });
+  const level = command.state === "failed" ? "critical" : command.state === "expired" ? "warning" : null;
+  return { words: command.outcome && command.state !== "applied" ? `${said} – ${command.outcome}` : said, image, level };
+}
+
+/** Its times, one after the other: "given 14:02:10, sent 14:02:11". */
+export function timesOf({ created_at, sent_at, acknowledged_at, finished_at, state }, timeText) {
+  const steps = [[t("given"), created_at], [t("sent"), sent_at], [t("acknowledged"), acknowledged_at], [STATES[state].words, finished_at]];
+  return steps.filter(([, at]) => at).map(([word, at]) => `${word} ${timeText(at)}`).join(", ");
+}
+
+/** Why a UAV cannot be started; empty where it can. */
+export function whyNoStart(mission, { uav, name, flown }, commands) {
+  if (mission.approval?.revoke_requested_at) return t("The approval is being taken back.");
+  const board = boardOf(commands, uav);
+  if (board?.kind !== "upload-mission" || board.state !== "applied") return t("{name} does not have its mission yet.", { name });
+  const flight = board.parameters.flight ?? 1;
+  if (flight <= flown) return t("{name} has flown this flight.", { name });
+  const started = commands.find(({ kind, uav: { id }, parameters, state, approval }) => kind === "start" && id === uav && state === "applied" && parameters.flight === flight && approval === mission.approval?.id);
+  return started ? t("{name} is flying.", { name }) : "";
+}
+
+/** What could be sent to a UAV now: the number of a flight, null where nothing is to be sent. */
+export function flightToSend({ uav, flights, flown }, commands) {
+  const board = boardOf(commands, uav);
+  const next = flown + 1;
+  if (next > flights) return null;
+  const isThere = board?.kind === "upload-mission" && (isOpen(board) || board.state === "applied") && (board.parameters.flight ?? 1) === next;
+  return isThere ? null : next;
+}
+
+/** Why the mission can be neither changed nor, perhaps, sent; a sentence. */
+export function stageWords(mission) {
+  const { approval, state } = mission;
+  if (state === "completed") return t("Flown to its end. Save a copy to fly it again.");
+  if (state === "aborted") return t("Aborted. Save a copy to fly it again.");
+  if (state === "failed") return t("A flight failed. Save a copy to fly it again.");
+  if (approval?.revoke_requested_at) return t("The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.", { reason: approval.revoke_reason });
+  const by = t("Approved by {name} {time}.", { name: approval?.approved_by ?? t("somebody who has left"), time: approval ? clockText(approval.approved_at) : "" });
+  const how = state === "active" ? t("It is being flown: nothing of it can be changed.") : t("Nothing of it can be changed until that is revoked.");
+  return `${by} ${how}`;
+}
+
+/** Which buttons of the mission there are: { send, revoke, abort } with true, false, or the reason why not now. */
+export function stageActs(mission, commands) {
+  const isBeingRevoked = Boolean(mission.approval?.revoke_requested_at);
+  const toSend = flyersOf(mission).filter((flyer) => flightToSend(flyer, commands) !== null);
+  const stale = mission.is_stale && mission.stale_causes.some(({ what }) => what !== "elsewhere");
+  const send = mission.state === "approved" || (mission.state === "dispatched" && toSend.length > 0 && !isBeingRevoked);
+  const whyNot = stale ? t("The ground has changed since it was approved. Revoke it, and plan again.") : isBeingRevoked ? t("The approval is being taken back.") : "";
+  return {
+    send: send && (whyNot || true),
+    revoke: ["approved", "dispatched"].includes(mission.state),
+    abort: isOnItsWay(mission),
+  };
+}

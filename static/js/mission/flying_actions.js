@@ -1,0 +1,172 @@
+/** What an operator does with a mission once it is planned: approve, send, steer, abort. Each asks first; the panels listen to the store. */
+
+import { ApiError, get, post, signInAddress } from "../api.js";
+import { say, toast } from "../page/toast.js";
+import { t, tn } from "../text.js";
+import { durationText, lengthText, speedText } from "../units.js";
+import { flyersOf, isFrozen, isOnItsWay, isOpen, KINDS } from "./flying.js";
+import { confirmAct } from "./panels/confirm.js";
+
+const POLL_MS = 2000;
+const LATE = t("If it cannot be reached in time, the command expires and is not carried out later.");
+const WHY = { name: "why", label: t("Why (kept in the history)") };
+
+/** What each command does, and how it is asked for. */
+const ASKED = {
+  start: ({ name, route }) => ({ title: t("Start {name}?", { name }), lines: [t("It takes off and flies its approved route: {length}, {time}.", { length: lengthText(route.length_m), time: durationText(route.duration_s) }), LATE], act: t("Start {name}", { name }), image: "plane-takeoff" }),
+  arm: ({ name }) => ({ title: t("Arm {name}?", { name }), lines: [t("Its rotors may turn from then on. Make sure that nobody stands beside it."), LATE], act: t("Arm {name}", { name }) }),
+  "take-off": ({ name }) => ({ title: t("Let {name} take off?", { name }), lines: [t("It rises straight up from where it stands, and stays there until it is told otherwise."), LATE], act: t("Let {name} take off", { name }), field: { name: "altitude_relative_m", label: t("Height above the place of take-off [m]"), type: "number", value: 10, min: 1, max: 120, step: "any", isNeeded: true }, image: "plane-takeoff" }),
+  pause: ({ name }) => ({ title: t("Pause {name}?", { name }), lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), LATE], keep: t("Keep flying"), act: t("Pause {name}", { name }), isBack: true }),
+  resume: ({ name }) => ({ title: t("Resume the flight of {name}?", { name }), lines: [t("It flies on along its route from where it is."), LATE], act: t("Resume {name}", { name }), isBack: true }),
+  hold: ({ name }) => ({ title: t("Hold {name}?", { name }), lines: [t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."), LATE], keep: t("Keep flying"), act: t("Hold {name}", { name }), isBack: true, image: "hand" }),
+  return: ({ name }) => ({ title: t("Return {name}?", { name }), lines: [t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."), LATE], keep: t("Keep flying"), act: t("Return {name}", { name }), isBack: true, image: "rotate-ccw" }),
+  land: ({ name }) => ({ title: t("Land {name} here?", { name }), lines: [t("It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone."), LATE], keep: t("Keep flying"), act: t("Land {name} here", { name }), isDanger: true, image: "plane-landing" }),
+  abort: ({ name }) => ({ title: t("Abort the flight of {name}?", { name }), lines: [t("Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on."), LATE], keep: t("Keep flying"), act: t("Abort {name}", { name }), isDanger: true, field: WHY, image: "octagon-alert" }),
+  "change-speed": ({ name, speed_mps }) => ({ title: t("Change the speed of {name}?", { name }), lines: [t("Over ground, until its route says otherwise. Planned times no longer hold."), LATE], act: t("Change the speed of {name}", { name }), field: { name: "speed_mps", label: t("Speed [m/s]; now planned with {speed}", { speed: speedText(speed_mps) }), type: "number", value: Math.round(speed_mps * 10) / 10, min: 0.5, max: 100, step: "any", isNeeded: true }, isBack: true }),
+};
+
+/** failed: see actions.js. store.commands: of the mission, the newest first, null until they are read. */
+export function createFlying(store, { failed, page }) {
+  let timer = 0;
+  let isAsking = false;
+
+  const mission = () => store.state.mission;
+  const ifMatch = () => ({ headers: { "If-Match": `"${mission().revision}"`, "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } });
+  const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
+
+  /** Tells what was refused, in the server's words. */
+  async function tried(title, act) {
+    store.update({ isDispatching: true });
+    try {
+      await act();
+      store.update({ problem: null });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.isSignedOut) failed(title, error, [{ label: t("Sign in"), href: signInAddress }]);
+      else if (error.status === 412) failed(title, new ApiError(t("Somebody else has changed the mission. Look at it again."), { status: 412 }), [{ label: t("Load again"), act: () => location.reload() }]);
+      else failed(title, error);
+    } finally {
+      store.update({ isDispatching: false });
+      void readCommands();
+    }
+  }
+
+  async function readMission() {
+    const { data } = await get(`/missions/${mission().id}`);
+    store.update({ mission: data });
+  }
+
+  async function approve() {
+    const flyers = flyersOf(mission());
+    const asked = await confirmAct({
+      title: t("Approve “{name}”?", { name: mission().name }),
+      lines: [
+        tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", { length: lengthText(mission().plan.total_length_m), names: uavsWords(flyers) }),
+        t("From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked."),
+      ],
+      act: t("Approve"), isBack: true, image: "badge-check",
+    });
+    if (asked) await tried(t("Not approved."), async () => store.update({ mission: (await post(`/missions/${mission().id}/approve`, {}, ifMatch())).data }));
+  }
+
+  async function revoke() {
+    const away = isOnItsWay(mission());
+    const asked = await confirmAct({
+      title: t("Revoke the approval of “{name}”?", { name: mission().name }),
+      lines: away
+        ? [t("Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again."), t("Until then it can be neither sent nor started.")]
+        : [t("The mission can be changed again, and has to be approved anew before it is sent.")],
+      field: { name: "reason", label: t("Why (kept in the history)"), isNeeded: true },
+      keep: t("Keep it approved"), act: t("Revoke"),
+    });
+    if (asked) await tried(t("Not revoked."), async () => store.update({ mission: (await post(`/missions/${mission().id}/revoke`, { reason: asked.reason }, ifMatch())).data }));
+  }
+
+  /** flyer: one UAV's flight; without: all that have nothing yet. */
+  async function send(flyer = null, flight = 1) {
+    const flyers = flyer ? [flyer] : flyersOf(mission());
+    const title = flyer ? (flight > 1 ? t("Send flight {flight} to {name}?", { flight, name: flyer.name }) : t("Send its route to {name}?", { name: flyer.name })) : tn(flyers.length, "Send the mission to {count} UAV?", "Send the mission to {count} UAVs?");
+    const asked = await confirmAct({
+      title,
+      lines: [t("{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.", { names: uavsWords(flyers) }), t("A UAV that is not connected gets its route when it is, within the hour.")],
+      act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"), isBack: true, image: "send",
+    });
+    if (!asked) return;
+    await tried(t("Not sent."), async () => {
+      await post(`/missions/${mission().id}/dispatch`, flyer ? { uav: flyer.place, flight } : {}, ifMatch());
+      await readMission();
+    });
+  }
+
+  async function abort() {
+    const flyers = flyersOf(mission());
+    const asked = await confirmAct({
+      title: t("Abort “{name}”?", { name: mission().name }),
+      lines: [t("{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.", { names: uavsWords(flyers) }), LATE],
+      field: WHY, keep: mission().state === "active" ? t("Keep flying") : t("Keep it"), act: t("Abort the mission"), isDanger: true, image: "octagon-alert",
+    });
+    if (!asked) return;
+    await tried(t("Not aborted."), async () => {
+      await post(`/missions/${mission().id}/abort`, { why: asked.why }, ifMatch());
+      await readMission();
+    });
+  }
+
+  async function command(flyer, kind) {
+    const asked = await confirmAct(ASKED[kind](flyer));
+    if (!asked) return;
+    const { why = "", ...parameters } = asked;
+    await tried(t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] }), async () => {
+      await post(`/uavs/${flyer.uav}/commands`, { kind, why, parameters }, { headers: { "Idempotency-Key": ifMatch().headers["Idempotency-Key"] } });
+      say(t("{act}: {name} is being told.", { act: KINDS[kind], name: flyer.name }));
+    });
+  }
+
+  // what became of it
+
+  async function readCommands() {
+    if (isAsking || !mission()) return;
+    isAsking = true;
+    try {
+      const { data } = await get(`/missions/${mission().id}/commands?limit=200`);
+      tellChanges(store.state.commands, data.results);
+      store.update({ commands: data.results });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error; // else watchMission says that the server is away
+    } finally {
+      isAsking = false;
+    }
+  }
+
+  /** Said once to whoever listens: what was carried out, and what was not. */
+  function tellChanges(before, now) {
+    if (!before) return;
+    const states = new Map(before.map(({ id, state }) => [id, state]));
+    for (const { id, uav, kind, state, outcome } of now) {
+      if (isOpen({ state }) || !states.has(id) || states.get(id) === state) continue;
+      const words = { name: uav.name, act: KINDS[kind], outcome };
+      if (state === "applied") say(t("{act}: {name} has done it.", words));
+      else if (state === "failed") toast(t("{act}: {name} has not done it. {outcome}", words));
+    }
+  }
+
+  /** While the page is looked at: often while something is under way, else now and then. */
+  function watch() {
+    clearInterval(timer);
+    if (!page.isFrozen) return;
+    timer = setInterval(() => {
+      const { commands } = store.state;
+      const isBusy = mission() && (isOnItsWay(mission()) || commands?.some(isOpen));
+      if (!document.hidden && isBusy) void readCommands();
+    }, POLL_MS);
+    store.listen(["mission"], ({ mission: now }) => now && store.state.commands === null && void readCommands());
+    document.addEventListener("visibilitychange", () => !document.hidden && void readCommands());
+  }
+
+  /** What is approved is shown as to those who cannot change it, and the other way round: the page is made anew. */
+  store.listen(["mission"], ({ mission: now }) => {
+    if (now && isFrozen(now) !== page.isFrozen) location.reload();
+  });
+
+  return { approve, revoke, send, abort, command, watch };
+}

@@ -1,0 +1,23 @@
+/** Beside Plan and Save: what is planned and saved can be approved. */
+
+import { byId } from "../../dom.js";
+import { t } from "../../text.js";
+import { isPlanCurrent, isUnsaved } from "../plan_view.js";
+
+/** Why a plan cannot be approved as it stands on the page; empty where it can. */
+export function whyNotApproved(state) {
+  if (!isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
+  if (!state.mission || isUnsaved(state) || !state.planIsStored || state.saving) return t("It is not saved yet.");
+  return "";
+}
+
+export function mountApprove(store, flying) {
+  const button = byId("approve");
+  button.addEventListener("click", () => void flying.approve());
+  store.listen(["mission", "plan", "planIsStored", "selection", "name", "savedBasis", "saving", "planning", "isDispatching"], (state) => {
+    button.hidden = !state.plan || state.planning !== null;
+    const reason = whyNotApproved(state);
+    button.disabled = Boolean(reason) || state.isDispatching;
+    button.title = reason;
+  });
+}

@@ -1,0 +1,29 @@
+/** A question before an act that moves a UAV or binds a mission: what will happen, what then stays undone, and buttons that name the act. */
+
+import { h, icon } from "../../dom.js";
+import { open } from "../../page/keyboard.js";
+import { t } from "../../text.js";
+
+/**
+ * Resolves to what was filled in, null where it is not done. `field`: { name, label, type, value, min, max, step, isNeeded }.
+ * isBack: whether the act can be taken back: then it has the focus, else the way out.
+ */
+export function confirmAct({ title, lines, act, keep = t("Not yet"), field = null, isDanger = false, isBack = false, image = null }) {
+  return new Promise((resolve) => {
+    const input = field && h("input", { class: "input", id: "confirm-field", name: field.name, type: field.type ?? "text", value: field.value ?? "", min: field.min, max: field.max, step: field.step, maxlength: field.type === "number" ? null : 300, required: field.isNeeded });
+    const out = h("button", { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") }, keep);
+    const go = h("button", { class: `button ${isDanger ? "danger filled" : "primary"}`, value: "go" }, act);
+    const dialog = h(
+      "dialog",
+      { class: "confirm", "aria-labelledby": "confirm-title", "aria-describedby": "confirm-lines" },
+      h("h2", { id: "confirm-title" }, image && icon(image), title),
+      h("form", { method: "dialog" },
+        h("div", { id: "confirm-lines", class: "confirm-lines" }, lines.filter(Boolean).map((line) => h("p", {}, line))),
+        input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
+        h("div", { class: "acts" }, out, go)),
+    );
+    dialog.addEventListener("close", () => resolve(dialog.returnValue === "go" ? (input ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() } : {}) : null));
+    open(dialog);
+    (field?.isNeeded ? input : isBack ? go : out).focus();
+  });
+}

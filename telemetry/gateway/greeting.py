@@ -1,0 +1,46 @@
+"""What a gateway says to a vehicle by itself: that it is there, and which messages it wants."""
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.frames import Message
+from telemetry.ground_station.ends import AUTOPILOT
+from telemetry.ground_station.flavour import Flavour
+
+INTERVALS_S = {
+    mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 0.2,
+    mavlink.MAVLINK_MSG_ID_ATTITUDE: 0.2,
+    mavlink.MAVLINK_MSG_ID_VFR_HUD: 0.5,
+    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,
+    mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
+    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 2.0,
+    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 1.0,
+    mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
+    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
+}
+WIND = {Flavour.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, Flavour.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
+WIND_INTERVAL_S = 2.0
+ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
+STREAM_HZ = 4  # of all data streams, for autopilots that know no intervals
+
+
+def heartbeat() -> Message:
+    return mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3)
+
+
+def requests(system: int, flavour: Flavour) -> list[Message]:
+    """For the messages that telemetry is made of."""
+    intervals_s = INTERVALS_S | ({WIND[flavour]: WIND_INTERVAL_S} if flavour in WIND else {})
+    wanted = [_command(system, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, every_s * 1e6) for number, every_s in intervals_s.items()]
+    if flavour is not Flavour.PX4:
+        stream = mavlink.MAVLink_request_data_stream_message(system, AUTOPILOT, mavlink.MAV_DATA_STREAM_ALL, STREAM_HZ, 1)
+        wanted.insert(0, stream)
+    return wanted
+
+
+def questions(system: int) -> list[Message]:
+    """For what is told once."""
+    return [_command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, number) for number in ONCE]
+
+
+def _command(system: int, command: int, one: float, two: float = 0.0) -> Message:
+    return mavlink.MAVLink_command_long_message(system, AUTOPILOT, command, 0, float(one), two, 0, 0, 0, 0, 0)

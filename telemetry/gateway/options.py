@@ -1,0 +1,70 @@
+"""What a gateway is started with."""
+
+import re
+import secrets
+import socket
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from django.conf import settings
+
+OWN_SYSTEM, OWN_COMPONENT = 255, 190  # those of ground stations; MAV_COMP_ID_MISSIONPLANNER
+
+
+class WrongAddress(ValueError):
+    """Not HOST:PORT."""
+
+
+@dataclass(frozen=True)
+class Address:
+    host: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"{self.host}:{self.port}"
+
+
+def addresses(text: str) -> list[Address]:
+    """Of "HOST:PORT, …"; an IPv6 host stands in brackets. Raises WrongAddress."""
+    return [_address(entry.strip()) for entry in text.split(",") if entry.strip()]
+
+
+def _address(entry: str) -> Address:
+    found = re.fullmatch(r"\[([0-9a-fA-F:.%]+)\]:(\d{1,5})|([^:\[\]]+):(\d{1,5})", entry)
+    if not found or int(found[2] or found[4]) > 65_535:
+        raise WrongAddress(f"{entry!r} is no address: HOST:PORT is, or [IPv6]:PORT")
+    return Address(found[1] or found[3], int(found[2] or found[4]))
+
+
+@dataclass(frozen=True)
+class Options:
+    """`name` is the same at every start of one gateway, and no other's; `holder` is of this run alone."""
+
+    udp: list[Address]
+    tcp: list[Address]
+    name: str
+    log_dir: Path
+    run: str = field(default_factory=lambda: secrets.token_hex(4))
+    lease_s: float = 10.0
+    flush_s: float = 0.2
+    most_records: int = 100_000
+    log_mib: float = 256.0
+
+    @property
+    def holder(self) -> str:
+        return f"{self.name}/{self.run}"
+
+
+def options_of_settings(*, udp: str | None = None, tcp: str | None = None, name: str | None = None) -> Options:
+    udp_addresses = addresses(settings.GATEWAY_UDP if udp is None else udp)
+    tcp_addresses = addresses(settings.GATEWAY_TCP if tcp is None else tcp)
+    ports = [str(address.port) for address in [*udp_addresses, *tcp_addresses]]
+    usual = "-".join([socket.gethostname(), *ports])
+    return Options(
+        udp=udp_addresses,
+        tcp=tcp_addresses,
+        name=re.sub(r"[^\w.-]", "-", name or settings.GATEWAY_NAME or usual)[:80],
+        log_dir=Path(settings.FLIGHT_LOG_DIR),
+        most_records=settings.GATEWAY_MOST_RECORDS,
+        log_mib=settings.LARGEST_FLIGHT_LOG_MIB,
+    )

@@ -1,0 +1,143 @@
+"""Sockets that vehicles talk to: what comes in goes to one function, and each sender can be answered."""
+
+import asyncio
+import contextlib
+import logging
+import socket
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from missions.mavlink.frames import Damage, Frame, StreamParser, frames_of_datagram
+from telemetry.gateway.options import Address
+
+logger = logging.getLogger(__name__)
+
+LARGEST_DATAGRAM = 65_535
+DATAGRAMS_AT_ONCE = 200  # before other work has its turn
+RECEIVE_BUFFER = 8 * 1024 * 1024  # bytes, as far as the system grants them
+MOST_CONNECTIONS = 256
+MOST_UNSENT = 256 * 1024  # bytes of a connection that takes nothing
+SILENT_CONNECTION_S = 60.0
+
+
+class Peer(Protocol):
+    """A sender, equal to itself when it sends again."""
+
+    @property
+    def name(self) -> str: ...
+
+    def send(self, frame: bytes) -> None: ...
+
+
+Receive = Callable[[list[Frame], Peer, float], None]  # frames, from whom, received at [s since 1970]
+
+
+@dataclass(frozen=True)
+class UdpPeer:
+    listener: socket.socket = field(repr=False)
+    address: tuple[str, int]
+
+    @property
+    def name(self) -> str:
+        return f"udp:{self.address[0]}:{self.address[1]}"
+
+    def send(self, frame: bytes) -> None:
+        with contextlib.suppress(OSError):  # a full buffer or an unreachable port is a lost datagram
+            self.listener.sendto(frame, self.address)
+
+
+@dataclass(eq=False)
+class TcpPeer:
+    writer: asyncio.StreamWriter = field(repr=False)
+    name: str
+
+    def send(self, frame: bytes) -> None:
+        transport = self.writer.transport
+        if not transport.is_closing() and transport.get_write_buffer_size() < MOST_UNSENT:
+            self.writer.write(frame)
+
+
+@dataclass
+class Listeners:
+    """All sockets of a gateway. `damages` counts what was no frame."""
+
+    receive: Receive
+    damages: Counter[Damage] = field(default_factory=Counter)
+    _sockets: list[socket.socket] = field(default_factory=list)
+    _servers: list[asyncio.Server] = field(default_factory=list)
+    _connections: set[asyncio.StreamWriter] = field(default_factory=set)
+
+    async def open(self, udp: list[Address], tcp: list[Address]) -> list[str]:
+        """Where it listens, with the ports that the system chose for 0. Raises OSError."""
+        names = [f"udp:{self._open_udp(address)}" for address in udp]
+        for address in tcp:
+            server = await asyncio.start_server(self._serve, address.host, address.port, limit=LARGEST_DATAGRAM)
+            self._servers.append(server)
+            host, port = server.sockets[0].getsockname()[:2]
+            names.append(f"tcp:{Address(host, port)}")
+        return names
+
+    def close(self) -> None:
+        loop = asyncio.get_running_loop()
+        for listener in self._sockets:
+            loop.remove_reader(listener)
+            listener.close()
+        for server in self._servers:
+            server.close()
+        for writer in self._connections:
+            writer.close()
+
+    def _open_udp(self, address: Address) -> Address:
+        family, kind, protocol, _, where = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_DGRAM)[0]
+        listener = socket.socket(family, kind, protocol)
+        try:
+            listener.setblocking(False)
+            _enlarge(listener)
+            listener.bind(where)
+        except OSError:
+            listener.close()
+            raise
+        self._sockets.append(listener)
+        asyncio.get_running_loop().add_reader(listener, self._drain, listener)
+        return Address(*listener.getsockname()[:2])
+
+    def _drain(self, listener: socket.socket) -> None:
+        for _ in range(DATAGRAMS_AT_ONCE):
+            try:
+                datagram, address = listener.recvfrom(LARGEST_DATAGRAM)
+            except BlockingIOError:
+                return
+            except OSError:  # an answer of ours that could not be delivered is told here
+                continue
+            frames = frames_of_datagram(datagram, self.damages)
+            if frames:
+                self.receive(frames, UdpPeer(listener, address), time.time())
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        if len(self._connections) >= MOST_CONNECTIONS:
+            writer.close()
+            return
+        self._connections.add(writer)
+        host, port = writer.get_extra_info("peername")[:2]
+        peer, parser = TcpPeer(writer, f"tcp:{host}:{port}"), StreamParser(self.damages)
+        try:
+            while piece := await asyncio.wait_for(reader.read(LARGEST_DATAGRAM), SILENT_CONNECTION_S):
+                frames = parser.receive(piece)
+                if frames:
+                    self.receive(frames, peer, time.time())
+        except (OSError, TimeoutError):
+            pass
+        finally:
+            self._connections.discard(writer)
+            writer.close()
+
+
+def _enlarge(listener: socket.socket) -> None:
+    """A burst must fit while the process does something else. Who may go beyond the system's limit does."""
+    for option in (getattr(socket, "SO_RCVBUFFORCE", 33), socket.SO_RCVBUF):
+        with contextlib.suppress(OSError):
+            listener.setsockopt(socket.SOL_SOCKET, option, RECEIVE_BUFFER)
+            return

@@ -1,0 +1,261 @@
+"""The gateway as a whole: sockets, vehicles, the database, and the clock that drives them."""
+
+import asyncio
+import logging
+import signal
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Coroutine, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.frames import Frame, message_of
+from telemetry.decoding.report import is_vehicle
+from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.fleet import KnownUav, known_uavs
+from telemetry.gateway.flights import SYNC_EVERY_S, Flights
+from telemetry.gateway.options import Options
+from telemetry.gateway.peers import Listeners, Peer
+from telemetry.gateway.session import RADIO, Session
+from telemetry.gateway.store import Store
+from telemetry.ground_station.flavour import flavour_of
+from telemetry.services.heard_by_gateway import HeardText
+from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
+from telemetry.services.sightings import Sighting
+
+logger = logging.getLogger(__name__)
+
+FLEET_EVERY_S = 1.0
+LEASES_EVERY_S = 1.0
+RETRY_S = 0.5
+COUNTS_EVERY_S = 60.0
+WAITED_TOO_LONG_S = 15.0
+STOP_WITHIN_S = 8.0
+
+
+@dataclass
+class Gateway:
+    """`run` until `stop`. `listening` says where, once it does."""
+
+    options: Options
+    listening: list[str] = field(default_factory=list)
+    sessions: dict[int, Session] = field(default_factory=dict)  # by system id
+    damages: Counter[str] = field(default_factory=Counter)
+    _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
+    _early: deque[tuple[list[Frame], Peer, float]] = field(default_factory=lambda: deque(maxlen=5_000))
+
+    def __post_init__(self) -> None:
+        self.database = DatabaseThread("gateway-store")
+        self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
+        self.flights = Flights(self.options)
+        self.listeners = Listeners(self.receive)
+        self._stop = asyncio.Event()
+        self._wants_lease = asyncio.Event()
+
+    # Frames
+
+    def receive(self, frames: list[Frame], peer: Peer, now_s: float) -> None:
+        if self._uavs is None:
+            self._early.append((frames, peer, now_s))
+            return
+        for frame in frames:
+            if frame.message_id in RADIO and not frame.is_signed:
+                self._receive_radio(frame, peer, now_s)
+                continue
+            uav = self._uavs.get(frame.system)
+            if uav is None:
+                self._receive_unknown(frame, peer, now_s)
+            else:
+                session = self.sessions.get(frame.system) or self._new_session(uav)
+                self._receive_known(session, frame, peer, now_s)
+
+    def _receive_known(self, session: Session, frame: Frame, peer: Peer, now_s: float) -> None:
+        session.receive(frame, peer, now_s)
+        if session.lease is None:
+            if session.waiting:
+                self._wants_lease.set()
+            return
+        self.flights.watch(session, now_s)
+
+    def _receive_radio(self, frame: Frame, peer: Peer, now_s: float) -> None:
+        for session in self.sessions.values():
+            if session.peer == peer:
+                session.receive_radio(frame, now_s)
+
+    def _receive_unknown(self, frame: Frame, peer: Peer, now_s: float) -> None:
+        self.damages["unknown-system"] += 1
+        if frame.message_id != mavlink.MAVLINK_MSG_ID_HEARTBEAT or not 1 <= frame.system <= 254:
+            return
+        message = message_of(frame)
+        if message is not None and is_vehicle(message):
+            self.store.sightings[frame.system] = Sighting(
+                system=frame.system,
+                autopilot=flavour_of(message.autopilot),
+                vehicle_type=_type_name(message.type),
+                address=peer.name[:100],
+                is_signed=frame.is_signed,
+                heard_at=datetime.fromtimestamp(now_s, UTC),
+            )
+
+    def _new_session(self, uav: KnownUav) -> Session:
+        session = self.sessions[uav.system] = Session(uav, self.store.records, link_id=_link_id(self.options.name))
+        return session
+
+    # The run
+
+    async def run(self, *, on_listening: Callable[[list[str]], None] | None = None) -> None:
+        """Raises OSError where an address cannot be listened to."""
+        self.listening = await self.listeners.open(self.options.udp, self.options.tcp)
+        logger.info("gateway %s listens on %s", self.options.holder, ", ".join(self.listening))
+        if on_listening is not None:
+            on_listening(self.listening)
+        loops = [asyncio.create_task(loop, name=name) for name, loop in self._loops().items()]
+        stopping = asyncio.create_task(self._stop.wait())
+        done, _ = await asyncio.wait([*loops, stopping], return_when=asyncio.FIRST_COMPLETED)
+        stopping.cancel()
+        await self._end(loops)
+        for task in done - {stopping}:
+            task.result()  # a loop ends only by an error: the process ends with it, and is started again
+
+    def stop(self) -> None:
+        self._stop.set()
+
+    def stop_on_signals(self) -> None:
+        for number in (signal.SIGTERM, signal.SIGINT):
+            asyncio.get_running_loop().add_signal_handler(number, self.stop)
+
+    def _loops(self) -> dict[str, Coroutine[Any, Any, None]]:
+        return {
+            "fleet": self._every(FLEET_EVERY_S, self._read_fleet),
+            "leases": self._lease_loop(),
+            "store": self._store_loop(),
+            "vehicles": self._every(1.0, self._tick),
+            "logs": self._every(SYNC_EVERY_S, self._sync_logs),
+            "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
+        }
+
+    async def _every(self, interval_s: float, do: Callable[[], Coroutine[Any, Any, None]]) -> None:
+        while True:
+            try:
+                await do()
+            except DatabaseAway:
+                await asyncio.sleep(RETRY_S)
+            await asyncio.sleep(interval_s)
+
+    async def _end(self, loops: list[asyncio.Task[None]]) -> None:
+        for loop in loops:
+            loop.cancel()
+        await asyncio.gather(*loops, return_exceptions=True)
+        self.listeners.close()
+        self.flights.end_all(time.time())
+        try:
+            async with asyncio.timeout(STOP_WITHIN_S):
+                while await self.store.flush():
+                    pass
+                await self.flights.write_rows(self.database)
+                await self.database.run(release_leases, holder=self.options.holder)
+        except (DatabaseAway, TimeoutError):
+            logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
+        self.database.close()
+
+    # What goes on all the time
+
+    async def _read_fleet(self) -> None:
+        self._uavs = await self.database.run(known_uavs)
+        for system, session in list(self.sessions.items()):
+            uav = self._uavs.get(system)
+            if uav is None or uav.uav_id != session.uav.uav_id:
+                self.flights.end(session, time.time())
+                del self.sessions[system]
+            elif uav != session.uav:
+                session.change(uav)
+        while self._early:
+            self.receive(*self._early.popleft())
+
+    async def _lease_loop(self) -> None:
+        while True:
+            try:
+                await self._lease()
+            except DatabaseAway:
+                await asyncio.sleep(RETRY_S)
+            self._wants_lease.clear()
+            await asyncio.sleep(0.05)
+            try:
+                await asyncio.wait_for(self._wants_lease.wait(), LEASES_EVERY_S)
+            except TimeoutError:
+                continue
+
+    async def _lease(self) -> None:
+        now_s = time.time()
+        held = {session.uav.uav_id: session for session in self.sessions.values() if session.lease is not None}
+        still = await self.database.run(renew_leases, uav_ids=list(held), holder=self.options.holder, lease_s=self.options.lease_s)
+        for uav_id in held.keys() - still:
+            logger.warning("another gateway serves %s now", held[uav_id].uav.name)
+            self.flights.end(held[uav_id], now_s)
+            held[uav_id].lose()
+        wanted = {}
+        for session in self.sessions.values():
+            while session.waiting and now_s - session.waiting[0][2] > WAITED_TOO_LONG_S:
+                session.waiting.popleft()
+            if session.lease is None and session.waiting:
+                wanted[session.uav.uav_id] = session
+        if not wanted:
+            return
+        leases = await self.database.run(take_leases, uav_ids=list(wanted), holder=self.options.holder, lease_s=self.options.lease_s)
+        for lease in leases:
+            session = wanted[lease.uav_id]
+            logger.info("serves %s", session.uav.name)
+            waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
+            session.serve(lease)
+            for frame, peer, at_s in waiting:
+                self._receive_known(session, frame, peer, at_s)
+
+    async def _store_loop(self) -> None:
+        while True:
+            for session in self.sessions.values():
+                for text in session.texts:
+                    received_at = datetime.fromtimestamp(text.received_s, UTC)
+                    self.store.texts.append(HeardText(session.uav.uav_id, text.severity, text.text, received_at))
+                session.texts.clear()
+            if not await self.store.flush():
+                await asyncio.sleep(RETRY_S if self.store.is_away else self.options.flush_s)
+
+    def _link_states(self) -> list[LinkState]:
+        """Of vehicles that were heard since they were last asked about."""
+        unsaved = [session for session in self.sessions.values() if session.is_unsaved and session.lease is not None and session.heard_s]
+        for session in unsaved:
+            session.is_unsaved = False
+        return [session.link_state() for session in unsaved]
+
+    def _mark_unsaved(self, states: Sequence[LinkState]) -> None:
+        uav_ids = {state.uav_id for state in states}
+        for session in self.sessions.values():
+            session.is_unsaved |= session.uav.uav_id in uav_ids
+
+    async def _tick(self) -> None:
+        now_s = time.time()
+        for session in self.sessions.values():
+            session.tick(now_s)
+
+    async def _sync_logs(self) -> None:
+        await self.flights.sync(time.time())
+        await self.flights.write_rows(self.database)
+
+    async def _tell_counts(self) -> None:
+        counts = {**self.damages, **self.listeners.damages}
+        if counts:
+            told = ", ".join(f"{cause} {number}" for cause, number in sorted(counts.items()))
+            logger.info("received since the start and dropped: %s", told)
+
+
+def _type_name(number: int) -> str:
+    entry = mavlink.enums["MAV_TYPE"].get(number)
+    return entry.name.removeprefix("MAV_TYPE_").replace("_", " ").lower() if entry else f"type {number}"
+
+
+def _link_id(name: str) -> int:
+    """Of the signatures of this gateway: streams of several ones must not be mixed."""
+    return sum(name.encode()) % 256

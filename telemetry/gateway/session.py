@@ -1,0 +1,261 @@
+"""One vehicle: what of its frames is believed, what they tell, and what goes back to it."""
+
+import logging
+import time
+from collections import Counter, deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.frames import Frame, Message, message_of
+from missions.mavlink.signing import FrameWriter, Refusal, SignatureCheck
+from missions.models import LinkKind
+from telemetry.decoding.boots import Stamp, VehicleTime
+from telemetry.decoding.link_quality import LinkQuality
+from telemetry.decoding.report import Flown, Reporter, is_place, is_vehicle
+from telemetry.decoding.status_texts import StatusText, TextCollector
+from telemetry.gateway import greeting
+from telemetry.gateway.fleet import KnownUav
+from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
+from telemetry.gateway.peers import Peer
+from telemetry.ground_station.ends import AUTOPILOT
+from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.vehicle_state import VehicleState
+from telemetry.services.ingest import NewRecord
+from telemetry.services.links import Lease, LinkState
+
+logger = logging.getLogger(__name__)
+
+MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
+SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
+ASK_AGAIN_S = 5.0  # for positions that do not come
+POSITIONS_MISSING_S = 3.0
+RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
+TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
+SECOND_SENDER = "second-sender"
+Listener = Callable[[Message, float], None]
+
+
+@dataclass
+class Session:
+    """`records` and `texts` are what is to be stored; whoever stores them takes them out. Serves once it has a lease."""
+
+    uav: KnownUav
+    records: deque[NewRecord]
+    link_id: int
+    lease: Lease | None = None
+    peer: Peer | None = None
+    heard_s: float = 0.0
+    losses: Counter[str] = field(default_factory=Counter)
+    texts: list[StatusText] = field(default_factory=list)
+    state: VehicleState = field(init=False)
+    time: VehicleTime = field(default_factory=VehicleTime)
+    listener: Listener | None = None  # hears every message of the autopilot
+    log: Callable[[bytes, int, float], None] | None = None
+    second_sender: tuple[str, float] | None = None  # who, and when last
+    is_unsaved: bool = False
+    waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
+    _check: SignatureCheck | None = field(default=None, repr=False)
+    _writer: FrameWriter = field(init=False, repr=False)
+    _reporter: Reporter = field(default_factory=Reporter)
+    _collector: TextCollector = field(default_factory=TextCollector)
+    _quality: LinkQuality = field(default_factory=LinkQuality)
+    _position_s: float = 0.0
+    _asked_s: float = 0.0
+    _greeted_s: float = 0.0
+    _is_asked_once: bool = False
+
+    def __post_init__(self) -> None:
+        self.state = VehicleState(self.uav.system)
+        self._check = SignatureCheck(self.uav.key) if self.uav.key else None
+        self._writer = FrameWriter(OWN_SYSTEM, OWN_COMPONENT, self.link_id, self.uav.key)
+
+    # Frames in
+
+    def receive(self, frame: Frame, peer: Peer, now_s: float) -> None:
+        """now_s: seconds since 1970, as all times here but those of the vehicle's state and the listener, which are monotonic."""
+        if self.lease is None:
+            if self._could_be_believed(frame, now_s):
+                self.waiting.append((frame, peer, now_s))
+            return
+        refusal = self._refusal(frame, peer, now_s)
+        if refusal is not None:
+            self.losses[refusal] += 1
+            return
+        self.peer, self.heard_s, self.is_unsaved = peer, now_s, True
+        self._quality.count(frame.component, frame.sequence)
+        if self.log is not None:
+            self.log(frame.raw, frame.message_id, now_s)
+        message = message_of(frame)
+        if message is None:
+            self.losses["unreadable"] += 1
+        elif message.get_type() == "STATUSTEXT":
+            self.texts += self._collector.receive(message, now_s)
+        if message is not None and frame.component == AUTOPILOT:
+            self._take(message, now_s)
+
+    def receive_radio(self, frame: Frame, now_s: float) -> None:
+        """Of the radio that the vehicle's frames come through; it cannot sign."""
+        message = message_of(frame)
+        if message is not None:
+            self._quality.receive_radio(message, now_s)
+
+    def serve(self, lease: Lease) -> None:
+        """From now on, with what the gateway before has left. `waiting` is for the caller to receive again."""
+        self.lease = lease
+        self.losses = Counter(lease.losses)
+        if not self.time.boots:
+            self.time = VehicleTime.from_json(lease.boots)
+        if self._check is not None and lease.signing.get("credential") == self.uav.credential_id:
+            self._check.last = dict(lease.signing.get("received", {}))
+            self._writer.last_timestamp = max(self._writer.last_timestamp, lease.signing.get("sent", 0))
+
+    def change(self, uav: KnownUav) -> None:
+        """The UAV's row or key was changed."""
+        if uav.credential_id != self.uav.credential_id:
+            self._check = SignatureCheck(uav.key) if uav.key else None
+            self._writer.key = uav.key
+        self.uav = uav
+
+    def lose(self) -> None:
+        self.lease = None
+        self.waiting.clear()
+
+    # Frames out
+
+    def send(self, messages: list[Message], now_s: float | None = None) -> None:
+        now_s = time.time() if now_s is None else now_s
+        for message in messages:
+            raw = self._writer.frame_of(message, now_s)
+            if self.log is not None:
+                self.log(raw, message.get_msgId(), now_s)
+            if self.peer is not None:
+                self.peer.send(raw)
+        self.is_unsaved |= bool(messages)
+
+    def tick(self, now_s: float) -> None:
+        """Once a second."""
+        self.texts += self._collector.tick(now_s)
+        if self.lease is None or self.peer is None:
+            return
+        self.send([greeting.heartbeat()], now_s)
+        flavour = self.state.flavour
+        is_here = now_s - self.heard_s < SENDER_SILENT_S
+        if flavour is None or not is_here or now_s - self._asked_s < ASK_AGAIN_S:
+            return
+        if now_s - self._position_s > POSITIONS_MISSING_S:
+            self._asked_s = now_s
+            self.send(greeting.requests(self.uav.system, flavour), now_s)
+        if self.state.firmware is None or self.state.home is None:
+            self._asked_s = now_s
+            self.send(greeting.questions(self.uav.system), now_s)
+
+    # What is known
+
+    def link_state(self) -> LinkState:
+        state, clock = self.state, self.time.clock
+        home = state.home
+        return LinkState(
+            uav_id=self.uav.uav_id,
+            heard_at=datetime.fromtimestamp(self.heard_s, UTC),
+            address=self.peer.name[:100] if self.peer else "",
+            autopilot=state.flavour or "",
+            firmware=".".join(map(str, state.firmware)) if state.firmware else "",
+            mode=state.mode[:30],
+            is_armed=state.is_armed,
+            is_in_air=state.is_in_air,
+            home_longitude_deg=home.lon if home else None,
+            home_latitude_deg=home.lat if home else None,
+            home_amsl_m=state.home_amsl_m if home else None,
+            mission_item=state.mission_item,
+            clock_offset_s=clock.offset_s if clock else None,
+            clock_rate=clock.rate if clock else None,
+            boots=self.time.to_json(),
+            signing=self._signing(),
+            losses=dict(self.losses),
+        )
+
+    def _signing(self) -> dict[str, Any]:
+        if self._check is None:
+            return {}
+        return {"credential": self.uav.credential_id, "received": dict(self._check.last), "sent": self._writer.last_timestamp}
+
+    def _refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
+        if self._check is not None and frame.is_signed:
+            refusal = self._check.refusal(frame, now_s)
+            if refusal is Refusal.TOO_OLD:
+                self._greet_late_clock(peer, now_s)
+            return refusal
+        if not self.uav.allows_unsigned:
+            return Refusal.NO_KEY if frame.is_signed else Refusal.UNSIGNED
+        return self._second_sender(peer, now_s)
+
+    def _second_sender(self, peer: Peer, now_s: float) -> str | None:
+        """Without signatures a system id is whose who had it first, until that one is silent."""
+        if self.peer is None or peer == self.peer or now_s - self.heard_s > SENDER_SILENT_S:
+            return None
+        self.second_sender = (peer.name, now_s)
+        return SECOND_SENDER
+
+    def _greet_late_clock(self, peer: Peer, now_s: float) -> None:
+        """Whoever knows the key but not the time sets its clock by a signed frame of ours."""
+        if now_s - self._greeted_s >= 1.0:
+            self._greeted_s = now_s
+            peer.send(self._writer.frame_of(greeting.heartbeat(), now_s))
+
+    def _could_be_believed(self, frame: Frame, now_s: float) -> bool:
+        if self.uav.key is not None and frame.is_signed:
+            return SignatureCheck(self.uav.key).refusal(frame, now_s) in (None, Refusal.TOO_OLD)
+        return self.uav.allows_unsigned
+
+    def _take(self, message: Message, now_s: float) -> None:
+        kind = message.get_type()
+        if kind == "HEARTBEAT" and not is_vehicle(message):
+            return
+        stamp = self._stamp(message, now_s) if kind in TELL_TIME else None
+        self._reporter.receive(message, now_s)
+        monotonic_s = time.monotonic()
+        if _tells_no_place(message):
+            pass
+        else:
+            self.state.receive(message, monotonic_s)
+        if kind == "GLOBAL_POSITION_INT" and stamp is not None:
+            self._position_s = now_s
+            self._record(message, stamp, now_s)
+        if self.listener is not None:
+            self.listener(message, monotonic_s)
+
+    def _stamp(self, message: Message, now_s: float) -> Stamp:
+        unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None
+        return self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
+
+    def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:
+        state = self.state
+        flown = Flown(state.mode, state.is_armed, state.is_in_air, state.mission_item, self._quality.percent(now_s))
+        self.records.append(
+            NewRecord(
+                uav_id=self.uav.uav_id,
+                link=LinkKind.MAVLINK,
+                stream=stamp.stream,
+                sequence=stamp.sequence,
+                measured_at=datetime.fromtimestamp(stamp.measured_s, UTC),
+                received_at=datetime.fromtimestamp(now_s, UTC),
+                measurement=self._reporter.measurement(message, flown, now_s),
+            )
+        )
+
+    @property
+    def flavour(self) -> Flavour | None:
+        return self.state.flavour
+
+
+def _tells_no_place(message: Message) -> bool:
+    """A position or a home that is none; the rest of such a message is no use to the vehicle's state either."""
+    if message.get_type() == "GLOBAL_POSITION_INT":
+        return not is_place(message.lat, message.lon)
+    if message.get_type() == "HOME_POSITION":
+        return not is_place(message.latitude, message.longitude)
+    return False

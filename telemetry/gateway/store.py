@@ -1,0 +1,103 @@
+"""What was heard, on its way into the database: nothing is lost while that is away, as long as it fits."""
+
+import logging
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.services.heard_by_gateway import Heard, HeardText, store_heard
+from telemetry.services.ingest import NewRecord
+from telemetry.services.links import LinkState
+from telemetry.services.sightings import Sighting
+
+logger = logging.getLogger(__name__)
+
+RECORDS_AT_ONCE = 2_000
+MOST_TEXTS = 10_000
+
+
+@dataclass
+class Store:
+    """`links` says at each store what is known of the vehicles by then; `unsaved` is told what of it was not stored."""
+
+    database: DatabaseThread
+    holder: str
+    most_records: int
+    links: Callable[[], list[LinkState]]
+    unsaved: Callable[[Sequence[LinkState]], None]
+    records: deque[NewRecord] = field(default_factory=deque)
+    texts: deque[HeardText] = field(default_factory=lambda: deque(maxlen=MOST_TEXTS))
+    sightings: dict[int, Sighting] = field(default_factory=dict)
+    stored: int = 0
+    duplicates: int = 0
+    lost: int = 0  # for want of room, or because they could not be stored at all
+    is_away: bool = False
+
+    async def flush(self) -> bool:
+        """Stores what there is, at most so much at once. Returns whether more waits; while the database is away, False."""
+        self._drop_overflow()
+        records = [self.records.popleft() for _ in range(min(len(self.records), RECORDS_AT_ONCE))]
+        texts, self.texts = self.texts, deque(maxlen=MOST_TEXTS)
+        sightings, self.sightings = self.sightings, {}
+        heard = Heard(records, self.links(), list(texts), list(sightings.values()))
+        if not heard:
+            return False
+        is_stored = False
+        try:
+            await self._store(heard)
+            is_stored = True
+        except DatabaseAway as error:
+            self._tell(is_away=True, why=str(error))
+            return False
+        finally:
+            if not is_stored:  # also when the loop is cancelled: what is stored after all is stored once
+                self.records.extendleft(reversed(records))
+                self.texts.extendleft(reversed(texts))
+                self.sightings = sightings | self.sightings
+                self.unsaved(heard.links)
+        self._tell(is_away=False)
+        return bool(self.records)
+
+    async def _store(self, heard: Heard) -> None:
+        try:
+            counted = await self.database.run(store_heard, heard=heard, holder=self.holder)
+        except DatabaseAway:
+            raise
+        except Exception:
+            await self._store_what_can_be(heard)
+        else:
+            self.stored += counted.stored
+            self.duplicates += counted.duplicates
+
+    async def _store_what_can_be(self, heard: Heard) -> None:
+        """One value that the database refuses must not keep out the rest."""
+        for part in _parts(heard):
+            if len(part.records) <= 1 and part == heard:
+                logger.exception("this could not be stored: %s", heard.records or heard)
+                self.lost += len(heard.records)
+            else:
+                await self._store(part)
+
+    def _drop_overflow(self) -> None:
+        for _ in range(len(self.records) - self.most_records):
+            self.records.popleft()
+            self.lost += 1
+
+    def _tell(self, *, is_away: bool, why: str = "") -> None:
+        if is_away != self.is_away:
+            self.is_away = is_away
+            logger.warning("the database is %s; %s records wait. %s", "away" if is_away else "back", len(self.records), why)
+
+
+def _parts(heard: Heard) -> Sequence[Heard]:
+    """Records by halves; apart from them links, texts and sightings one by one."""
+    if len(heard.records) > 1 or (heard.records and (heard.links or heard.texts or heard.sightings)):
+        middle = max(len(heard.records) // 2, 1)
+        halves = [Heard(records) for records in (heard.records[:middle], heard.records[middle:]) if records]
+        rest = replace(heard, records=())
+        return [*halves, rest] if rest else halves
+    if heard.records:
+        return [heard]
+    kinds = ("links", "texts", "sightings")
+    return [Heard(**{kind: [entry]}) for kind in kinds for entry in getattr(heard, kind)]

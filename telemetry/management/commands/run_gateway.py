@@ -1,0 +1,37 @@
+"""Runs a MAVLink gateway until it is told to stop (SIGTERM)."""
+
+import asyncio
+from argparse import ArgumentParser
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError
+
+from telemetry.gateway.options import WrongAddress, options_of_settings
+from telemetry.gateway.process import Gateway
+
+
+class Command(BaseCommand):
+    help = (
+        "Run a MAVLink gateway: vehicles talk to it by UDP and TCP, it stores what they report and brings them their commands. "
+        "Any number can run at once; each UAV is served by one of them."
+    )
+
+    def add_arguments(self, parser: ArgumentParser) -> None:
+        parser.add_argument("--udp", metavar="HOST:PORT,…", help="where to listen; empty for nowhere (SPANWISE_GATEWAY_UDP)")
+        parser.add_argument("--tcp", metavar="HOST:PORT,…", help="the same for connections (SPANWISE_GATEWAY_TCP)")
+        parser.add_argument("--name", help="the same at each start, and no other gateway's (SPANWISE_GATEWAY_NAME)")
+
+    def handle(self, *_: Any, udp: str | None, tcp: str | None, name: str | None, **__: Any) -> None:
+        try:
+            options = options_of_settings(udp=udp, tcp=tcp, name=name)
+        except WrongAddress as error:
+            raise CommandError(str(error)) from error
+        try:
+            asyncio.run(_run(Gateway(options), self.stdout.write))
+        except OSError as error:
+            raise CommandError(f"The gateway cannot listen: {error}") from error
+
+
+async def _run(gateway: Gateway, say: Any) -> None:
+    gateway.stop_on_signals()
+    await gateway.run(on_listening=lambda names: say(f"listening on {', '.join(names)}"))

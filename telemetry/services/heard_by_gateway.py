@@ -1,0 +1,51 @@
+"""What a gateway has heard goes into the database at once: records, what is known of links, texts. All of it or none.
+
+The times of signatures are stored with the records of the frames that bore them: a frame whose record was lost with a gateway may come
+again, one whose record was stored may not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from django.db import transaction
+
+from missions.models import Uav
+from telemetry.models import VehicleText
+from telemetry.services.ingest import NewRecord, StoredCount, store_records
+from telemetry.services.links import LinkState, save_links
+from telemetry.services.sightings import Sighting, note_unknown_vehicles
+
+
+@dataclass(frozen=True)
+class HeardText:
+    uav_id: int
+    severity: int
+    text: str
+    received_at: datetime
+
+
+@dataclass(frozen=True)
+class Heard:
+    records: Sequence[NewRecord] = ()
+    links: Sequence[LinkState] = ()
+    texts: Sequence[HeardText] = ()
+    sightings: Sequence[Sighting] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.records or self.links or self.texts or self.sightings)
+
+
+@transaction.atomic
+def store_heard(*, heard: Heard, holder: str) -> StoredCount:
+    stored = store_records(heard.records) if heard.records else StoredCount()
+    save_links(states=heard.links, holder=holder)
+    if heard.texts:
+        there = set(Uav.objects.filter(pk__in={text.uav_id for text in heard.texts}).values_list("pk", flat=True))
+        VehicleText.objects.bulk_create(
+            VehicleText(uav_id=text.uav_id, severity=text.severity, text=text.text, received_at=text.received_at)
+            for text in heard.texts
+            if text.uav_id in there
+        )
+    note_unknown_vehicles(sightings=heard.sightings)
+    return stored

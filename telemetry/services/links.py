@@ -1,0 +1,121 @@
+"""Which gateway serves which UAV, and what it knows of the vehicle.
+
+A gateway holds a UAV by a lease. Another may take it when the lease is out, when the holder has not heard the vehicle for a while, or when
+it bears the same name: it is the same gateway, started again.
+"""
+
+import json
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, fields
+from datetime import datetime
+from typing import Any
+
+from django.db import connection
+
+UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
+
+
+@dataclass(frozen=True)
+class Lease:
+    """What the gateway before has left: `signing`, `boots` and `losses` as in UavLink."""
+
+    uav_id: int
+    signing: dict[str, Any]
+    boots: list[dict[str, Any]]
+    losses: dict[str, int]
+    loaded_sha256: str
+
+
+@dataclass(frozen=True)
+class LinkState:
+    """What a gateway knows of a vehicle; the fields are UavLink's."""
+
+    uav_id: int
+    heard_at: datetime
+    address: str
+    autopilot: str
+    firmware: str
+    mode: str
+    is_armed: bool | None
+    is_in_air: bool | None
+    home_longitude_deg: float | None
+    home_latitude_deg: float | None
+    home_amsl_m: float | None
+    mission_item: int | None
+    clock_offset_s: float | None
+    clock_rate: float | None
+    boots: list[dict[str, Any]] = field(default_factory=list)
+    signing: dict[str, Any] = field(default_factory=dict)
+    losses: dict[str, int] = field(default_factory=dict)
+
+
+TAKE = """
+INSERT INTO telemetry_uavlink
+    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses)
+SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}'
+FROM missions_uav uav WHERE uav.id = ANY(%(uav_ids)s) ORDER BY uav.id
+ON CONFLICT (uav_id) DO UPDATE SET holder = excluded.holder, lease_expires_at = excluded.lease_expires_at
+WHERE telemetry_uavlink.holder IN ('', excluded.holder)
+    OR split_part(telemetry_uavlink.holder, '/', 1) = split_part(excluded.holder, '/', 1)
+    OR telemetry_uavlink.lease_expires_at IS NULL OR telemetry_uavlink.lease_expires_at < now()
+    OR telemetry_uavlink.heard_at < now() - make_interval(secs => %(unheard_s)s)
+RETURNING uav_id, signing, boots, losses, loaded_sha256
+"""
+
+
+def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> list[Lease]:
+    """Those of the UAVs that the gateway may serve from now on. holder: "name/run"."""
+    values = {"uav_ids": sorted(uav_ids), "holder": holder, "lease_s": lease_s, "unheard_s": UNHEARD_S}
+    with connection.cursor() as cursor:
+        cursor.execute(TAKE, values)
+        rows = cursor.fetchall()
+    return [Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256) for uav_id, signing, boots, losses, sha256 in rows]
+
+
+def renew_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> set[int]:
+    """Those that are still held."""
+    with connection.cursor() as cursor:
+        cursor.execute(
+            "UPDATE telemetry_uavlink SET lease_expires_at = now() + make_interval(secs => %s) "
+            "WHERE uav_id = ANY(%s) AND holder = %s RETURNING uav_id",
+            [lease_s, sorted(uav_ids), holder],
+        )
+        return {uav_id for (uav_id,) in cursor.fetchall()}
+
+
+def release_leases(*, holder: str) -> None:
+    with connection.cursor() as cursor:
+        cursor.execute("UPDATE telemetry_uavlink SET holder = '', lease_expires_at = NULL WHERE holder = %s", [holder])
+
+
+_TYPES = {
+    "uav_id": "int8", "heard_at": "timestamptz", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4",
+    "boots": "jsonb", "signing": "jsonb", "losses": "jsonb",
+    "address": "text", "autopilot": "text", "firmware": "text", "mode": "text",
+}  # fmt: skip
+_COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}
+_SAVE = f"""
+UPDATE telemetry_uavlink link
+SET {", ".join(f"{name} = heard.{name}" for name in _COLUMNS if name != "uav_id" and not name.startswith("home_l"))},
+    home = ST_SetSRID(ST_MakePoint(home_longitude_deg, home_latitude_deg), 4326)
+FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS heard({", ".join(_COLUMNS)})
+WHERE link.uav_id = heard.uav_id AND link.holder = %s
+"""  # noqa: S608 (names of columns, all from here)
+
+
+def save_links(*, states: Sequence[LinkState], holder: str) -> None:
+    """Only of UAVs that the gateway still holds."""
+    if not states:
+        return
+    columns = [[_stored(getattr(state, name), kind) for state in states] for name, kind in _COLUMNS.items()]
+    with connection.cursor() as cursor:
+        cursor.execute(_SAVE, [*columns, holder])
+
+
+def _stored(value: Any, kind: str) -> Any:
+    return json.dumps(value) if kind == "jsonb" else value
+
+
+def _json(value: Any) -> Any:
+    """Django's connection leaves jsonb as text."""
+    return json.loads(value) if isinstance(value, str) else value

@@ -1,0 +1,103 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import * as flying from "../../static/js/mission/flying.js";
+
+const route = (uav, more = {}) => ({ uav: `UAV ${uav}`, uav_id: uav, geometry: {}, length_m: 1000, ...more });
+const mission = (state, more = {}) => ({
+  state, is_stale: false, stale_causes: [], plan: { routes: [route(7), route(8)] },
+  approval: { id: "a", approved_by: "opal", approved_at: "2027-05-04T09:00:00Z", revoke_requested_at: null, revoke_reason: "", flights: [{ uav: 0, flights: 1, flown: 0 }, { uav: 1, flights: 2, flown: 0 }] },
+  ...more,
+});
+const command = (kind, state, more = {}) => ({
+  id: `${kind}-${state}`, kind, state, uav: { id: 7, name: "Kite" }, approval: "a", parameters: kind === "upload-mission" || kind === "start" ? { flight: 1 } : {}, progress: null, outcome: "", outcome_code: "",
+  created_at: "2027-05-04T09:00:00Z", sent_at: null, acknowledged_at: null, finished_at: null, ...more,
+});
+const words = (...commands) => flying.boardWords(flying.boardOf(commands, 7)).words;
+
+test("what is approved and after that is frozen", () => {
+  const frozen = ["draft", "planned", "approved", "dispatched", "active", "completed", "aborted", "failed"].filter((state) => flying.isFrozen({ state }));
+  assert.deepEqual(frozen, ["approved", "dispatched", "active", "completed", "aborted", "failed"]);
+});
+
+test("UAVs that fly no route are not told anything", () => {
+  const [first, second] = flying.flyersOf(mission("approved", { plan: { routes: [route(7, { geometry: null }), route(8)] } }));
+  assert.deepEqual([first.place, first.letter, first.uav, first.flights], [1, "B", 8, 2]);
+  assert.equal(second, undefined);
+});
+
+test("what is on board is what was said last of it", () => {
+  assert.equal(words(), "Not sent yet");
+  assert.equal(words(command("hold", "applied"), command("upload-mission", "queued")), "Waiting for the UAV");
+  assert.equal(words(command("upload-mission", "sent", { progress: { done: 12, total: 40 } })), "Sending, 12 of 40 items");
+  assert.equal(words(command("upload-mission", "applied"), command("upload-mission", "failed")), "On the UAV: what was approved");
+  assert.equal(words(command("upload-mission", "applied", { parameters: { flight: 2 } })), "On the UAV: flight 2, what was approved");
+  assert.equal(words(command("upload-mission", "expired", { outcome: "It could not be delivered in time." })), "Not on the UAV: It could not be delivered in time.");
+  assert.equal(words(command("clear-mission", "applied"), command("upload-mission", "applied")), "Taken off the UAV");
+  assert.equal(words(command("clear-mission", "failed", { outcome: "It flies." })), "Still on the UAV: It flies.");
+});
+
+test("a mixed mission is said loudest", () => {
+  const mixed = command("upload-mission", "failed", { outcome_code: "mixed", outcome: "items 0 to 3 of the new one, the rest of the old" });
+  assert.equal(words(mixed), "Mixed mission on the UAV – items 0 to 3 of the new one, the rest of the old");
+  assert.equal(flying.boardWords(mixed).level, "critical");
+  assert.equal(flying.isMixed(command("upload-mission", "failed", { outcome_code: "denied" })), false);
+});
+
+test("commands to other UAVs say nothing of this one", () => {
+  assert.equal(flying.boardOf([command("upload-mission", "applied", { uav: { id: 8 } })], 7), null);
+  assert.equal(flying.flightOf([command("hold", "applied", { uav: { id: 8 } })], 7), null);
+});
+
+test("what became of a command is said with its time and its reason", () => {
+  const failed = command("hold", "failed", { finished_at: "2027-05-04T09:00:03Z", outcome: "The UAV refused it." });
+  assert.match(flying.commandWords(failed).words, /^Hold: failed \d\d:\d\d – The UAV refused it\.$/);
+  assert.equal(flying.commandWords(failed).level, "critical");
+  const times = flying.timesOf(command("hold", "applied", { sent_at: "b", finished_at: "c", created_at: "a" }), (at) => at);
+  assert.equal(times, "given a, sent b, done c");
+});
+
+test("a UAV is started once it has what was approved, and once only", () => {
+  const [kite] = flying.flyersOf(mission("dispatched"));
+  const loaded = command("upload-mission", "applied");
+  assert.match(flying.whyNoStart(mission("dispatched"), kite, []), /does not have its mission yet/);
+  assert.equal(flying.whyNoStart(mission("dispatched"), kite, [loaded]), "");
+  assert.equal(flying.whyNoStart(mission("active"), kite, [command("start", "failed"), loaded]), "");
+  assert.match(flying.whyNoStart(mission("active"), kite, [command("start", "applied"), loaded]), /is flying/);
+  assert.match(flying.whyNoStart(mission("active"), { ...kite, flown: 1 }, [loaded]), /has flown this flight/);
+  const revoked = mission("dispatched");
+  revoked.approval.revoke_requested_at = "2027-05-04T09:00:00Z";
+  assert.match(flying.whyNoStart(revoked, kite, [loaded]), /being taken back/);
+});
+
+test("flights are sent one after the other", () => {
+  const kite = { uav: 7, flights: 2, flown: 0 };
+  assert.equal(flying.flightToSend(kite, []), 1);
+  assert.equal(flying.flightToSend(kite, [command("upload-mission", "sent")]), null);
+  assert.equal(flying.flightToSend(kite, [command("upload-mission", "failed")]), 1);
+  assert.equal(flying.flightToSend({ ...kite, flown: 1 }, [command("upload-mission", "applied")]), 2);
+  assert.equal(flying.flightToSend({ ...kite, flown: 2 }, []), null);
+});
+
+test("a mission has the buttons of its stage", () => {
+  assert.deepEqual(flying.stageActs(mission("approved"), []), { send: true, revoke: true, abort: false });
+  const all = [command("upload-mission", "applied"), command("upload-mission", "queued", { uav: { id: 8 } })];
+  assert.deepEqual(flying.stageActs(mission("dispatched"), all), { send: false, revoke: true, abort: true });
+  assert.equal(flying.stageActs(mission("dispatched"), []).send, true);
+  assert.deepEqual(flying.stageActs(mission("active"), all), { send: false, revoke: false, abort: true });
+  assert.deepEqual(flying.stageActs(mission("aborted"), all), { send: false, revoke: false, abort: false });
+});
+
+test("a zone in the way keeps an approved mission from being sent, a change elsewhere does not", () => {
+  const touched = mission("approved", { is_stale: true, stale_causes: [{ what: "zone" }] });
+  assert.match(flying.stageActs(touched, []).send, /changed since it was approved/);
+  assert.equal(flying.stageActs(mission("approved", { is_stale: true, stale_causes: [{ what: "elsewhere" }] }), []).send, true);
+});
+
+test("the stage is said in a sentence", () => {
+  assert.match(flying.stageWords(mission("approved")), /^Approved by opal \d\d:\d\d\. Nothing of it can be changed until that is revoked\.$/);
+  assert.match(flying.stageWords(mission("active")), /It is being flown/);
+  const waiting = mission("dispatched");
+  waiting.approval = { ...waiting.approval, revoke_requested_at: "2027-05-04T09:00:00Z", revoke_reason: "Wrong day" };
+  assert.match(flying.stageWords(waiting), /being taken back: Wrong day\./);
+});

@@ -1,0 +1,1 @@
+"""Flown tracks as files."""

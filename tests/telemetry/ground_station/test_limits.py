@@ -1,0 +1,81 @@
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat, path_length_m
+from missions.mavlink.content import FlightLoad, MissionItem
+from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.limits import FLOWN, count_warnings, leg_warnings, too_many, with_points_between
+from tests.telemetry.vehicles.loads import load, mission, polygon
+
+START = LonLat(9.8, 55.4)
+
+
+def legs(*east_m: float) -> FlightLoad:
+    """A take-off and waypoints eastwards, 60 m up, with a speed in between, and a landing at the last."""
+    degree_m = path_length_m(np.array([(9.8, 55.4), (9.801, 55.4)])) * 1_000
+    places = [round((9.8 + metres / degree_m) * 1e7) for metres in east_m]
+
+    def item(command: int, longitude_e7: int, altitude_m: float = 60.0) -> MissionItem:
+        return MissionItem(
+            command, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, (0.0, 0.0, 0.0, math.nan), longitude_e7, 554_000_000, altitude_m
+        )
+
+    speed = MissionItem(mavlink.MAV_CMD_DO_CHANGE_SPEED, mavlink.MAV_FRAME_MISSION, (1.0, 5.0, -1.0, 0.0))
+    flown = [item(mavlink.MAV_CMD_NAV_WAYPOINT, place) for place in places[1:]]
+    return FlightLoad((item(mavlink.MAV_CMD_NAV_TAKEOFF, places[0]), speed, *flown, item(mavlink.MAV_CMD_NAV_LAND, places[-1], 0.0)))
+
+
+def test_legs_and_a_start_beyond_px4s_limits_are_told():
+    warnings = leg_warnings(legs(0, 500, 3_500), {"MIS_DIST_1WP": 900.0, "MIS_DIST_WPS": 900.0}, LonLat(9.82, 55.4))
+    assert [(warning.code, warning.item) for warning in warnings] == [("far-first-waypoint", 0), ("long-leg", 3)]
+    assert "3000 m" in warnings[1].words
+
+
+@pytest.mark.parametrize("parameters", [{}, {"MIS_DIST_1WP": 0.0, "MIS_DIST_WPS": -1.0}])
+def test_vehicle_without_limits_is_not_warned_of(parameters: dict[str, float]):
+    assert leg_warnings(legs(0, 5_000), parameters, START) == ()
+
+
+@given(most_m=st.floats(50, 5_000), length_m=st.floats(1, 8_000))
+def test_points_put_in_keep_every_leg_within_the_limit(most_m: float, length_m: float):
+    whole = legs(0, 10, 10 + length_m)
+    divided = with_points_between(whole, most_m)
+    flown = [item for item in divided.mission if item.command in FLOWN]
+    lengths = [
+        path_length_m(np.array([(left.longitude_e7 / 1e7, left.latitude_e7 / 1e7), (right.longitude_e7 / 1e7, right.latitude_e7 / 1e7)]))
+        for left, right in pairwise(flown)
+    ]
+    assert max(lengths) <= most_m + 0.02
+    assert [item for item in divided.mission if item in whole.mission] == list(whole.mission)
+
+
+def test_load_with_points_put_in_has_a_hash_of_its_own_and_always_the_same():
+    whole = legs(0, 3_000)
+    assert with_points_between(whole, 900.0).content_sha256 == with_points_between(whole, 900.0).content_sha256
+    assert with_points_between(whole, 900.0).content_sha256 != whole.content_sha256
+    assert with_points_between(whole, 9_000.0) == whole
+
+
+def test_points_put_in_before_a_landing_stay_up():
+    mission = with_points_between(FlightLoad((*legs(0, 100).mission[:3], legs(0, 3_000).mission[-1])), 900.0).mission
+    assert {item.altitude_m for item in mission[:-1] if item.command in FLOWN} == {60.0}
+
+
+def test_list_that_is_too_long_for_its_flavour_is_told():
+    assert too_many(load(649), Flavour.ARDUPILOT) is None
+    told = too_many(load(650), Flavour.ARDUPILOT)
+    assert told is not None
+    assert told.code == "too-many-items"
+    assert too_many(FlightLoad(mission(650)), Flavour.PX4) is None
+
+
+def test_list_that_is_too_long_for_most_boards_is_warned_of():
+    whole = load(501, fence=polygon(0, 65))
+    assert [warning.words.split()[1] for warning in count_warnings(whole, Flavour.PX4)] == ["mission", "fence"]
+    assert count_warnings(load(500, fence=polygon(0, 64)), Flavour.PX4) == ()

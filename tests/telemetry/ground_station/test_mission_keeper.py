@@ -1,0 +1,274 @@
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.content import FlightLoad, MissionType
+from telemetry.ground_station.compare import differences
+from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
+from telemetry.ground_station.mission_keeper import MissionKeeper
+from telemetry.ground_station.mix import Found
+from telemetry.ground_station.rules import TransferRules
+from telemetry.ground_station.vehicle_state import VehicleState
+from telemetry.ground_station.wire import held_list
+from tests.telemetry.vehicles.ardupilot import AUTO, BRAKE, ArduPilot
+from tests.telemetry.vehicles.channel import Channel, Link
+from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon, rally
+from tests.telemetry.vehicles.px4 import HOLD, MISSION
+from tests.telemetry.vehicles.vehicle import Vehicle
+
+OLD = load(9, east=40_000, fence=polygon(9_000))
+NEW = load(12, fence=polygon(0, 5), rally=rally())
+WRITES = {"MISSION_COUNT", "MISSION_ITEM_INT", "MISSION_CLEAR_ALL"}
+
+
+def holding(flavour: str, load: FlightLoad) -> Vehicle:
+    vehicle = FLAVOURS[flavour]()
+    for kind in MissionType:
+        vehicle.lists[kind] += load.of(kind)
+    return vehicle
+
+
+def keeper_for(vehicle: Vehicle, new: FlightLoad = NEW, *, known_loads: tuple[FlightLoad, ...] = (OLD,)) -> MissionKeeper:
+    return MissionKeeper(new, known(vehicle), ENDS, TransferRules(), known=known_loads)
+
+
+def bring(vehicle: Vehicle, new: FlightLoad = NEW) -> tuple[KeeperOutcome, Channel]:
+    channel = Channel(keeper_for(vehicle, new), vehicle)
+    return channel.run(), channel
+
+
+def sent(channel: Channel) -> list[str]:
+    return [message.get_type() for message in channel.to_vehicle]
+
+
+def holds(vehicle: Vehicle, wanted: FlightLoad) -> bool:
+    flavour = Flavour(type(vehicle).__name__.lower())
+    return not any(differences(wanted.of(kind), held_list(tuple(vehicle.held(kind)), kind, flavour), flavour) for kind in MissionType)
+
+
+def holds_no_mission(vehicle: Vehicle) -> bool:
+    return len(vehicle.lists[MissionType.MISSION]) == (1 if isinstance(vehicle, ArduPilot) else 0)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_vehicle_is_ready_by_the_hash_of_what_it_holds(flavour: str):
+    vehicle = holding(flavour, OLD)
+    outcome, _ = bring(vehicle)
+    assert (outcome.state, outcome.sha256) == (KeeperState.READY, NEW.content_sha256)
+    assert holds(vehicle, NEW)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_fence_is_sent_before_the_mission_and_rally_points_last(flavour: str):
+    _, channel = bring(holding(flavour, OLD))
+    order = [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"]
+    assert order == [MissionType.FENCE, MissionType.MISSION, MissionType.RALLY]
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_nothing_is_sent_to_a_vehicle_that_holds_it_already(flavour: str):
+    outcome, channel = bring(holding(flavour, NEW))
+    assert outcome.state is KeeperState.READY
+    assert not WRITES & set(sent(channel))
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_empty_load_takes_everything_off(flavour: str):
+    vehicle = holding(flavour, OLD)
+    outcome, _ = bring(vehicle, FlightLoad(()))
+    assert outcome.state is KeeperState.READY
+    assert holds(vehicle, FlightLoad(()))
+
+
+def test_vehicle_without_fence_gets_a_mission_without_one():
+    vehicle = ArduPilot(has_fence=False)
+    outcome, channel = bring(vehicle, load(12))
+    assert outcome.state is KeeperState.READY
+    assert {message.mission_type for message in channel.to_vehicle if message.get_type() in WRITES} == {MissionType.MISSION}
+
+
+def test_vehicle_without_fence_is_not_ready_for_a_mission_with_one():
+    vehicle = ArduPilot(has_fence=False)
+    outcome, channel = bring(vehicle, load(12, fence=polygon(0)))
+    assert (outcome.state, outcome.code) == (KeeperState.INTACT, "unsupported")
+    assert MissionType.MISSION not in {message.mission_type for message in channel.to_vehicle if message.get_type() in WRITES}
+
+
+def test_other_autopilot_is_refused():
+    state = VehicleState(7)
+    state.flavour = Flavour.OTHER
+    keeper = MissionKeeper(NEW, state, ENDS, TransferRules())
+    assert keeper.start(0.0) == []
+    assert keeper.outcome is not None
+    assert (keeper.outcome.state, keeper.outcome.code) == (KeeperState.INTACT, "autopilot")
+
+
+def test_vehicle_that_has_not_spoken_is_refused():
+    keeper = MissionKeeper(NEW, VehicleState(7), ENDS, TransferRules())
+    keeper.start(0.0)
+    assert keeper.outcome is not None
+    assert keeper.outcome.code == "not-heard"
+
+
+@pytest.mark.parametrize(("flavour", "mode"), [("ardupilot", AUTO), ("px4", MISSION << 24 | 4 << 16)])
+def test_nothing_is_sent_to_a_vehicle_in_its_mission(flavour: str, mode: int):
+    vehicle = holding(flavour, OLD)
+    vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, mode
+    outcome, channel = bring(vehicle)
+    assert (outcome.code, channel.to_vehicle) == ("not-held", [])
+
+
+@pytest.mark.parametrize(("flavour", "mode"), [("ardupilot", BRAKE), ("px4", HOLD << 24 | 4 << 16)])
+def test_held_vehicle_in_the_air_gets_its_mission(flavour: str, mode: int):
+    vehicle = holding(flavour, OLD)
+    vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, mode
+    assert bring(vehicle)[0].state is KeeperState.READY
+
+
+def test_list_that_is_too_long_is_not_begun():
+    vehicle = holding("ardupilot", OLD)
+    outcome, channel = bring(vehicle, load(650))
+    assert (outcome.code, channel.to_vehicle) == ("too-many-items", [])
+
+
+def test_count_that_the_vehicle_refuses_leaves_the_old_mission():
+    vehicle = holding("px4", OLD)
+    outcome, _ = bring(vehicle, load(12, fence=polygon(0, 70)))
+    assert (outcome.state, outcome.code) == (KeeperState.INTACT, "no-space")
+    assert holds(vehicle, OLD)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_silent_vehicle_is_not_blamed_for_a_mix(flavour: str):
+    vehicle = holding(flavour, OLD)
+    vehicle.is_alive = False
+    state = known(vehicle)
+    outcome = Channel(MissionKeeper(NEW, state, ENDS, TransferRules()), vehicle).run()
+    assert (outcome.state, outcome.code, outcome.is_critical) == (KeeperState.INTACT, "silent", False)
+
+
+def test_mix_that_cannot_be_taken_off_is_critical_and_named_by_items():
+    """ArduPilot refuses item 4, and then, switched to AUTO by its pilot, to clear the list."""
+    vehicle = holding("ardupilot", OLD)
+    assert isinstance(vehicle, ArduPilot)
+    vehicle.refuses = {4: mavlink.MAV_MISSION_INVALID_PARAM7}
+    keeper = keeper_for(vehicle, load(12))
+    vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, AUTO
+    outcome = Channel(keeper, vehicle).run()
+    assert (outcome.state, outcome.code, outcome.is_critical, outcome.sha256) == (KeeperState.MIXED, "invalid-param7", True, "")
+    assert "0-2 are new" in outcome.words and "3-8 are of the list before" in outcome.words
+    assert outcome.differences[0].item == 3
+    assert [mix.kind for mix in outcome.mixes] == [MissionType.MISSION]
+
+
+def test_mix_is_told_while_it_is_being_put_right():
+    vehicle = holding("ardupilot", OLD)
+    assert isinstance(vehicle, ArduPilot)
+    vehicle.refuses = {4: mavlink.MAV_MISSION_UNSUPPORTED}
+    keeper = keeper_for(vehicle, load(12))
+    channel = Channel(keeper, vehicle)
+    told = []
+
+    class Watch:
+        def receive(self, message: object, now_s: float) -> None:
+            told.append(bool(keeper.mixes) and keeper.outcome is None and "MISSION_CLEAR_ALL" in sent(channel))
+
+    channel.listeners.append(Watch())
+    assert channel.run().state is KeeperState.CLEARED
+    assert any(told)
+
+
+def test_list_that_nobody_approved_is_seen_from_the_beginning():
+    vehicle = holding("ardupilot", load(9, east=99_999))
+    keeper = keeper_for(vehicle)
+    Channel(keeper, vehicle).run()
+    assert keeper.found_before[MissionType.MISSION] is Found.FOREIGN
+
+
+def test_mix_of_an_earlier_ground_station_is_named_from_the_beginning():
+    vehicle = holding("ardupilot", OLD)
+    vehicle.lists[MissionType.MISSION][1:5] = NEW.mission[:4]
+    keeper = keeper_for(vehicle)
+    outcome = Channel(keeper, vehicle).run()
+    assert keeper.found_before[MissionType.MISSION] is Found.MIXED
+    assert (outcome.state, len(outcome.mixes)) == (KeeperState.READY, 1)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_cancelling_at_any_message_leaves_the_old_mission_or_none(flavour: str):
+    vehicle = holding(flavour, OLD)
+    whole = Channel(keeper_for(vehicle), vehicle)
+    whole.run()
+    for number in range(len(whole.to_vehicle)):
+        vehicle = holding(flavour, OLD)
+        keeper = keeper_for(vehicle)
+        channel = Channel(keeper, vehicle, ground_dies_after=number)
+        channel.run()
+        channel.ground_dies_after = None
+        channel.send(keeper.cancel(channel.now_s))
+        outcome = channel.go_on()
+        if outcome.state is KeeperState.READY:
+            assert holds(vehicle, NEW)
+            continue
+        assert outcome.code == "cancelled"
+        assert outcome.state in (KeeperState.INTACT, KeeperState.CLEARED)
+        assert holds(vehicle, OLD) if outcome.state is KeeperState.INTACT else holds_no_mission(vehicle)
+
+
+def test_cancelling_after_the_end_changes_nothing():
+    vehicle = holding("px4", OLD)
+    keeper = keeper_for(vehicle)
+    outcome = Channel(keeper, vehicle).run()
+    assert keeper.cancel(100.0) == []
+    assert keeper.outcome is outcome
+
+
+def test_progress_counts_the_items_that_the_vehicle_has():
+    vehicle = holding("px4", OLD)
+    keeper = keeper_for(vehicle)
+    seen = []
+
+    class Watch:
+        def receive(self, message: object, now_s: float) -> None:
+            progress = keeper.progress
+            if progress.kind is MissionType.MISSION and progress.stage == "sending":
+                seen.append(progress.done)
+                assert progress.total == 12
+
+    Channel(keeper, vehicle, listeners=[Watch()]).run()
+    assert seen == sorted(seen)
+    assert set(seen) == set(range(12))
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_reading_back_that_shows_something_else_twice_is_sent_again(flavour: str):
+    """A memory that loses a bit once."""
+    vehicle = holding(flavour, OLD)
+    keeper = keeper_for(vehicle)
+
+    class Fault:
+        is_done = False
+
+        def receive(self, message: object, now_s: float) -> None:
+            if keeper.progress.stage == "reading" and len(vehicle.lists[MissionType.MISSION]) > 11 and not self.is_done:
+                self.is_done = True
+                del vehicle.lists[MissionType.MISSION][5]
+
+    outcome = Channel(keeper, vehicle, listeners=[Fault()]).run()
+    assert outcome.state is KeeperState.READY
+    assert len(outcome.mixes) == 1
+    assert holds(vehicle, NEW)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_two_ground_stations_after_one_another_do_not_confuse_each_other(flavour: str):
+    """The second begins while messages of the first are still under way, both ways."""
+    for cut in range(5, 60, 5):
+        vehicle = holding(flavour, OLD)
+        first = Channel(
+            keeper_for(vehicle, load(30, east=77)), vehicle, Link(duplicates=0.3, reordered=0.3), seed=cut, ground_dies_after=cut
+        )
+        first.run()
+        first.ground, first.ground_dies_after = keeper_for(vehicle), None
+        assert first.run().state is KeeperState.READY
+        assert holds(vehicle, NEW)
