@@ -1,3 +1,5 @@
+"""Approved routes as mission items."""
+
 import json
 import math
 

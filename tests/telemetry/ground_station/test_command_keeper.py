@@ -1,3 +1,5 @@
+"""Orders to vehicles of both flavours, and their effect."""
+
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -1,3 +1,5 @@
+"""Reading back what a vehicle holds."""
+
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 

@@ -1,3 +1,5 @@
+"""Bringing a flight's load onto a vehicle, and what is done after a failure."""
+
 from typing import Any
 
 import pytest

@@ -1,3 +1,5 @@
+"""Parameters that are read from a vehicle."""
+
 import struct
 from typing import Any
 
