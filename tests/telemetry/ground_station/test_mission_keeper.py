@@ -219,6 +219,20 @@ def test_cancelling_at_any_message_leaves_the_old_mission_or_none(flavour: str):
         assert holds(vehicle, OLD) if outcome.state is KeeperState.INTACT else holds_no_mission(vehicle)
 
 
+def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
+    """ArduPilot knows no cancelling, and asks on for 8 s."""
+    vehicle = holding("ardupilot", OLD)
+    keeper = keeper_for(vehicle, load(12, fence=OLD.fence))
+    channel = Channel(keeper, vehicle, ground_dies_after=26)
+    channel.run()
+    assert keeper.progress.stage == "sending"
+    channel.ground_dies_after = None
+    items = sent(channel).count("MISSION_ITEM_INT")
+    channel.send(keeper.cancel(channel.now_s))
+    assert channel.go_on().state is KeeperState.CLEARED
+    assert sent(channel).count("MISSION_ITEM_INT") == items > 0
+
+
 def test_cancelling_after_the_end_changes_nothing():
     vehicle = holding("px4", OLD)
     keeper = keeper_for(vehicle)
