@@ -39,8 +39,8 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
             read[index] = read_report(record, known_place=place)
         except FaultyReport as error:
             refused.append(RefusedReport(index, error.faults))
-    own = _own_missions(uav_id, {report.mission for report in read.values() if report.mission})
-    for index in [index for index, report in read.items() if report.mission and report.mission not in own]:
+    own = _own_missions(uav_id, {UUID(report.mission) for report in read.values() if report.mission})
+    for index in [index for index, report in read.items() if report.mission and UUID(report.mission) not in own]:
         del read[index]
         refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
     records = [_new_record(report, uav_id, stream, received_at) for report in read.values()]
@@ -67,5 +67,5 @@ def _new_record(report: Report, uav_id: int, stream: str, received_at: datetime)
         measured_at=report.measured_at,
         received_at=received_at,
         measurement=Measurement(longitude_deg=longitude_deg, latitude_deg=latitude_deg, **values),
-        mission_id=report.mission,
+        mission_id=UUID(report.mission) if report.mission else None,
     )
