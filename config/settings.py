@@ -381,7 +381,6 @@ TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
-FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_FLIGHT_LOG_DIR", STATE_DIR / "flight-logs"))  # tlog files
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")
