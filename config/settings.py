@@ -308,6 +308,7 @@ CELERY_BEAT_SCHEDULE = {
     },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
+    "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")

@@ -2,7 +2,9 @@
 
 import asyncio
 import logging
+import os
 import signal
+import threading
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Coroutine, Sequence
@@ -130,9 +132,17 @@ class Gateway:
     def stop(self) -> None:
         self._stop.set()
 
-    def stop_on_signals(self) -> None:
+    def stop_on_signals(self, *, after_s: float) -> None:
+        """Ends the process after so many seconds in any case: a database that neither answers nor refuses holds up nothing."""
+
+        def stop() -> None:
+            self.stop()
+            last_resort = threading.Timer(after_s, os._exit, [1])
+            last_resort.daemon = True
+            last_resort.start()
+
         for number in (signal.SIGTERM, signal.SIGINT):
-            asyncio.get_running_loop().add_signal_handler(number, self.stop)
+            asyncio.get_running_loop().add_signal_handler(number, stop)
 
     def _loops(self) -> dict[str, Coroutine[Any, Any, None]]:
         return {

@@ -165,19 +165,20 @@ def test_of_two_senders_with_one_system_id_the_first_is_kept_and_both_are_named(
             return Alert.objects.filter(uav=uav, code="second-sender", closed_at=None).first()
 
         alert = wait_for(told)
+        ports = [str(sender.socket.getsockname()[1]) for sender in (link, other)]
     assert TelemetryRecord.objects.count() == 1
-    assert str(link.socket.getsockname()[1]) in alert.message and str(other.socket.getsockname()[1]) in alert.message
+    assert all(port in alert.message for port in ports)
     assert UavLink.objects.get().losses["second-sender"] >= 1
 
 
-RATE = 60.0  # the vehicle's seconds a second
+RATE = 120.0  # the vehicle's seconds a second
 REPORTS_HZ = 5.0
 
 
 @pytest.mark.parametrize("order", ["kept first", "mixed"])
 @pytest.mark.parametrize("lost_s", [5, 60, 600])
 def test_a_buffering_vehicle_loses_and_doubles_nothing(lost_s, order, tmp_path):
-    """Its time runs sixty times as fast. While the link is lost it flies on and keeps its reports; then it sends them, some twice."""
+    """Its time runs 120 times as fast. While the link is lost it flies on and keeps its reports; then it sends them, some twice."""
     unsigned_uav()
     chance = random.Random(lost_s)
     frames = FrameWriter(1, 1)
@@ -188,9 +189,9 @@ def test_a_buffering_vehicle_loses_and_doubles_nothing(lost_s, order, tmp_path):
             return int((time.monotonic() - booted_s) * RATE * 1000)
 
         sent, kept, at_ms = [], [], 1_000
-        lost_from_ms = 400_000
+        lost_from_ms = 700_000
         back_ms = lost_from_ms + lost_s * 1000
-        end_ms = back_ms + 300_000
+        end_ms = back_ms + 200_000
         while at_ms < end_ms:
             while at_ms <= boot_ms():
                 report = position(at_ms)
