@@ -51,7 +51,7 @@ def impurities(source: str) -> Iterator[str]:
         if isinstance(node, ast.Import):
             yield from (f"line {node.lineno}: imports {alias.name}" for alias in node.names if alias.name.split(".")[0] in UNSEEDABLE)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            if node.module.split(".")[0] in UNSEEDABLE:
+            if node.module.split(".")[0] in UNSEEDABLE and [alias.name for alias in node.names] != ["UUID"]:  # reading one draws none
                 yield f"line {node.lineno}: imports {node.module}"
             if node.module in {"random", "numpy.random"}:
                 yield from (f"line {node.lineno}: imports {alias.name}" for alias in node.names if alias.name not in SEEDED)
