@@ -8,9 +8,7 @@ from django.utils.translation import gettext as _
 
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
-from missions.fleet_selectors import performance_of
-from missions.flight_plan.performance import InvalidPerformance, Performance, performance_from_json
-from missions.models import Mission, MissionUav, Route, UavState
+from missions.models import Mission, Route
 from missions.services.over_wires import spans_in_the_way
 from missions.services.refused import Reason
 from missions.services.still_apart import separation_of_stored
@@ -19,7 +17,6 @@ from missions.stale_selectors import causes_on_the_routes
 from missions.uav_change_selectors import uav_changes
 
 TOO_NEAR = {"too_near", "hovers_in_the_way"}
-SAME = 1e-6  # figures that differ by less are the same
 
 
 def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[Reason]:
@@ -34,7 +31,6 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
         *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
         *_height_references(mission, flown),
         *_ground(mission),
-        *(reason for route in flown for reason in _uav(route.mission_uav)),
     ]
 
 
@@ -81,42 +77,3 @@ def _separation(mission: Mission) -> Iterator[Reason]:
             names = Mission.objects.filter(pk__in=others).order_by("name").values_list("name", flat=True)
             words = f"{words} {_('The other one flies %(missions)s.') % {'missions': ', '.join(names)}}"
         yield Reason("separation", words)
-
-
-def _uav(row: MissionUav) -> Iterator[Reason]:
-    """The UAV as it is now: in service, and no worse than it was planned with."""
-    if row.uav is None:
-        return
-    if row.uav.state != UavState.ACTIVE:
-        words = _("%(uav)s is in maintenance.") if row.uav.state == UavState.MAINTENANCE else _("%(uav)s is retired.")
-        yield Reason("uav_not_in_service", words % {"uav": row.uav.name}, row.sequence)
-    try:
-        planned, today = performance_from_json(row.performance), performance_of(row.uav)
-    except InvalidPerformance:
-        yield Reason("uav_changed", _("The figures of %(uav)s are not valid.") % {"uav": row.uav.name}, row.sequence)
-        return
-    if worse := [*_worse(planned, today), *_shorter(row)]:
-        words = _("%(uav)s is not as it was planned with (%(figures)s). Plan it again with its figures of now.")
-        yield Reason("uav_changed", words % {"uav": row.uav.name, "figures": ", ".join(worse)}, row.sequence)
-
-
-def _worse(planned: Performance, today: Performance) -> Iterator[str]:
-    if planned.battery_wh is not None and (today.battery_wh is None or today.battery_wh < planned.battery_wh - SAME):
-        yield _("battery")
-    if planned.battery_wh is not None and today.reserve_percent > planned.reserve_percent + SAME:
-        yield _("reserve")
-    if today.mass_kg > planned.mass_kg + SAME:
-        yield _("mass")
-    fastest = planned.max_airspeed_mps, today.max_airspeed_mps
-    if None not in fastest and fastest[1] < fastest[0] - SAME:
-        yield _("airspeed")
-    if today.hover_power_w is not None and (planned.hover_power_w is None or today.hover_power_w > planned.hover_power_w + SAME):
-        yield _("hover power")
-
-
-def _shorter(row: MissionUav) -> Iterator[str]:
-    assert row.uav is not None  # noqa: S101 - looked at before
-    if row.uav.range_m is not None and (row.max_range_m is None or row.uav.range_m < row.max_range_m - SAME):
-        yield _("range")
-    if set(row.sensors) - set(row.uav.sensors):
-        yield _("sensors")

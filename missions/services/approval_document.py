@@ -18,14 +18,16 @@ from inspection.zones.reach import ZoneTable
 from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
 from missions.flight_plan.waypoints import WaypointKind
 from missions.flight_plan.zone_facts import zones_near
-from missions.mavlink.content import load_to_json
+from missions.mavlink.content import MissionItem, load_to_json
+from missions.mavlink.fence import fence_of, rally_items
 from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
 from missions.mavlink.items import CannotBeFlown, flight_loads
 from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
+from missions.services.approved_fence import rally_points, zones_beside
 from missions.services.approved_targets import approved_targets
 from missions.services.refused import Reason, Refused
 from missions.services.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
-from missions.zone_selectors import zone_margins
+from missions.zone_selectors import departure_s, zone_margins
 
 VERSION = 1
 
@@ -115,7 +117,9 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
         uav = route.mission_uav
         try:
             frozen = frozen_route(route, mission)
-            flights = _flights(frozen, by_mavlink=uav.uav is None or uav.uav.link == LinkKind.MAVLINK)
+            fence = fence_of(zones_beside(route, departure_s(mission)), frozen)
+            by_mavlink = uav.uav is None or uav.uav.link == LinkKind.MAVLINK
+            flights = _flights(frozen, fence.items, rally_items(rally_points(mission, uav.sequence)), by_mavlink=by_mavlink)
         except (CannotBeFlown, NotARoute) as error:
             values = {"uav": uav.name, "why": str(error)}
             reasons.append(Reason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
@@ -134,6 +138,7 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
                 "energy_wh": route.energy_wh,
                 "route": route_to_json(frozen),
                 "flights": flights,
+                "fence_left_out": [{"zone": zone.zone, "code": zone.code, "words": zone.words} for zone in fence.left_out],
             }
         )  # fmt: skip
     if reasons:
@@ -141,9 +146,11 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
     return found
 
 
-def _flights(route: FrozenRoute, *, by_mavlink: bool) -> list[dict[str, Any]]:
+def _flights(
+    route: FrozenRoute, fence: tuple[MissionItem, ...], rally: tuple[MissionItem, ...], *, by_mavlink: bool
+) -> list[dict[str, Any]]:
     """With what each flight is flown from: items for an autopilot, the flight in plain values for a companion computer."""
-    loads = flight_loads(route) if by_mavlink else [None] * len(route.flights)
+    loads = flight_loads(route, fence=fence, rally=rally) if by_mavlink else [None] * len(route.flights)
     found = []
     for flight, load in zip(route.flights, loads, strict=True):
         content = flight_to_json(flight, route) if load is None else None

@@ -8,6 +8,9 @@ from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
 
+from inspection.geodesy import LonLat
+from inspection.models import NoFlyZone
+from missions.flight_plan.lost_link import LostLink
 from missions.mavlink.content import load_from_json
 from missions.mavlink.frozen import route_from_json
 from missions.models import Approval, CommandState, Mission, MissionState, TargetState, Uav, UavState, UavType
@@ -26,6 +29,7 @@ from missions.services.approval import approve_mission, revoke_approval
 from missions.services.approval_document import content_sha256
 from missions.services.commands import note_applied, note_failed
 from missions.services.refused import Refused
+from missions.services.requests import LostLinkRequest
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
 from tests.missions.outbox import claim, fence, now
@@ -81,6 +85,23 @@ def test_zones_beside_the_routes_are_frozen_with_what_they_say(here: World, pers
     _mission, approval = approved(person, fleet(), here.towers)
     (frozen,) = approval.document["zones"]
     assert (frozen["id"], frozen["name"], len(frozen["geometry_sha256"])) == (zone.pk, "Airport", 64)
+
+
+def test_an_autopilot_keeps_out_of_zones_beside_its_route_and_knows_where_to_land(here: World, person: User) -> None:
+    worlds.zone_around((10.012, 55.9985), 0.0005, name="Airport")
+    high = worlds.zone_around((10.008, 55.9985), 0.0005, name="High")
+    NoFlyZone.objects.filter(pk=high.pk).update(lower_limit_m=500.0, lower_reference="AGL")
+    worlds.mark_ground_changed()
+    back = LostLinkRequest(LostLink.RETURN, (LonLat(10.002, 55.996),))
+    _mission, approval = approved(person, fleet(), [here.towers[0]], lost_link=back)
+    (route,) = approval.document["routes"]
+    (load,) = [load_from_json(flight["items"]) for flight in route["flights"]]
+    assert len(load.fence) == 4
+    assert {(round(item.longitude_e7 / 1e7, 4), round(item.latitude_e7 / 1e7, 4)) for item in load.fence} == {
+        (10.0115, 55.998), (10.0125, 55.998), (10.0125, 55.999), (10.0115, 55.999),
+    }  # fmt: skip
+    assert [(item.longitude_e7, item.latitude_e7) for item in load.rally] == [(100_020_000, 559_960_000)]
+    assert route["fence_left_out"] == []
 
 
 @pytest.mark.parametrize("change", ["patch", "plan", "delete", "by-hand", "undo"])
@@ -185,21 +206,15 @@ def test_a_departure_that_is_over_is_refused(here: World, person: User) -> None:
     assert refused(mission, person) == ["departure_past"]
 
 
-@pytest.mark.parametrize(
-    "facts", [{"battery_wh": 40.0}, {"reserve_percent": 40.0}, {"mass_kg": 3.0}, {"max_range_m": 10_000.0}, {"state": UavState.MAINTENANCE}]
-)
-def test_a_uav_that_got_worse_since_is_refused(here: World, person: User, facts: dict) -> None:
-    (tern,) = fleet(battery_wh=1_000.0, mass_kg=1.545, reserve_percent=20.0)
+@pytest.mark.parametrize("facts", [{"battery_wh": 40.0}, {"reserve_percent": 40.0}, {"mass_kg": 3.0}, {"state": UavState.MAINTENANCE}])
+def test_a_uav_that_changed_since_is_refused(here: World, person: User, facts: dict) -> None:
+    (tern,) = fleet(battery_wh=1_000.0, mass_kg=1.545, reserve_percent=20.0, cruise_speed_mps=12.0)
     mission = planned(person, [tern], here.towers[:2])
-    mission.mission_uavs.update(performance={"battery_wh": 1_000.0, "mass_kg": 1.545, "reserve_percent": 20.0, "max_airspeed_mps": None})
+    as_it_is = {"battery_wh": 1_000.0, "mass_kg": 1.545, "reserve_percent": 20.0, "max_airspeed_mps": None}
+    mission.mission_uavs.update(performance=as_it_is)
     Uav.objects.update(**facts)
-    assert refused(mission, person) == ["uav_not_in_service" if "state" in facts else "uav_changed"]
-
-
-def test_a_uav_that_got_better_since_is_no_reason(here: World, person: User) -> None:
-    (tern,) = fleet(battery_wh=1_000.0)
-    mission = planned(person, [tern], here.towers[:2])
-    Uav.objects.update(battery_wh=2_000.0, max_range_m=None)
+    assert refused(mission, person) == ["uav_changed"]
+    Uav.objects.update(**as_it_is, state=UavState.ACTIVE)
     assert approve_mission(mission=mission, actor=person)
 
 

@@ -138,7 +138,7 @@ def test_a_uav_that_is_busy_or_out_of_service_is_sent_nothing(here: World, perso
     assert refused(second, person) == ["uav_busy"]
     third, _approval = approved(person, fleet("Kite"), here.towers[3:5], name="Third")
     Uav.objects.filter(name="Kite").update(state=UavState.MAINTENANCE)
-    assert refused(third, person) == ["uav_not_in_service"]
+    assert refused(third, person) == ["uav_changed"]
     assert state(third) == MissionState.APPROVED
 
 

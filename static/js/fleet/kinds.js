@@ -6,7 +6,7 @@ import { coordinateText, percentText, powerText, speedText } from "../units.js";
 import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, squareMetres, stateChip, uavsText, wattHours } from "./words.js";
 
 const caption = (words) => words && h("span", { class: "caption" }, words);
-const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const term = (name, value) => (value === null || value === undefined || value === "" || value === false ? [] : [h("dt", {}, name), h("dd", {}, value)]);
 
 /** What it is charged to, and what a full one holds; the latter alone where nobody knows the former. */
 function batteryCell({ battery_percent, battery_wh }) {
@@ -47,6 +47,8 @@ export const KINDS = {
       term(t("At the end"), endWords(uav.end_action)),
       term(t("Serial number"), uav.serial_number),
       term(t("MAVLink system id"), uav.mavlink_system_id && `${uav.mavlink_system_id}`),
+      term(t("Simulated"), uav.is_simulated && t("yes")),
+      term(t("MAVLink without a signature"), uav.allows_unsigned && t("is taken for its word")),
     ],
     deleted: (uav) => t("{name} is deleted.", { name: uav.name }),
     none: { title: t("No UAVs yet"), text: t("Add the first one, then plan a mission with it.") },

@@ -1,0 +1,169 @@
+"""A planned mission is approved, frozen, sent, steered and taken back."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import TOO_WIDE, asks, wait_for_map
+
+pytestmark = pytest.mark.browser
+
+STARTS = {"Petrel": [-83.045, 39.935], "Skua": [-82.945, 39.945]}
+
+
+def posts(page: Page, path: str, body: dict[str, Any], *, method: str = "POST") -> Any:
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    return page.request.fetch(f"/api/v1{path}", method=method, data=body, headers={"X-CSRFToken": token, "If-Match": "*"})
+
+
+@pytest.fixture
+def mission(visitor: Visitor) -> str:
+    """The address of a planned mission of two simulated UAVs of the fleet."""
+    page = visitor.signs_in("ada")
+    known = {uav["properties"]["name"]: uav["id"] for uav in asks(page, "/uavs?limit=200")["features"]}
+    for name, position in STARTS.items():
+        if name not in known:
+            made = posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})
+            assert made.status == 201, made.text()
+            known[name] = made.json()["id"]
+    towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=2")["features"]
+    body = {
+        "name": "South belt, by night", "uavs": [{"id": known[name]} for name in STARTS],
+        "targets": [{"asset": tower["id"]} for tower in towers],
+        "objective": "makespan", "return_to_start": True, "plan": True,
+    }  # fmt: skip
+    made = posts(page, "/missions", body)
+    assert made.status == 201, made.text()
+    page.context.close()
+    return f"/missions/{made.json()['id']}"
+
+
+def opened(page: Page, mission: str) -> None:
+    page.goto(mission)
+    wait_for_map(page)
+
+
+def answers(page: Page, act: str) -> None:
+    page.get_by_role("dialog").get_by_role("button", name=act, exact=True).click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
+
+def test_a_mission_is_approved_frozen_sent_steered_and_revoked(
+    visitor: Visitor, mission: str, picture: Callable[[Page, str], None]
+) -> None:
+    page = visitor.signs_in("opal")
+    opened(page, mission)
+    state = page.locator("#mission-state")
+    expect(state).to_have_text("Planned")
+    page.get_by_role("button", name="Approve", exact=True).click()
+    expect(page.get_by_role("dialog", name="Approve “South belt, by night”?")).to_contain_text("2 UAVs fly")
+    picture(page, "approve-light")
+    answers(page, "Approve")
+
+    expect(state).to_have_text("Approved")
+    wait_for_map(page)
+    expect(page.locator("#flying-said")).to_have_text(
+        re.compile(r"Approved by opal .* Nothing of it can be changed until that is revoked\.")
+    )
+    expect(page.get_by_role("button", name=re.compile("^Plan|^Save$|Add a UAV"))).to_have_count(0)
+    expect(page.get_by_role("textbox", name="Name of the mission")).to_have_attribute("readonly", "")
+    assert posts(page, f"/missions/{mission.split('/')[-1]}", {"name": "Other"}, method="PATCH").status == 409
+
+    page.get_by_role("button", name="Send to UAVs").click()
+    expect(page.get_by_role("dialog")).to_contain_text("Nothing takes off by this.")
+    answers(page, "Send to UAVs")
+    expect(state).to_have_text("Dispatched")
+    uavs = page.get_by_role("list", name="UAVs of this mission").get_by_role("listitem")
+    expect(uavs).to_have_count(2)
+    for number in range(2):
+        expect(uavs.nth(number)).to_contain_text("Waiting for the UAV")
+    petrel = uavs.filter(has_text="Petrel")
+    start = petrel.get_by_role("button", name="Start", exact=True)
+    expect(start).to_be_disabled()
+    expect(start).to_have_attribute("title", "Petrel does not have its mission yet.")
+
+    petrel.get_by_role("button", name="Hold", exact=True).click()
+    question = page.get_by_role("dialog", name="Hold Petrel?")
+    expect(question.get_by_role("button", name="Hold Petrel")).to_be_focused()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    assert [command["kind"] for command in asks(page, f"{mission}/commands")["results"]] == ["upload-mission"] * 2
+    petrel.get_by_role("button", name="Land here", exact=True).click()
+    expect(page.get_by_role("dialog").get_by_role("button", name="Keep flying")).to_be_focused()
+    page.keyboard.press("Escape")
+    petrel.get_by_role("button", name="Hold", exact=True).click()
+    picture(page, "hold-light")
+    answers(page, "Hold Petrel")
+    expect(petrel).to_contain_text(re.compile(r"Hold: waiting \d\d:\d\d"))
+    page.locator("#commands summary").click()
+    expect(page.get_by_role("list", name="Commands").get_by_role("listitem")).to_have_count(3)
+    picture(page, "flying-light")
+
+    page.get_by_role("button", name="Revoke").click()
+    question = page.get_by_role("dialog")
+    question.get_by_role("textbox").fill("Storm is coming")
+    answers(page, "Revoke")
+    expect(state).to_have_text("Planned")
+    wait_for_map(page)
+    expect(page.get_by_role("button", name="Approve", exact=True)).to_be_enabled()
+    page.get_by_role("button", name="More for this mission").click()
+    page.get_by_role("button", name="History").click()
+    history = page.get_by_role("list", name="History")
+    expect(history.get_by_role("listitem").first).to_contain_text("Approval revoked")
+    expect(history.get_by_role("listitem").first).to_contain_text("Storm is coming")
+
+
+def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: str) -> None:
+    page = visitor.signs_in("opal")
+    path = mission.replace("/missions", "/missions")
+    real = asks(page, f"{path}")
+    uavs = [{"name": uav["name"], "position": uav["position"]} for uav in real["uavs"]]  # of no fleet: as real ones
+    assert posts(page, path, {"uavs": uavs, "plan": True}, method="PATCH").ok
+    opened(page, mission)
+    page.get_by_role("button", name="Approve", exact=True).click()
+    answers(page, "Approve")
+    notices = page.locator("#notices")
+    expect(notices).to_contain_text("Not approved.")
+    expect(notices).to_contain_text("Petrel would fly as over flat ground")
+    expect(notices).to_contain_text("Skua would fly as over flat ground")
+    expect(page.locator("#mission-state")).to_have_text("Planned")
+    visitor.complaints.clear()  # the refusal itself, which the browser writes into its log
+
+
+@pytest.mark.parametrize(("theme", "size", "name"), [("dark", (1440, 900), "flying-dark"), ("light", (390, 844), "flying-phone")])
+def test_a_mission_on_its_way_fits_every_window(
+    visitor: Visitor, mission: str, picture: Callable[[Page, str], None], theme: str, size: tuple[int, int], name: str
+) -> None:
+    page = visitor.signs_in("opal", theme=theme, size=size, touch=size[0] < 721)
+    key = mission.split("/")[-1]
+    assert posts(page, f"/missions/{key}/approve", {}).ok
+    sent = posts(page, f"/missions/{key}/dispatch", {}).json()
+    posts(page, f"/uavs/{sent['commands'][0]['uav']['id']}/commands", {"kind": "return"})
+    opened(page, mission)
+    if size[0] < 721:
+        for _ in range(2):
+            page.get_by_role("button", name="Panel height").click()
+    expect(page.get_by_text("Waiting for the UAV").first).to_be_visible()
+    expect(page.get_by_text(re.compile("Return: waiting"))).to_be_visible()
+    assert page.evaluate(TOO_WIDE) == []
+    picture(page, name)
+    assert posts(page, f"/missions/{key}/abort", {"why": "Over"}).ok
+    expect(page.locator("#mission-state")).to_have_text("Aborted")
+    expect(page.get_by_role("button", name="Save a copy")).to_be_visible()
+
+
+def test_viewers_see_a_mission_on_its_way_and_have_no_buttons(visitor: Visitor, mission: str) -> None:
+    operator = visitor.signs_in("opal")
+    key = mission.split("/")[-1]
+    assert posts(operator, f"/missions/{key}/approve", {}).ok
+    assert posts(operator, f"/missions/{key}/dispatch", {}).ok
+    page = visitor.signs_in("vera")
+    opened(page, mission)
+    expect(page.get_by_text("Waiting for the UAV").first).to_be_visible()
+    expect(page.get_by_role("button", name=re.compile("^Hold|^Revoke|^Abort|^Send"))).to_have_count(0)
+    assert posts(operator, f"/missions/{key}/revoke", {"reason": "Over"}).ok
+    expect(page.locator("#mission-state")).to_have_text("Planned")
