@@ -16,6 +16,8 @@ from inspection.zones.rules import ZoneRules
 from missions.command_rules import CommandRules
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
+from telemetry.ground_station.rules import CommandRules as VehicleCommandRules
+from telemetry.ground_station.rules import TransferRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()
@@ -306,6 +308,7 @@ CELERY_BEAT_SCHEDULE = {
     },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
+    "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
@@ -364,11 +367,20 @@ GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # 
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
 LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
 TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
+TAKE_OFF_HEIGHT_M = _float("SPANWISE_TAKE_OFF_HEIGHT_M", 50.0)  # by which the height that it reports may differ from the planned one
+TRANSFER_RULES = TransferRules(
+    timeout_s=_float("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
+    item_timeout_s=_float("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),
+    retries=int(_float("SPANWISE_TRANSFER_RETRIES", TransferRules.retries)),
+)
+VEHICLE_COMMAND_RULES = VehicleCommandRules(
+    timeout_s=_float("SPANWISE_VEHICLE_COMMAND_TIMEOUT_S", VehicleCommandRules.timeout_s),
+    retries=int(_float("SPANWISE_VEHICLE_COMMAND_RETRIES", VehicleCommandRules.retries)),
+)
 TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
-FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_FLIGHT_LOG_DIR", STATE_DIR / "flight-logs"))  # tlog files
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")

@@ -31,8 +31,8 @@ class _FleetAdmin(HistoryAdmin):
 class UavAdmin(_FleetAdmin):
     history_subject = "uav"
     formfield_overrides = {models.GeometryField: {"form_class": GeoJSONField}}
-    list_display = ["name", "state", "uav_type", "base_name", "battery_percent", "located_at", "mavlink_system_id", "organisation"]
-    list_filter = ["state", "uav_type", "base_name", "end_action", "organisation"]
+    list_display = ["name", "state", "uav_type", "base_name", "battery_percent", "located_at", "mavlink_system_id", "link", "organisation"]
+    list_filter = ["state", "link", "is_simulated", "allows_unsigned", "uav_type", "base_name", "end_action", "organisation"]
     list_select_related = ["uav_type", "organisation"]
     search_fields = ["name", "base_name", "serial_number", "uav_type__name"]
     readonly_fields = ["revision", "created_at", "updated_at"]

@@ -5,7 +5,7 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from scripts.places import DATABASE_USER, WEB_PROGRAMS, CannotStart, Places
+from scripts.places import DATABASE_USER, PROJECT_DIR, WEB_PROGRAMS, CannotStart, Places
 from scripts.postgresql_installations import server_for
 from scripts.system_packages import find_program
 
@@ -115,6 +115,12 @@ def _web(places: Places, name: str, socket: Path) -> Program:
     return Program(name=name, stage=PROGRAM_STAGE, command=granian, folder=places.process(name), patience_s=20, stale_files=[socket])
 
 
+def _gateway(places: Places) -> Program:
+    """Where vehicles connect. It waits for a port that another installation on the machine holds."""
+    command = [sys.executable, str(PROJECT_DIR / "manage.py"), "run_gateway"]
+    return Program(name="gateway", stage=PROGRAM_STAGE, command=command, folder=places.process("gateway"), patience_s=12)
+
+
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
     live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
@@ -134,6 +140,7 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
         ),
         _worker(places, "data", 1),
         _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),
+        _gateway(places),
         _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),
         Program(name="proxy", stage=PROGRAM_STAGE, command=nginx, folder=places.process("proxy")),
     ]

@@ -6,7 +6,7 @@ from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFil
 from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.uav_link import UavAcknowledgements, UavResults, UavRoute, UavTelemetry
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
-from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, VehicleTexts
+from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
 
 
 class FileKindConverter:
@@ -35,6 +35,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),
+    path("uavs/<int:uav_id>/connection", UavConnection.as_view(), name="api-uav-connection"),
     path("uavs/<int:uav_id>/vehicle-texts", VehicleTexts.as_view(), name="api-vehicle-texts"),
     path("uavs/<int:uav_id>/flight-logs", FlightLogs.as_view(), name="api-flight-logs"),
     path("uavs/<int:uav_id>/flight-logs/<int:log_id>/file", FlightLogFile.as_view(), name="api-flight-log-file"),

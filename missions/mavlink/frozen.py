@@ -79,22 +79,25 @@ class FrozenRoute:
 
     @property
     def flights(self) -> tuple[Flight, ...]:
-        """Divided at its waypoints of kind `base`, where it stands on the ground between two flights; none without waypoints."""
+        """Divided at its waypoints of kind `base`, where it stands on the ground between two flights; none without waypoints.
+
+        Each but the last lands under its last waypoint, however the route ends: there its next battery waits.
+        """
         flights: list[Flight] = []
         take_off, ground_m, begin = self.take_off, 0.0, 0
         for place, waypoint in enumerate(self.waypoints):
             if waypoint.kind is WaypointKind.BASE:
-                flights.append(self._flight(len(flights), take_off, ground_m, self.waypoints[begin:place]))
+                flights.append(self._flight(len(flights), take_off, ground_m, self.waypoints[begin:place], LAND))
                 take_off, ground_m, begin = TakeOff(waypoint.position, waypoint.altitude_amsl_m), waypoint.altitude_relative_m, place + 1
         if begin < len(self.waypoints) or flights:
-            flights.append(self._flight(len(flights), take_off, ground_m, self.waypoints[begin:]))
+            flights.append(self._flight(len(flights), take_off, ground_m, self.waypoints[begin:], self.end_action))
         return tuple(flights)
 
-    def _flight(self, number: int, take_off: TakeOff, ground_m: float, waypoints: Sequence[FrozenWaypoint]) -> Flight:
+    def _flight(self, number: int, take_off: TakeOff, ground_m: float, waypoints: Sequence[FrozenWaypoint], end_action: str) -> Flight:
         if not waypoints:
             raise NotARoute("A route stands at its base with no flight before or after it.")
         above = tuple(replace(waypoint, altitude_relative_m=waypoint.altitude_relative_m - ground_m) for waypoint in waypoints)
-        return Flight(number, take_off, above, self.end_action)
+        return Flight(number, take_off, above, end_action)
 
 
 def flight_to_json(flight: Flight, route: FrozenRoute) -> dict[str, Any]:

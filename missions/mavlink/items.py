@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from missions.mavlink.content import FlightLoad, MissionItem
-from missions.mavlink.frozen import BASE, LAND, RETURN, Flight, FrozenRoute, FrozenWaypoint
+from missions.mavlink.frozen import HOVER, Flight, FrozenRoute, FrozenWaypoint
 from missions.routing.problem import Task, TaskKind
 
 RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
@@ -49,8 +49,9 @@ def flight_loads(
 ) -> tuple[FlightLoad, ...]:
     """One for each of `route.flights`, in their order; fence and rally points are those of all of them.
 
-    Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. A flight that ends in hovering has no item for it:
-    both flavours hover after their last waypoint. Raises CannotBeFlown.
+    Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. The way back is among the waypoints, so a flight that
+    returns lands under the last of them: an autopilot's own return would climb to a height of its own and fly straight, over wires and
+    through zones. A flight that ends in hovering has no item for it: both flavours hover after their last waypoint. Raises CannotBeFlown.
     """
     if route.charging_stops:
         raise CannotBeFlown("charging", "The route charges at towers on its way, which a plain autopilot cannot do.")
@@ -71,9 +72,7 @@ def _items(flight: Flight, cruise_speed_mps: float, rules: ItemRules) -> Iterato
             flown_mps = wanted_mps
         follows = flight.waypoints[place + 1] if place + 1 < len(flight.waypoints) else None
         yield from _waypoint(waypoint, waypoint.task, is_stretch=_same_target(waypoint, follows), rules=rules)
-    if flight.end_action == RETURN:
-        yield _plain(mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH, (0.0, 0.0, 0.0, 0.0), last)
-    elif flight.end_action in (LAND, BASE):
+    if flight.end_action != HOVER:
         yield _item(mavlink.MAV_CMD_NAV_LAND, last, (0.0, 0.0, 0.0, math.nan), last.ground_relative_m)
 
 

@@ -5,8 +5,9 @@ from rest_framework import serializers
 from missions.fields import PositionField
 from missions.fleet_selectors import FIGURES
 from missions.flight_plan.lost_link import LostLink, Trouble
-from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, UavState, WaypointKind
+from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
 from missions.routing.problem import TaskKind
+from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
 
 
@@ -297,47 +298,6 @@ class MissionTargetSerializer(serializers.Serializer):
     state = serializers.ChoiceField(choices=TargetState.choices)
     unassigned_reason = serializers.CharField()
     unassigned_message = serializers.CharField()
-
-
-class StaleCauseSerializer(serializers.Serializer):
-    """One thing that changed since the mission was planned, and what of the mission it touches."""
-
-    what = serializers.ChoiceField(choices=["zone", "uav", "base", "asset", "terrain", "elsewhere"])
-    message = serializers.CharField()
-    uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV")
-    target = serializers.IntegerField(allow_null=True, help_text="index of the target")
-    leg = serializers.ListField(
-        child=serializers.CharField(allow_blank=True), allow_null=True, help_text="between which targets; empty for a flight's start or end"
-    )
-    position = PositionField(allow_null=True)
-    agl_m = serializers.ListField(
-        child=serializers.FloatField(), allow_null=True, help_text="where a zone is met: lowest and highest planned height above ground"
-    )
-    to = serializers.DateTimeField(allow_null=True)
-
-    def get_fields(self) -> dict[str, serializers.Field]:
-        return super().get_fields() | {
-            "from": serializers.DateTimeField(allow_null=True, help_text="when a zone is met; null: at any time")
-        }
-
-
-class FigureChangeSerializer(serializers.Serializer):
-    name = serializers.ChoiceField(choices=FIGURES)
-    kept = serializers.JSONField(allow_null=True, help_text="as the mission plans with it")
-    now = serializers.JSONField(allow_null=True, help_text="as it is in the fleet")
-
-
-class UavChangeSerializer(serializers.Serializer):
-    """A UAV that is no longer as the mission has it. Sent again in `uavs` without its figures, the mission takes the present ones."""
-
-    uav = serializers.IntegerField(help_text="index of the UAV")
-    id = serializers.IntegerField(help_text="of the stored UAV")
-    name = serializers.CharField(help_text="in the mission")
-    figures = FigureChangeSerializer(many=True, help_text="without those of `own_figures`, and sensors that no target needs")
-    state = serializers.ChoiceField(
-        choices=UavState.choices, allow_null=True, help_text="its present one, where the plan counts on another"
-    )
-    message = serializers.CharField()
 
 
 class MissionSerializer(serializers.Serializer):

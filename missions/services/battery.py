@@ -1,7 +1,7 @@
 """Whether finished routes keep to their batteries."""
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from missions.flight_plan.heights import GroundHeights
@@ -13,6 +13,7 @@ from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 
 JUST_BELOW = 1e-3
+LEFT = 0.999  # of a share: what is counted is rounded
 MOST_TRIED = 40  # targets of a route that are left out of it one by one
 BEYOND_ENERGY = "beyond_energy"
 KEPT_BACK = "As drawn, over the ground and what stands tall, all routes that were tried with it take more than the battery may give."
@@ -33,51 +34,58 @@ def battery_overruns(request: PlanRequest, found: Attempt, routes: Sequence[Plan
 
 
 def not_lasting_for(
-    request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute], over: Collection[int], ground: GroundHeights | None
+    request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute], over: Mapping[int, float], ground: GroundHeights | None
 ) -> dict[int, frozenset[int]]:
     """Of UAVs whose route takes more than their battery gives, by their numbers: targets to be kept from them, by their places in the
     request.
 
-    These are the targets that could not even be flown to alone. Where each could, and no charging suffices for the route, it is the one
-    without which it does for the others: of several the least wanted, then the one that saves most; without charging there is none. A UAV
-    with locked targets is not in the answer.
+    These are the targets that could not even be flown to alone. Where each could, it is the one without which the battery does for the
+    others: of several the least wanted, then the one that saves most. It is none where counting on the share of the battery that `over`
+    tells is enough; with that share, no target of the route may be out of reach, and no charging is counted. A UAV with locked targets is
+    not in the answer.
     """
     barred = {}
     locked = {lock.uav for lock in request.locks}
-    for number in over:
-        if request.uavs[number].name not in locked and len(routes[number].targets) <= MOST_TRIED:
-            barred[number] = _too_much_for(number, request, found, ground, charges=routes[number].lacks_wh > 0.0)
+    lacks = LeastLacks(request, found, ground)
+    for uav, share in over.items():
+        if request.uavs[uav].name not in locked and len(routes[uav].targets) <= MOST_TRIED:
+            barred[uav] = _too_much_for(uav, request, lacks, None if routes[uav].lacks_wh > 0.0 else share)
     return {uav: targets for uav, targets in barred.items() if targets}
 
 
-def _too_much_for(uav: int, request: PlanRequest, found: Attempt, ground: GroundHeights | None, *, charges: bool) -> frozenset[int]:
-    start = found.uavs.index(uav)
-    order = [visit for sortie in found.solution.sorties[start] for visit in sortie]
-
-    def drawn(visits: Sequence[int]) -> PlannedRoute | None:
-        return found.drawn_alone(uav, visits, ground)
-
-    def has_way(visits: Sequence[int]) -> bool:
-        """Some targets are come to from others only."""
-        return math.isfinite(found.problem.route_length_m(start, visits))
-
-    target_of = {visit: found.drawing.places[found.problem.visits[visit].target].target for visit in order}
-    lacks = LeastLacks(request, found, ground)
+def _too_much_for(uav: int, request: PlanRequest, lacks: LeastLacks, share: float | None) -> frozenset[int]:
+    """share: None where it charges on the way."""
+    found, start = lacks.found, lacks.found.uavs.index(uav)
+    flights = found.solution.sorties[start]
+    target_of = {visit: found.drawing.places[found.problem.visits[visit].target].target for order in flights for visit in order}
     least = {target: lacks.of_battery(target, only=uav) for target in target_of.values()}
     hopeless = frozenset(target for target, lack in least.items() if lack is not None and lack.missing > 0.0)
-    if hopeless or not charges:
+    if hopeless or (share is not None and _is_enough(uav, request, found, share)):
         return hopeless
-    rests = [(visit, [other for other in order if other != visit]) for visit in order]
-    without = [(visit, drawn(rest)) for visit, rest in rests if has_way(rest)]
-    if not without:
-        return frozenset(target_of.values())
 
-    def merit(one: tuple[int, PlannedRoute | None]) -> tuple[bool, int, float]:
-        visit, rest = one
-        rest_wh = 0.0 if rest is None or rest.timing is None or rest.timing.total_wh is None else rest.timing.total_wh
-        return lack_wh(request, uav, rest) > 0.0, request.targets[target_of[visit]].priority, rest_wh
+    def lack(visits: Sequence[int]) -> float:
+        """Some targets are come to from others only."""
+        has_way = math.isfinite(found.problem.route_length_m(start, visits))
+        return lack_wh(request, uav, found.drawn_alone(uav, visits, lacks.ground)) if has_way else math.inf
 
-    return frozenset([target_of[min(without, key=merit)[0]]])
+    order = max(flights, key=lack)
+    most_wanted = max(request.targets[target_of[visit]].priority for visit in order)
+    alike = all(request.targets[target_of[visit]].priority == most_wanted for visit in order)
+
+    def merit(visit: int) -> tuple[bool, bool, bool, int, float]:
+        rest = [other for other in order if other != visit]
+        rest_wh = lack(rest) if rest else math.inf
+        priority = request.targets[target_of[visit]].priority
+        return math.isinf(rest_wh), not alike and priority == most_wanted, rest_wh > 0.0, priority, rest_wh
+
+    return frozenset([target_of[min(order, key=merit)]])
+
+
+def _is_enough(uav: int, request: PlanRequest, found: Attempt, share: float) -> bool:
+    """Whether each target of its route is still in reach alone if the search counts on this share of its battery."""
+    start, usable_wh = found.uavs.index(uav), request.uavs[uav].performance.usable_wh or 0.0
+    flights = found.solution.sorties[start]
+    return all((found.problem.route_wh(start, [visit]) or 0.0) < share * usable_wh * LEFT for order in flights for visit in order)
 
 
 def without_overruns(

@@ -1,11 +1,11 @@
 """Reports of companion computers, as they come over the HTTP link: read, checked, each fault named. Pure."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
-from uuid import UUID
 
 LARGEST_SEQUENCE = 2**63 - 1
 EARLIEST_YEAR, LATEST_YEAR = 1970, 9998  # what a clock that was never set says, and what the database and Python both keep
@@ -35,6 +35,7 @@ NUMBERS: Mapping[str, tuple[float, float]] = {  # inclusive
 INTEGERS: Mapping[str, tuple[int, int]] = {"gps_fix": (0, 8), "satellites": (0, 255), "mission_item": (0, 65_535)}
 FLAGS = ("is_armed", "is_in_air")
 KNOWN = frozenset({"sequence", "measured_at", "mission", "position", "mode", *NUMBERS, *INTEGERS, *FLAGS})
+IDENTIFIER = re.compile(r"[0-9a-fA-F]{8}(-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}")
 BARE_HEIGHTS = ("altitude", "altitude_m", "height", "height_m")
 
 
@@ -44,7 +45,7 @@ class Report:
 
     sequence: int
     measured_at: datetime
-    mission: UUID | None = None
+    mission: str | None = None
     position: tuple[float, float] | None = None
     values: Mapping[str, float | int | bool | str] = field(default_factory=dict)
 
@@ -136,11 +137,10 @@ def _words(value: Any) -> str:
     return value
 
 
-def _identifier(value: Any) -> UUID:
-    try:
-        return UUID(value if isinstance(value, str) else "")
-    except ValueError as error:
-        raise ValueError("A mission's id is needed.") from error
+def _identifier(value: Any) -> str:
+    if not isinstance(value, str) or not IDENTIFIER.fullmatch(value):
+        raise ValueError("A mission's id is needed.")
+    return value.lower()
 
 
 def _position(value: Any, known_place: tuple[float, float] | None) -> tuple[float, float]:

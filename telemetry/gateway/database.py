@@ -24,7 +24,7 @@ class DatabaseThread:
     def __init__(self, name: str) -> None:
         self._executor = ThreadPoolExecutor(1, thread_name_prefix=name)
 
-    async def run(self, do: Callable[P, Result], *args: P.args, **kwargs: P.kwargs) -> Result:
+    async def run(self, do: Callable[P, Result], /, *args: P.args, **kwargs: P.kwargs) -> Result:
         """Raises DatabaseAway, or what `do` raises."""
 
         def inside() -> Result:
@@ -38,5 +38,5 @@ class DatabaseThread:
         return await asyncio.get_running_loop().run_in_executor(self._executor, inside)
 
     def close(self) -> None:
-        self._executor.submit(connection.close)
+        self._executor.submit(lambda: connection.close())  # that of the thread
         self._executor.shutdown(wait=True)

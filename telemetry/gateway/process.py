@@ -2,7 +2,9 @@
 
 import asyncio
 import logging
+import os
 import signal
+import threading
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Coroutine, Sequence
@@ -15,13 +17,16 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.mavlink.frames import Frame, message_of
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_EVERY_S, Flights
+from telemetry.gateway.hints import listen
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
 from telemetry.ground_station.flavour import flavour_of
+from telemetry.services.alerts import tell_of_second_sender
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
 from telemetry.services.sightings import Sighting
@@ -32,8 +37,11 @@ FLEET_EVERY_S = 1.0
 LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
+SENDERS_EVERY_S = 2.0
+SECOND_SENDER_GONE_S = 60.0
 WAITED_TOO_LONG_S = 15.0
-STOP_WITHIN_S = 8.0
+DESK_WITHIN_S = 5.0
+STOP_WITHIN_S = 4.0
 
 
 @dataclass
@@ -51,6 +59,7 @@ class Gateway:
         self.database = DatabaseThread("gateway-store")
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.flights = Flights(self.options)
+        self.desk = Desk(self.options.holder, self.options.lease_s, lambda: list(self.sessions.values()))
         self.listeners = Listeners(self.receive)
         self._stop = asyncio.Event()
         self._wants_lease = asyncio.Event()
@@ -123,17 +132,28 @@ class Gateway:
     def stop(self) -> None:
         self._stop.set()
 
-    def stop_on_signals(self) -> None:
+    def stop_on_signals(self, *, after_s: float) -> None:
+        """Ends the process after so many seconds in any case: a database that neither answers nor refuses holds up nothing."""
+
+        def stop() -> None:
+            self.stop()
+            last_resort = threading.Timer(after_s, os._exit, [1])
+            last_resort.daemon = True
+            last_resort.start()
+
         for number in (signal.SIGTERM, signal.SIGINT):
-            asyncio.get_running_loop().add_signal_handler(number, self.stop)
+            asyncio.get_running_loop().add_signal_handler(number, stop)
 
     def _loops(self) -> dict[str, Coroutine[Any, Any, None]]:
         return {
             "fleet": self._every(FLEET_EVERY_S, self._read_fleet),
             "leases": self._lease_loop(),
             "store": self._store_loop(),
+            "commands": self.desk.run(),
+            "hints": listen(self.desk.hint),
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
+            "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
 
@@ -149,6 +169,7 @@ class Gateway:
         for loop in loops:
             loop.cancel()
         await asyncio.gather(*loops, return_exceptions=True)
+        await self._close_desk()
         self.listeners.close()
         self.flights.end_all(time.time())
         try:
@@ -160,6 +181,14 @@ class Gateway:
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
+
+    async def _close_desk(self) -> None:
+        try:
+            async with asyncio.timeout(DESK_WITHIN_S):
+                await self.desk.close()
+        except (DatabaseAway, TimeoutError):
+            logger.warning("the database is away: commands are taken up again when their leases run out")
+        self.desk.database.close()
 
     # What goes on all the time
 
@@ -239,6 +268,20 @@ class Gateway:
         now_s = time.time()
         for session in self.sessions.values():
             session.tick(now_s)
+
+    async def _tell_second_senders(self) -> None:
+        """Two who bear one system id, where nothing is signed: which of them is the UAV nobody can know."""
+        now_s = time.time()
+        for session in self.sessions.values():
+            if session.second_sender is None or session.peer is None:
+                continue
+            other, last_s = session.second_sender
+            if now_s - last_s < SECOND_SENDER_GONE_S:
+                words = f"Two senders say that they are {session.uav.name}: {session.peer.name}, which is believed, and {other}."
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
+            else:
+                session.second_sender = None
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())

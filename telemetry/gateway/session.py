@@ -53,10 +53,11 @@ class Session:
     texts: list[StatusText] = field(default_factory=list)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
-    listener: Listener | None = None  # hears every message of the autopilot
+    listeners: list[Listener] = field(default_factory=list)  # hear every message of the autopilot
     log: Callable[[bytes, int, float], None] | None = None
     second_sender: tuple[str, float] | None = None  # who, and when last
     is_unsaved: bool = False
+    commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
     _writer: FrameWriter = field(init=False, repr=False)
@@ -123,6 +124,14 @@ class Session:
     def lose(self) -> None:
         self.lease = None
         self.waiting.clear()
+
+    def is_served(self, now_s: float, within_s: float) -> bool:
+        """Whether it is ours and there, and has said what it is."""
+        return self.lease is not None and now_s - self.heard_s <= within_s and self.state.flavour is not None
+
+    def unsettled_until_s(self, settling_s: float) -> float | None:
+        """Until when what was sent before may still arrive; monotonic."""
+        return None if self.commanded_s is None else self.commanded_s + settling_s
 
     # Frames out
 
@@ -218,15 +227,13 @@ class Session:
         stamp = self._stamp(message, now_s) if kind in TELL_TIME else None
         self._reporter.receive(message, now_s)
         monotonic_s = time.monotonic()
-        if _tells_no_place(message):
-            pass
-        else:
+        if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)
-        if self.listener is not None:
-            self.listener(message, monotonic_s)
+        for listener in list(self.listeners):
+            listener(message, monotonic_s)
 
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None

@@ -26,7 +26,7 @@ class TransferRules:
 
     @property
     def silence_s(self) -> float:
-        return self.timeout_s * self.retries
+        return self.timeout_s * (1 + self.retries)
 
     @property
     def restart_s(self) -> float:

@@ -1,6 +1,7 @@
 """What is known of a vehicle from its own messages."""
 
 import math
+import struct
 from dataclasses import dataclass, field
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -10,6 +11,10 @@ from telemetry.ground_station.ends import AUTOPILOT, Message
 from telemetry.ground_station.flavour import COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
 
 TEXTS_KEPT = 10
+WHOLE_TYPES = frozenset({
+    mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_UINT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_UINT16,
+    mavlink.MAV_PARAM_TYPE_INT32, mavlink.MAV_PARAM_TYPE_UINT32,
+})  # fmt: skip
 IN_AIR = frozenset({mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_TAKEOFF, mavlink.MAV_LANDED_STATE_LANDING})
 
 
@@ -136,8 +141,12 @@ def _health(state: VehicleState, message: Message, now_s: float) -> None:
 
 
 def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
-    if math.isfinite(message.param_value):
-        state.parameters[message.param_id] = message.param_value
+    """PX4 sends the bits of a whole number in place of the figure (MAVLink's "bytewise" encoding)."""
+    value = float(message.param_value)
+    if state.flavour is Flavour.PX4 and message.param_type in WHOLE_TYPES:
+        value = float(struct.unpack("<i", struct.pack("<f", value))[0])
+    if math.isfinite(value):
+        state.parameters[message.param_id] = value
 
 
 def _text(state: VehicleState, message: Message, now_s: float) -> None:

@@ -13,6 +13,6 @@ class Migration(migrations.Migration):
         migrations.AddField(
             model_name='uavlink',
             name='boots',
-            field=models.JSONField(blank=True, default=list, help_text="runs of the vehicle's clock, the last one last; see decoding/boots.py"),
+            field=models.JSONField(blank=True, db_default=[], default=list, help_text="runs of the vehicle's clock, the last one last; see decoding/boots.py"),
         ),
     ]

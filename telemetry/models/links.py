@@ -32,7 +32,9 @@ class UavLink(models.Model):
     loaded_flight = models.PositiveSmallIntegerField(null=True, blank=True)
     clock_offset_s = models.FloatField(null=True, blank=True, help_text="server's time at the vehicle's time since boot of 0")
     clock_rate = models.FloatField(null=True, blank=True, help_text="vehicle's seconds a second; a simulation may run faster")
-    boots = models.JSONField(default=list, blank=True, help_text="runs of the vehicle's clock, the last one last; see decoding/boots.py")
+    boots = models.JSONField(
+        default=list, db_default=[], blank=True, help_text="runs of the vehicle's clock, the last one last; see decoding/boots.py"
+    )
     signing = models.JSONField(default=dict, blank=True, help_text="last timestamps by link, so that nothing is taken twice")
     losses = models.JSONField(default=dict, blank=True, help_text="what was refused or lost, by cause")
 

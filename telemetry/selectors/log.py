@@ -69,13 +69,13 @@ def spacing_for(records: QuerySet[TelemetryRecord], most: int) -> float | None:
 
 
 def latest_record(uav: Uav) -> TelemetryRecord | None:
-    """What the UAV measured last; never from the future."""
-    return (
-        TelemetryRecord.objects.filter(uav=uav, is_from_future=False)
-        .select_related("uav", "stream")
-        .order_by("-measured_at", "-pk")
-        .first()
-    )
+    """What the UAV measured last, with its UAV and stream; never from the future."""
+    return newest_of(uav.pk, "uav", "stream")
+
+
+def newest_of(uav_id: int, *related: str) -> TelemetryRecord | None:
+    in_time = TelemetryRecord.objects.filter(uav_id=uav_id, is_from_future=False)
+    return (in_time.select_related(*related) if related else in_time).order_by("-measured_at", "-pk").first()
 
 
 def _coordinate(function: str) -> Func:

@@ -6,11 +6,16 @@ from django.conf import settings
 from django.db.models import QuerySet
 
 from missions.models import Uav
-from telemetry.models import FlightLog, UnknownVehicle, VehicleText
+from telemetry.models import FlightLog, UavLink, UnknownVehicle, VehicleText
 
 
 class LogFileMissing(Exception):
     """The file is not there, or lies outside the folder of logs."""
+
+
+def connection_of(uav: Uav) -> UavLink:
+    """An empty one for a UAV that was never heard."""
+    return UavLink.objects.filter(uav=uav).first() or UavLink(uav=uav)
 
 
 def texts_of(uav: Uav) -> QuerySet[VehicleText]:

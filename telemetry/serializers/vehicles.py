@@ -1,12 +1,14 @@
-"""Vehicles that nobody knows, and what is said of them."""
+"""Vehicles that nobody knows, and the connections of those that somebody does."""
 
+from datetime import datetime
 from typing import Any
 
 from rest_framework import serializers
 
 from missions.fields import PositionField
+from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
-from telemetry.models import UnknownVehicle, UnknownVehicleState
+from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
 
 
 class UnknownVehicleSerializer(serializers.Serializer):
@@ -60,4 +62,41 @@ def vehicle_json(vehicle: UnknownVehicle) -> dict[str, Any]:
         "settled_by": (by.get_full_name() or by.username) if by else None,
         "settled_at": vehicle.settled_at,
         "uav": vehicle.uav_id,
+    }
+
+
+class UavConnectionSerializer(serializers.Serializer):
+    """What is known of a UAV's connection; null or empty where nothing is."""
+
+    link = serializers.ChoiceField(choices=LinkKind.choices, help_text="the door by which it is told what to do")
+    heard_at = serializers.DateTimeField(allow_null=True, help_text="when anything was last received, by the server's clock")
+    heard_by = serializers.ChoiceField(choices=LinkKind.choices, allow_null=True, help_text="the door by which it was")
+    address = serializers.CharField(allow_blank=True)
+    autopilot = serializers.CharField(allow_blank=True)
+    firmware = serializers.CharField(allow_blank=True)
+    mode = serializers.CharField(allow_blank=True)
+    is_armed = serializers.BooleanField(allow_null=True)
+    is_in_air = serializers.BooleanField(allow_null=True)
+    battery_percent = serializers.FloatField(allow_null=True)
+    loaded_approval = serializers.UUIDField(allow_null=True, help_text="of the mission that is on it, as it was seen")
+    loaded_flight = serializers.IntegerField(allow_null=True)
+    server_time = serializers.DateTimeField(help_text="to tell an age by, whatever the reader's clock says")
+
+
+def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
+    by = None if link.heard_at is None else LinkKind.HTTP if link.address.startswith("http ") else LinkKind.MAVLINK
+    return {
+        "link": uav.link,
+        "heard_at": link.heard_at,
+        "heard_by": by,
+        "address": link.address,
+        "autopilot": link.autopilot,
+        "firmware": link.firmware,
+        "mode": link.mode,
+        "is_armed": link.is_armed,
+        "is_in_air": link.is_in_air,
+        "battery_percent": uav.battery_percent,
+        "loaded_approval": link.loaded_approval,
+        "loaded_flight": link.loaded_flight,
+        "server_time": now,
     }

@@ -1,5 +1,6 @@
 """Writes of what happens in the air."""
 
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
+from telemetry.services.retention import forget_old_telemetry
 
-__all__ = ["NewRecord", "StoredCount", "store_records"]
+__all__ = ["NewRecord", "StoredCount", "forget_old_telemetry", "store_records"]

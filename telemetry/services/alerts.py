@@ -7,6 +7,8 @@ from django.utils import timezone
 from missions.models import Mission, Uav
 from telemetry.models import Alert, AlertLevel
 
+SECOND_SENDER = "second-sender"
+
 
 def open_alert(
     *, uav: Uav, level: AlertLevel, code: str, message: str, mission: Mission | None = None, details: dict[str, Any] | None = None
@@ -30,3 +32,14 @@ def open_alert(
 def close_alert(*, uav: Uav, code: str) -> bool:
     """Whether one was open."""
     return bool(Alert.objects.filter(uav=uav, code=code, closed_at=None).update(closed_at=timezone.now()))
+
+
+def tell_of_second_sender(*, uav_id: int, words: str) -> None:
+    """Without words it is over."""
+    uav = Uav.objects.filter(pk=uav_id).first()
+    if uav is None:
+        return
+    if words:
+        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=words)
+    else:
+        close_alert(uav=uav, code=SECOND_SENDER)

@@ -9,6 +9,7 @@ from uuid import UUID
 from missions.models import LinkKind, MissionUav
 from telemetry.decoding.companion_reports import FaultyReport, Report, read_report
 from telemetry.decoding.measurement import Measurement
+from telemetry.services.heard import note_state_over_http
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
 
 
@@ -38,12 +39,14 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
             read[index] = read_report(record, known_place=place)
         except FaultyReport as error:
             refused.append(RefusedReport(index, error.faults))
-    own = _own_missions(uav_id, {report.mission for report in read.values() if report.mission})
-    for index in [index for index, report in read.items() if report.mission and report.mission not in own]:
+    own = _own_missions(uav_id, {UUID(report.mission) for report in read.values() if report.mission})
+    for index in [index for index, report in read.items() if report.mission and UUID(report.mission) not in own]:
         del read[index]
         refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
     records = [_new_record(report, uav_id, stream, received_at) for report in read.values()]
     counts = store_records(records) if records else StoredCount()
+    if counts.stored:
+        note_state_over_http(uav_id=uav_id, received_at=received_at)
     return TakenReports(counts, sorted(refused, key=lambda fault: fault.index))
 
 
@@ -64,5 +67,5 @@ def _new_record(report: Report, uav_id: int, stream: str, received_at: datetime)
         measured_at=report.measured_at,
         received_at=received_at,
         measurement=Measurement(longitude_deg=longitude_deg, latitude_deg=latitude_deg, **values),
-        mission_id=report.mission,
+        mission_id=UUID(report.mission) if report.mission else None,
     )

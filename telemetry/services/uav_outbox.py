@@ -11,13 +11,15 @@ from missions.given_selectors import Given, given_to
 from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
 from missions.services.commands import claim_commands, note_acknowledged, note_applied, note_failed, note_sent
 from missions.services.dispatch import ApprovedLoad, load_of
-from telemetry.models import UavLink
+from telemetry.models import AlertLevel, UavLink
+from telemetry.services.alerts import close_alert, open_alert
 
 HOLDER = "http-link"  # all processes of the link are one: a UAV may ask any of them
 LEASE_S = 30.0
 MOST_AT_ONCE = 10
 OTHER_CONTENT = "other-content"
 REFUSED = "refused-by-uav"
+HOLDS_OTHER = "holds-other-content"  # an alert's code
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,11 @@ def note_acknowledgements(*, uav_id: int, acknowledgements: Sequence[Acknowledge
 
 @transaction.atomic
 def _note(uav_id: int, told: Acknowledgement) -> Noted:
-    command = UavCommand.objects.select_related("approval").filter(pk=told.command_id, uav_id=uav_id, link=LinkKind.HTTP).first()
+    command = (
+        UavCommand.objects.select_related("approval", "uav", "mission")
+        .filter(pk=told.command_id, uav_id=uav_id, link=LinkKind.HTTP)
+        .first()
+    )
     if command is None:
         return Noted(told.command_id, False, None, "There is no such command to this UAV.")
     if command.state not in OPEN_COMMANDS:
@@ -74,7 +80,7 @@ def _note(uav_id: int, told: Acknowledgement) -> Noted:
         noted, words = _note_upload(command, told, holding)
     else:
         noted = note_applied(command.pk, note=told.reason, **holding)
-        if command.kind == CommandKind.CLEAR_MISSION:
+        if noted and command.kind == CommandKind.CLEAR_MISSION:
             _hold(command, None)
     command.refresh_from_db(fields=["state"])
     return Noted(command.pk, noted, command.state, words)
@@ -91,6 +97,8 @@ def _note_upload(command: UavCommand, told: Acknowledgement, holding: dict[str, 
     words = "The UAV holds something else than what was approved." if told.content_sha256 else "The UAV does not say what it holds."
     noted = note_failed(command.pk, OTHER_CONTENT, words, **holding)
     _hold(command, None)
+    if noted:
+        open_alert(uav=command.uav, level=AlertLevel.CRITICAL, code=HOLDS_OTHER, message=words, mission=command.mission)
     return noted, words
 
 
@@ -98,6 +106,8 @@ def _hold(command: UavCommand, load: ApprovedLoad | None) -> None:
     """What the UAV holds now; after a failure nobody knows."""
     if command.kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION}:
         return
+    if load is not None or command.kind == CommandKind.CLEAR_MISSION:
+        close_alert(uav=command.uav, code=HOLDS_OTHER)
     UavLink.objects.update_or_create(
         uav_id=command.uav_id,
         defaults={

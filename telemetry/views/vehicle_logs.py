@@ -1,10 +1,11 @@
-"""What vehicles said in words, and the logs of their flights as files."""
+"""How UAVs are connected, what their autopilots said in words, and the logs of their flights as files."""
 
 from typing import Any
 
 from django.http import FileResponse, Http404
 from django.shortcuts import get_object_or_404
 from django.urls import reverse
+from django.utils import timezone
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
@@ -13,13 +14,25 @@ from rest_framework.views import APIView
 
 from missions.views.uavs import uav_or_404
 from telemetry.models import FlightLog
-from telemetry.selectors.vehicles import LogFileMissing, file_of, flight_logs_of, texts_of
+from telemetry.selectors.vehicles import LogFileMissing, connection_of, file_of, flight_logs_of, texts_of
 from telemetry.serializers.log import FlightLogPageSerializer, VehicleTextPageSerializer, VehicleTextSerializer
+from telemetry.serializers.vehicles import UavConnectionSerializer, connection_json
 from workspace.negotiation import OneAnswer
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
 
 TLOG_TYPE = "application/octet-stream"
+
+
+class UavConnection(APIView):
+    @extend_schema(
+        operation_id="get_uav_connection",
+        summary="When a UAV was heard last and by which door, its mode, and the mission that is on it",
+        responses=UavConnectionSerializer,
+    )
+    def get(self, request: Request, uav_id: int) -> Response:
+        uav = uav_or_404(request.user, uav_id)
+        return Response(connection_json(uav, connection_of(uav), timezone.now()))
 
 
 class VehicleTexts(APIView):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -36,9 +37,13 @@ for name, role in {USERS!r}.items():
 
 @dataclass(frozen=True)
 class Site:
-    """Where it is, and the cookies of those who have come in: only the first of their tests goes through the door."""
+    """Where it is, and the cookies of those who have come in: only the first of their tests goes through the door.
+
+    `does(code)` runs Python in the installation, for what no page can bring about.
+    """
 
     address: str
+    does: Callable[[str], None]
     cookies: dict[str, list[Any]] = field(default_factory=dict)
 
 
@@ -64,8 +69,9 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
 
     try:
         run("./run", "--detach", "--port", str(port), "--osm", str(osm_file), "--zones", str(zones_file))
-        run(sys.executable, "manage.py", "shell", "-v", "0", "-c", NEW_USERS)
-        yield Site(address=f"http://127.0.0.1:{port}")
+        does = partial(run, sys.executable, "manage.py", "shell", "-v", "0", "-c")
+        does(NEW_USERS)
+        yield Site(address=f"http://127.0.0.1:{port}", does=does)
     finally:
         run("./run", "--stop")
         shutil.rmtree(Places(state_dir).data, ignore_errors=True)  # as root the database may stand outside the state folder

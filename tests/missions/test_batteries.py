@@ -12,7 +12,7 @@ from inspection.services import import_terrain
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
 from missions.models import EndAction
-from missions.routing.problem import Objective
+from missions.routing.problem import Objective, Priority
 from missions.services import TargetRequest, make_plan
 from missions.services.requests import UavRequest
 from tests.missions.worlds import request, uav, world
@@ -172,6 +172,44 @@ def test_without_towers_on_the_way_charging_helps_nobody() -> None:
     small = iris((10.001, 55.95), battery_wh=4.0, end_action=EndAction.RETURN)
     plan = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=100.0))
     assert reasons(plan) == {0: "beyond_energy"}
+
+
+@pytest.mark.parametrize("charging_w", [None, 300.0])
+def test_with_the_wh_that_are_missing_it_is_flown_and_with_less_it_is_not(charging_w: float | None) -> None:
+    """A place 2.8 km from the line: on the way to it there is no tower to charge at."""
+    world()
+    there = TargetRequest(None, LonLat(10.001, 55.975))
+
+    def plan(battery_wh: float) -> dict[str, Any]:
+        return make_plan(request=request(there, uavs=(iris(battery_wh=battery_wh, end_action=EndAction.RETURN),), charging_w=charging_w))
+
+    (item,) = plan(8.0)["unassigned"]
+    missing_wh = float(item["message"].split(" Wh more than the battery of Tern")[0].split()[-1])
+    assert plan(8.0 + (missing_wh + 0.06) / 0.8)["unassigned"] == []
+    assert reasons(plan(8.0 + (missing_wh - 0.06) / 0.8)) == {0: "beyond_energy"}
+    assert ("However Tern charges on the way" in item["message"]) == (charging_w is not None)
+
+
+def test_who_has_the_range_lacks_the_battery_though_others_lack_the_range() -> None:
+    """Once the target is kept from the one that charges, the solver knows of nothing but the other one's range."""
+    world()
+    there = TargetRequest(None, LonLat(10.001, 55.975))
+    uavs = (iris(battery_wh=8.0, end_action=EndAction.RETURN), uav(name="Gull", max_range_m=1_000.0, end_action=EndAction.RETURN))
+    (item,) = make_plan(request=request(there, uavs=uavs, charging_w=300.0))["unassigned"]
+    assert item["reason"] == "beyond_energy"
+    assert item["message"].startswith("However Tern charges on the way, it alone takes ")
+
+
+def test_a_target_that_is_in_reach_alone_is_told_so_and_flown_when_it_comes_first() -> None:
+    here = world()
+    there = TargetRequest(None, LonLat(10.001, 55.985))
+    alone_wh = make_plan(request=request(there, uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
+    small = iris(battery_wh=(alone_wh + 0.1) / 0.8, end_action=EndAction.RETURN)
+    (item,) = make_plan(request=request(*here.towers[:3], there, uavs=(small,)))["unassigned"]
+    assert item["target"] == 3
+    assert "alone" in item["message"]
+    first = TargetRequest(None, LonLat(10.001, 55.985), priority=Priority.HIGH)
+    assert 3 not in reasons(make_plan(request=request(*here.towers[:3], first, uavs=(small,))))
 
 
 def ridge(folder: Path) -> None:

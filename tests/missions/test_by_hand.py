@@ -336,3 +336,14 @@ def test_a_tower_of_the_highest_voltages_is_not_inspected_lower_by_hand(here: Wo
     mission = post(client, "missions", mission_body(towers[0]) | {"plan": True}).json()
     lower = [point | {"altitude_agl_m": min(point["altitude_agl_m"], 62.0)} for point in as_wished(mission)]
     assert "Between 75 and" in str(error_of(put(client, mission, lower), 400))
+
+
+def test_of_two_legs_over_a_wire_the_one_that_is_too_low_is_told_of(here: World, client: Client) -> None:
+    """Wires at 80 m: the first leg crosses them at 70 m, the second comes back 1 m short of the clearance, as rounding may have it."""
+    power_line([ground.tower((lon, 55.9975), height_m=80.0) for lon in (10.001, 10.004)], voltages_v=[110_000])
+    rebuild()
+    mission = post(client, "missions", mission_body(here.bridge) | {"plan": True}).json()
+    wished = as_wished(mission)
+    over = [(55.9965, 70.0), (55.9985, 70.0), (55.9985, 94.0), (55.9965, 94.0), (55.9965, 70.0)]
+    wished[1:1] = [{"position": [10.0025, lat], "altitude_agl_m": agl_m, "was": None} for lat, agl_m in over]
+    assert {place for place in error_of(put(client, mission, wished), 400)["details"] if int(place.split(".")[1]) < 5} == {"legs.1"}

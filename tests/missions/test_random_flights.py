@@ -110,12 +110,13 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
         return []
     item = draw.choice(refused)
     target, lacks, said = item["target"], missing(item), item["message"]
-    if asked.charging_w is not None and item["reason"] == "beyond_energy":  # by way of others there may be more towers to charge at
-        asked, target = replace(asked, targets=(asked.targets[target],)), 0
+    only = replace(asked, targets=(asked.targets[target],))
     if lacks is None:
         seen["alone"] += 1
-        first = make_plan(request=first_of_all(asked, target))
-        return [f"target {target} is not flown alone: {said}"] if target in _left_out(first) else []
+        is_flown = target not in _left_out(make_plan(request=first_of_all(asked, target))) or not make_plan(request=only)["unassigned"]
+        return [] if is_flown else [f"target {target} is not flown alone: {said}"]
+    if "charges on the way" in said:  # by way of others there may be more towers to charge at
+        asked, target = only, 0
     seen["refusals flown"] += 1
     half = make_plan(request=first_of_all(asked, target, lacks[0] * ALMOST, lacks[1] * ALMOST - LEAST_WH))
     whole = make_plan(request=first_of_all(asked, target, lacks[0] * 1.001 + 60.0, lacks[1] * MORE + LEAST_WH))

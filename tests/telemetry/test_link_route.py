@@ -13,6 +13,7 @@ from missions.services.approval import revoke_approval
 from missions.services.dispatch import abort_mission, dispatch_mission
 from missions.services.missions import MissionChange, MissionFrozen, change_mission
 from missions.services.outbox import queue_command
+from telemetry.models import Alert
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.outbox import lose
 from tests.missions.worlds import World, world
@@ -156,6 +157,12 @@ def test_a_uav_that_holds_something_else_is_not_ready(here: World, person: User,
     assert (command.state, command.outcome_code) == (CommandState.FAILED, "other-content")
     assert kite.uav.connection.loaded_sha256 == ""
     assert kite.get("route").status_code == 204
+    alert = Alert.objects.get()
+    assert (alert.level, alert.code, alert.uav, alert.closed_at) == ("critical", "holds-other-content", kite.uav, None)
+    dispatch_mission(mission=Mission.objects.get(), actor=person)
+    again = kite.get("route").json()["route"]
+    acknowledge(kite, again["command"], "applied", content_sha256=again["content_sha256"])
+    assert Alert.objects.get().closed_at is not None
 
 
 def test_a_refusal_is_kept_in_the_uavs_words(kite: UavClient) -> None:

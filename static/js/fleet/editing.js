@@ -37,7 +37,7 @@ export function createEditing(context) {
     const began = row ? bodies[tab](row) : bodies[tab](BLANK[tab]);
     if ("position" in began && !began.position) began.position = placeOfNew();
     const body = { ...began, ...kept?.body };
-    const form = createForm({ tab, body, types: types ?? [], bases: bases ?? [], isNew: !row, onMove: (position) => context.map()?.movePin(position), onSave: save, onCancel: cancel });
+    const form = createForm({ tab, body, types: types ?? [], bases: bases ?? [], isNew: !row, isAdministrator: context.page.role === "administrator", onMove: (position) => context.map()?.movePin(position), onSave: save, onCancel: cancel });
     edit = { tab, row, form, began, etag: kept?.etag ?? (row && ifUnchanged(row)), key: newKey(), isSaving: false };
     context.panel.edit(row ? t("Edit {name}", row) : KINDS[tab].one, form);
     const map = context.map();

@@ -62,3 +62,17 @@ export function choiceField(name, label, value, choices, { isNumber = false, ...
   const input = h("select", { class: "input" }, choices.map(([choice, words]) => h("option", { value: `${choice}`, selected: `${choice}` === `${value ?? ""}` }, words)));
   return fieldOf(name, label, input, () => (isNumber ? (input.value === "" ? null : Number(input.value)) : input.value), how);
 }
+
+/** On or off, with what it means beside it. */
+export function switchField(name, label, value, { hint = "", disabled = false } = {}) {
+  const input = h("input", { class: "switch", type: "checkbox", role: "switch", id: `fleet-field-${++made}`, checked: Boolean(value), disabled });
+  const fault = h("p", { class: "field-error", id: `${input.id}-fault`, hidden: true });
+  const help = h("small", { class: "caption", id: `${input.id}-hint` }, hint);
+  input.setAttribute("aria-describedby", `${help.id} ${fault.id}`);
+  const element = h("div", { class: "field" }, h("div", { class: "switch-row" }, h("div", {}, h("label", { for: input.id }, label), help), input), fault);
+  const tell = (words) => {
+    fault.hidden = !words;
+    fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
+  };
+  return { name, label, element, input, read: () => input.checked, tell };
+}

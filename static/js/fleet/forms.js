@@ -4,8 +4,8 @@ import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { coordinateText, lengthText, LONG_UNIT, SPEED_UNIT, speedText } from "../units.js";
 import { BOUNDS, boundsIn, IRIS, USUAL_RESERVE_PERCENT, usualOf } from "../uav_figures.js";
-import { choiceField, numberField, textField } from "./fields.js";
-import { ENDS } from "./words.js";
+import { choiceField, numberField, switchField, textField } from "./fields.js";
+import { ENDS, LINKS } from "./words.js";
 
 const pair = (...fields) => h("div", { class: "pair" }, fields.map((field) => field.element));
 const own = (uav, field) => (uav.from_type.includes(field) ? null : uav[field]);
@@ -17,6 +17,7 @@ export const bodies = {
     name: uav.name, type: uav.type, base: uav.base, position: uav.position, serial_number: uav.serial_number, mavlink_system_id: uav.mavlink_system_id,
     max_range_m: own(uav, "max_range_m"), cruise_speed_mps: own(uav, "cruise_speed_mps"), battery_wh: own(uav, "battery_wh"), mass_kg: own(uav, "mass_kg"),
     reserve_percent: own(uav, "reserve_percent"), max_airspeed_mps: own(uav, "max_airspeed_mps"), battery_percent: uav.battery_percent, sensor: uav.sensor, end_action: uav.end_action,
+    link: uav.link, allows_unsigned: uav.allows_unsigned, is_simulated: uav.is_simulated,
   }),
   types: ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, rotor_disk_m2, hover_power_w, sensors }) =>
     ({ name, max_range_m, cruise_speed_mps, battery_wh, mass_kg, reserve_percent, max_airspeed_mps, rotor_disk_m2, hover_power_w, sensors }),
@@ -26,7 +27,7 @@ export const bodies = {
 const AIRSPEED_BOUNDS = boundsIn("max_airspeed_mps", SPEED_UNIT.mps);
 
 export const BLANK = {
-  uavs: { name: "", type: null, base: null, position: null, serial_number: "", mavlink_system_id: null, max_range_m: null, cruise_speed_mps: null, battery_wh: null, mass_kg: null, reserve_percent: null, max_airspeed_mps: null, battery_percent: null, sensor: "", end_action: "hover", from_type: [] },
+  uavs: { name: "", type: null, base: null, position: null, serial_number: "", mavlink_system_id: null, max_range_m: null, cruise_speed_mps: null, battery_wh: null, mass_kg: null, reserve_percent: null, max_airspeed_mps: null, battery_percent: null, sensor: "", end_action: "hover", link: "mavlink", allows_unsigned: false, is_simulated: false, from_type: [] },
   types: { name: "", max_range_m: null, cruise_speed_mps: 12, battery_wh: null, mass_kg: null, reserve_percent: USUAL_RESERVE_PERCENT, max_airspeed_mps: null, rotor_disk_m2: null, hover_power_w: null, sensors: [] },
   bases: { name: "", position: null, note: "" },
 };
@@ -48,7 +49,17 @@ function placeFields(position, onMove) {
   };
 }
 
-function uavFields(uav, { types, bases, place, isNew }) {
+/** By which door a UAV is told what to do, and what is taken for its word. */
+function linkFields(uav, isAdministrator) {
+  const waiver = (name, label, hint) => switchField(name, label, uav[name], { hint: isAdministrator ? hint : t("Only an administrator changes this."), disabled: !isAdministrator });
+  return [
+    choiceField("link", t("Told what to do by"), uav.link, Object.entries(LINKS).map(([value, { words }]) => [value, words])),
+    waiver("is_simulated", t("Simulated"), t("No real aircraft: it may fly where there is no terrain data.")),
+    waiver("allows_unsigned", t("MAVLink without a signature"), t("Whoever reaches the gateway can then fly it: only on a closed network.")),
+  ];
+}
+
+function uavFields(uav, { types, bases, place, isNew, isAdministrator }) {
   const typeOf = (id) => types.find((type) => type.id === id);
   const usual = (type) => (type ? t("Empty: {range} and {speed}, as its type.", { range: type.max_range_m === null ? t("no limit") : lengthText(type.max_range_m), speed: speedText(type.cruise_speed_mps) }) : t("Empty: the range is not limited, the speed is the usual one."));
   const name = textField("name", t("Name"), uav.name, { required: true });
@@ -81,6 +92,7 @@ function uavFields(uav, { types, bases, place, isNew }) {
     textField("serial_number", t("Serial number"), uav.serial_number),
     numberField("mavlink_system_id", t("MAVLink system id"), uav.mavlink_system_id, { min: 1, max: 254, step: 1, digits: 0 }),
   ];
+  const link = linkFields(uav, isAdministrator);
   type.input.addEventListener("change", () => {
     hint.textContent = usual(typeOf(type.read()));
     showUsual();
@@ -99,8 +111,8 @@ function uavFields(uav, { types, bases, place, isNew }) {
   });
   showButton();
   return {
-    fields: [name, type, base, range, speed, ...power, ...rest],
-    elements: [name.element, pair(type, base), place.element, button, h("div", {}, pair(range, speed), hint), h("div", { class: "stack-tight" }, pair(power[0], power[1]), pair(power[2], power[3]), powerHint), pair(rest[0], rest[4]), rest[1].element, rest[2].element, rest[3].element],
+    fields: [name, type, base, range, speed, ...power, ...rest, ...link],
+    elements: [name.element, pair(type, base), place.element, button, h("div", {}, pair(range, speed), hint), h("div", { class: "stack-tight" }, pair(power[0], power[1]), pair(power[2], power[3]), powerHint), pair(rest[0], rest[4]), rest[1].element, rest[2].element, rest[3].element, ...link.map((field) => field.element)],
   };
 }
 
@@ -132,7 +144,7 @@ function baseFields(base, { place }) {
 const MAKERS = { uavs: uavFields, types: typeFields, bases: baseFields };
 
 /** Returns { element, body(), tell(error), notice(…), setPlace(position), label(name), words(name, value) }. onMove(position): the place was typed. */
-export function createForm({ tab, body, types, bases, isNew, onMove, onSave, onCancel }) {
+export function createForm({ tab, body, types, bases, isNew, isAdministrator, onMove, onSave, onCancel }) {
   const notice = h("div", {});
   let touched = false;
   const place = body.position && placeFields(body.position, (position) => ((touched = true), onMove(position)));
@@ -140,7 +152,7 @@ export function createForm({ tab, body, types, bases, isNew, onMove, onSave, onC
     place.isTouched = () => touched;
     place.move = (position) => (place.set(position), onMove(position));
   }
-  const { fields, elements } = MAKERS[tab](body, { types, bases, place, isNew });
+  const { fields, elements } = MAKERS[tab](body, { types, bases, place, isNew, isAdministrator });
   const save = h("button", { class: "button primary" }, t("Save"));
   const element = h(
     "form",
@@ -184,6 +196,8 @@ export function createForm({ tab, body, types, bases, isNew, onMove, onSave, onC
       if (name === "position") return coordinateText(value);
       if (name === "max_range_m") return lengthText(value);
       if (name === "cruise_speed_mps" || name === "max_airspeed_mps") return speedText(value);
+      if (name === "link") return LINKS[value].words;
+      if (typeof value === "boolean") return value ? t("yes") : t("no");
       return names(name, value) ?? (Array.isArray(value) ? value.join(", ") : `${value}`);
     },
   };

@@ -6,7 +6,13 @@ import { coordinateText, percentText, powerText, speedText } from "../units.js";
 import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, squareMetres, stateChip, uavsText, wattHours } from "./words.js";
 
 const caption = (words) => words && h("span", { class: "caption" }, words);
-const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const term = (name, value) => (value === null || value === undefined || value === "" || value === false ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+
+/** What it is charged to, and what a full one holds; the latter alone where nobody knows the former. */
+function batteryCell({ battery_percent, battery_wh }) {
+  const holds = battery_wh !== null && caption(wattHours(battery_wh));
+  return battery_percent === null && holds ? holds : [batteryMark(battery_percent), holds];
+}
 
 export const KINDS = {
   uavs: {
@@ -22,7 +28,7 @@ export const KINDS = {
       { words: t("Name"), cell: (uav) => caption(uav.type_name || t("no type")) },
       { words: t("State"), cell: (uav) => stateChip(uav.state) },
       { words: t("Base"), class: "wide", cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))] },
-      { words: t("Battery"), class: "number", cell: (uav) => [batteryMark(uav.battery_percent), caption(uav.battery_wh !== null && wattHours(uav.battery_wh))] },
+      { words: t("Battery"), class: "number", cell: batteryCell },
       { words: t("Range"), class: "number wide", cell: (uav) => rangeText(uav.max_range_m) },
       { words: t("Missions"), class: "number missions", cell: (uav) => `${uav.mission_count || "—"}` },
     ],
@@ -41,6 +47,8 @@ export const KINDS = {
       term(t("At the end"), endWords(uav.end_action)),
       term(t("Serial number"), uav.serial_number),
       term(t("MAVLink system id"), uav.mavlink_system_id && `${uav.mavlink_system_id}`),
+      term(t("Simulated"), uav.is_simulated && t("yes")),
+      term(t("MAVLink without a signature"), uav.allows_unsigned && t("is taken for its word")),
     ],
     deleted: (uav) => t("{name} is deleted.", { name: uav.name }),
     none: { title: t("No UAVs yet"), text: t("Add the first one, then plan a mission with it.") },

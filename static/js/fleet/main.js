@@ -11,6 +11,7 @@ import { IN_USE, mountFilters } from "./filters.js";
 import { KINDS } from "./kinds.js";
 import { mountPanel } from "./panel.js";
 import { mountTable } from "./table.js";
+import { mountUnknownVehicles } from "./unknown_vehicles.js";
 
 const PAGE = 100;
 const wide = matchMedia("(min-width: 1001px)");
@@ -252,6 +253,7 @@ startChrome({
 async function start() {
   ground = await get("/ground").then(({ data }) => data, () => null);
   await load();
+  if (page.role === "administrator") void mountUnknownVehicles({ onAdopted: async (id) => (await load(), turnTo("uavs"), choose("uavs", id)) });
   if (/^\d+$/.test(address.get("id") ?? "")) await choose(store.state.tab, Number(address.get("id")), { keepFocus: true });
   document.documentElement.dataset.loaded = "true";
 }

@@ -4,6 +4,7 @@ import { byId, h, icon } from "../dom.js";
 import { get } from "../api.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
+import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
 import { MISSION_STATES, stateChip } from "./words.js";
 
@@ -45,6 +46,7 @@ export function mountPanel({ canPlan, acts }) {
   function show(kind, row) {
     const isUav = kind.tab === "uavs";
     const title = h("h2", { tabindex: -1 }, row.name);
+    const connection = h("div", { class: "connection" });
     const credentials = h("ul", { class: "plain-list" });
     const missions = h("ul", { class: "plain-list" });
     const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
@@ -58,6 +60,7 @@ export function mountPanel({ canPlan, acts }) {
         h("dl", { class: "facts" }, kind.facts(row)),
         !isUav && row.uav_count > 0 && h("p", {}, h("button", { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) }, tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"))),
         isUav && h("h3", {}, t("Link")),
+        isUav && connection,
         isUav && credentials,
         isUav && h("h3", {}, t("Missions")),
         isUav && missions,
@@ -65,6 +68,7 @@ export function mountPanel({ canPlan, acts }) {
       ].filter(Boolean),
     );
     if (isUav) {
+      mountConnection(connection, row).catch(acts.failed);
       mountCredentials(credentials, row, { canPlan, onChange: acts.refresh }).catch(acts.failed);
       fillMissions(missions, none, `/uavs/${row.id}/missions`).catch(acts.failed);
     }

@@ -26,6 +26,11 @@ export const MISSION_STATES = {
 
 export const CREDENTIALS = { "link-token": t("Token of the HTTP link"), "mavlink-key": t("MAVLink signing key") };
 
+export const LINKS = {
+  mavlink: { words: "MAVLink", by: t("by MAVLink") },
+  http: { words: t("a companion computer over HTTP"), by: t("over HTTP") },
+};
+
 export function stateChip(state) {
   return h("span", { class: `chip ${state}` }, icon(STATES[state].icon, "small"), STATES[state].words);
 }

@@ -16,6 +16,9 @@ function figure(text) {
   return numberText(Number(text.replaceAll(",", "")), decimals);
 }
 
+const THERE = "(there and on to the nearest base|there and back|there)";
+const WAYS = { there: t("there|way"), "there and back": t("there and back|way"), "there and on to the nearest base": t("there and on to the nearest base|way") };
+
 const SENTENCES = [
   [/^It stands inside (.+)\.$/, (zone) => t("It stands inside {zones}.", { zones: zoneOf(zone) })],
   [/^It runs through (.+)\.$/, (zone) => t("It runs through {zones}.", { zones: zoneOf(zone) })],
@@ -26,7 +29,15 @@ const SENTENCES = [
   [/^(.+) has as many targets as it may have \((\d+)\)\.$/, (name, count) => t("{name} has as many targets as it may have ({count}).", { name, count })],
   [/^(.+) and (.+) have as many targets as they may have, and no other UAV has the range for it\.$/, (names, last) => t("{names} and {last} have as many targets as they may have, and no other UAV has the range for it.", { names, last })],
   [/^(.+) and (.+) have as many targets as they may have\.$/, (names, last) => t("{names} and {last} have as many targets as they may have.", { names, last })],
-  [/^It takes ([\d,.]+) Wh there and back, ([\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\.$/, (needed, missing) => t("It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed: figure(needed), missing: figure(missing) })],
+  [new RegExp(`^It takes ([\\d,.]+) Wh ${THERE}, ([\\d,.]+) Wh more than the battery of the UAV that comes nearest to it may give\\.$`), (needed, there, missing) => t("It takes {needed} Wh {there}, {missing} Wh more than the battery of the UAV that comes nearest to it may give.", { needed: figure(needed), there: WAYS[there], missing: figure(missing) })],
+  [new RegExp(`^Over the ground and what stands tall it takes ([\\d,.]+) Wh ${THERE}, ([\\d,.]+) Wh more than the battery of (.+) may give\\.$`), (needed, there, missing, name) => t("Over the ground and what stands tall it takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.", { needed: figure(needed), there: WAYS[there], missing: figure(missing), name })],
+  [new RegExp(`^It is ([\\d,.]+) (k?m) ${THERE}, ([\\d,.]+) (k?m) more than the range of the UAV that comes nearest to it\\.$`), (needed, unit, there, missing, other) => t("It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it.", { needed: `${figure(needed)}\u00a0${unit}`, there: WAYS[there], missing: `${figure(missing)}\u00a0${other}` })],
+  [/^However (.+) charges on the way, it alone takes ([\d,.]+) Wh more than the battery of .+ may give\.$/, (name, missing) => t("However {name} charges on the way, it alone takes {missing} Wh more than its battery may give.", { name, missing: figure(missing) })],
+  [/^However (.+) charges on the way, the battery does not last for it\.$/, (name) => t("However {name} charges on the way, the battery does not last for it.", { name: name.replaceAll(" or ", ` ${t("or|list")} `) })],
+  [/^As drawn, over the ground and what stands tall, all routes that were tried with it take more than the battery may give\.$/, () => t("Over the ground and what stands tall, all routes that were tried with it take more than the battery may give.")],
+  [/^It is within (?:what the battery may give|range and battery) alone, but not within what is left after the other targets\.$/, () => t("The battery lasts for it alone, but not after the other targets.")],
+  [/^It is within range alone, but not within the range that is left after the other targets\.$/, () => t("It is within range alone, but not after the other targets.")],
+  [/^Each UAV that can do it has as many targets as it may have\.$/, () => t("Each UAV that can do it has as many targets as it may have.")],
   [/^(.+) states no top airspeed: it is taken to fly no faster than its speed, through the air\.$/, (name) => t("{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.", { name })],
   [/^The wind is too strong on every way to it, or back\.$/, () => t("The wind is too strong on every way to it, or back.")],
   [/^The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach\.$/, () => t("The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.")],

@@ -1,6 +1,9 @@
 """Runs a MAVLink gateway until it is told to stop (SIGTERM)."""
 
 import asyncio
+import errno
+import logging
+import time
 from argparse import ArgumentParser
 from typing import Any
 
@@ -8,6 +11,11 @@ from django.core.management.base import BaseCommand, CommandError
 
 from telemetry.gateway.options import WrongAddress, options_of_settings
 from telemetry.gateway.process import Gateway
+
+logger = logging.getLogger(__name__)
+
+PORT_EVERY_S = 5.0
+ENDS_WITHIN_S = 9.5
 
 
 class Command(BaseCommand):
@@ -26,12 +34,18 @@ class Command(BaseCommand):
             options = options_of_settings(udp=udp, tcp=tcp, name=name)
         except WrongAddress as error:
             raise CommandError(str(error)) from error
-        try:
-            asyncio.run(_run(Gateway(options), self.stdout.write))
-        except OSError as error:
-            raise CommandError(f"The gateway cannot listen: {error}") from error
+        while True:
+            try:
+                asyncio.run(_run(Gateway(options), self.stdout.write))
+            except OSError as error:
+                if error.errno != errno.EADDRINUSE:
+                    raise CommandError(f"The gateway cannot listen: {error}") from error
+                logger.error("the gateway waits for a port that somebody else holds: %s", error)
+                time.sleep(PORT_EVERY_S)
+            else:
+                return
 
 
 async def _run(gateway: Gateway, say: Any) -> None:
-    gateway.stop_on_signals()
+    gateway.stop_on_signals(after_s=ENDS_WITHIN_S)
     await gateway.run(on_listening=lambda names: say(f"listening on {', '.join(names)}"))

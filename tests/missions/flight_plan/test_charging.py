@@ -106,8 +106,10 @@ def test_the_battery_never_falls_below_its_reserve_nor_rises_above_full(steps: l
     clock = clock_of(waypoints)
     try:
         stops = stops_of(waypoints, towers, charging_w)
-    except CannotCharge:
+    except CannotCharge as error:
         assert fewest_stops(clock, towers, 40 - ROUNDING_WH) is None
+        assert fewest_stops(clock, towers, 40 + error.missing_wh + ROUNDING_WH) is not None or isinstance(error, ChargerTooWeak)
+        assert fewest_stops(clock, towers, 40 + error.missing_wh - ROUNDING_WH) is None
         return
     assert len(stops) in {fewest_stops(clock, towers, 40 + rounding_wh) for rounding_wh in (-ROUNDING_WH, ROUNDING_WH)}
     assert {stop.place for stop in stops} <= set(towers)

@@ -12,7 +12,7 @@ from inspection.geodesy import LonLat
 from inspection.graph.spans import Spans, spans_between
 from missions.flight_plan.obstacles import rising_over, too_low
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.tall_clearance import spans_too_near
+from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
 
@@ -187,3 +187,14 @@ def test_the_last_look_sees_a_leg_through_wires() -> None:
     assert spans_too_near(route(60.0, 60.0), spans((200.0, -300.0, 44.0, 200.0, 300.0, 44.0)), None, RULES) == set()
     assert spans_too_near(inspected(29.0), spans((220.0, -90.0, 40.0, 220.0, 90.0, 40.0)), None, RULES) == {0}
     assert spans_too_near(inspected(29.0), spans((200.0, 0.0, 45.0, 200.0, 90.0, 45.0)), None, RULES) == set()
+
+
+def test_the_last_look_tells_which_leg_is_too_near() -> None:
+    """There at 60 m, back 1 m short of the clearance: that is what rounding and slopes may leave."""
+    corners = [(0.0, 0.0, 60.0), (400.0, 0.0, 60.0), (400.0, 0.0, 94.0), (0.0, 0.0, 94.0)]
+    points = over_flat_ground(*(RoutePoint(at(north, east), WaypointKind.PASS, agl_m) for north, east, agl_m in corners))
+    crossed = spans((200.0, -200.0, 80.0, 200.0, 200.0, 80.0))
+    low = too_low(points, crossed, None, RULES)
+    assert low is not None
+    assert low.place.tolist() == [0, 2]
+    assert legs_too_near(points, crossed, None, RULES) == {(0, 0)}

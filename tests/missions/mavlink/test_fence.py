@@ -1,3 +1,5 @@
+"""No-fly zones as a vehicle's own fence."""
+
 import math
 
 import numpy as np

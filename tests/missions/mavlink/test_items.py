@@ -1,18 +1,21 @@
+"""Approved routes as mission items."""
+
 import json
 import math
+from dataclasses import replace
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.content import FlightLoad, MissionItem, load_from_json, load_to_json
-from missions.mavlink.frozen import BASE, HOVER, LAND, NotARoute, route_from_json, route_to_json
+from missions.mavlink.frozen import BASE, HOVER, LAND, RETURN, NotARoute, route_from_json, route_to_json
 from missions.mavlink.items import CannotBeFlown, flight_loads
 from missions.routing.problem import Task, TaskKind
 from tests.missions.mavlink.routes import START, route, start_and_end, waypoint
 
 TAKEOFF, WAYPOINT, SPEED = mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED
-RTL, LANDING, DELAY = mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH, mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_DELAY
+LANDING, DELAY = mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_DELAY
 PHOTO, LOOK_AT, LOOK_AHEAD = mavlink.MAV_CMD_IMAGE_START_CAPTURE, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI_NONE
 
 
@@ -27,7 +30,7 @@ def with_task(task: Task, **more: object) -> tuple[MissionItem, ...]:
 
 def test_flight_takes_off_sets_its_speed_flies_each_waypoint_and_returns():
     (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.PASS, relative_m=61.234)))
-    assert commands(load.mission) == [TAKEOFF, SPEED, WAYPOINT, WAYPOINT, WAYPOINT, RTL]
+    assert commands(load.mission) == [TAKEOFF, SPEED, WAYPOINT, WAYPOINT, WAYPOINT, LANDING]
     assert load.mission[1].parameters[:3] == (1.0, 12.0, -1.0)
     passed = load.mission[3]
     assert (passed.longitude_e7, passed.latitude_e7, passed.altitude_m) == (98010000, 554000000, 61.23)
@@ -37,13 +40,13 @@ def test_flight_takes_off_sets_its_speed_flies_each_waypoint_and_returns():
 
 def test_items_without_a_place_have_the_frame_mission():
     (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 10.0), target=0)))
-    placeless = {SPEED, PHOTO, DELAY, RTL}
+    placeless = {SPEED, PHOTO, DELAY}
     assert {item.command for item in load.mission if item.frame == mavlink.MAV_FRAME_MISSION} == placeless
 
 
 def test_speed_changes_only_where_a_leg_is_flown_otherwise():
     (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.PASS, speed_mps=5.0), waypoint(2, WaypointKind.PASS, speed_mps=5.0)))
-    assert commands(load.mission) == [TAKEOFF, SPEED, WAYPOINT, SPEED, WAYPOINT, WAYPOINT, SPEED, WAYPOINT, RTL]
+    assert commands(load.mission) == [TAKEOFF, SPEED, WAYPOINT, SPEED, WAYPOINT, WAYPOINT, SPEED, WAYPOINT, LANDING]
     assert [item.parameters[1] for item in load.mission if item.command == SPEED] == [12.0, 5.0, 12.0]
 
 
@@ -81,7 +84,7 @@ def test_camera_is_not_turned_back_along_a_stretch():
     assert LOOK_AT not in commands(load.mission)
 
 
-@pytest.mark.parametrize("end_action", [LAND, BASE])
+@pytest.mark.parametrize("end_action", [RETURN, LAND, BASE])
 def test_flight_lands_on_the_ground_under_its_last_waypoint(end_action: str):
     (load,) = flight_loads(start_and_end(end_action=end_action))
     last = load.mission[-1]
@@ -93,13 +96,22 @@ def test_hovering_flight_ends_with_its_last_waypoint():
     assert load.mission[-1].command == WAYPOINT
 
 
+@pytest.mark.parametrize("end_action", [RETURN, LAND, BASE, HOVER])
+def test_flight_before_another_lands_at_the_base_however_the_route_ends(end_action: str):
+    kinds = [WaypointKind.START, WaypointKind.END, WaypointKind.BASE, WaypointKind.START, WaypointKind.END]
+    points = [waypoint(number, kind, lon=START.lon) for number, kind in enumerate(kinds)]
+    points[2] = waypoint(2, WaypointKind.BASE, lon=START.lon, relative_m=4.0, agl_m=0.0)
+    first, _ = flight_loads(replace(route(points), end_action=end_action))
+    assert (first.mission[-1].command, first.mission[-1].longitude_e7, first.mission[-1].altitude_m) == (LANDING, 98000000, 0.0)
+
+
 def test_route_over_a_base_is_two_flights_each_from_its_own_take_off():
     kinds = [WaypointKind.START, WaypointKind.END, WaypointKind.BASE, WaypointKind.START, WaypointKind.END]
     points = [waypoint(number, kind, lon=START.lon) for number, kind in enumerate(kinds)]
     points[2] = waypoint(2, WaypointKind.BASE, lon=START.lon, relative_m=4.0, agl_m=0.0)
     whole = route(points)
     first, second = flight_loads(whole)
-    assert commands(first.mission) == commands(second.mission) == [TAKEOFF, SPEED, WAYPOINT, WAYPOINT, RTL]
+    assert commands(first.mission) == commands(second.mission) == [TAKEOFF, SPEED, WAYPOINT, WAYPOINT, LANDING]
     assert (first.mission[0].altitude_m, second.mission[0].altitude_m) == (60.0, 56.0)
     assert [flight.take_off.altitude_amsl_m for flight in whole.flights] == [20.0, 24.0]
     assert [item.waypoint for item in second.mission] == [3, 3, 3, 4, 4]

@@ -1,3 +1,5 @@
+"""Orders to vehicles of both flavours, and their effect."""
+
 import math
 from collections.abc import Mapping
 from typing import Any
@@ -349,3 +351,16 @@ def test_other_autopilot_is_told_nothing(order: Order):
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
     assert keeper.outcome.code == "autopilot"
+
+
+def test_effect_that_was_reported_before_the_command_is_no_effect():
+    state = VehicleState(7)
+    state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
+    keeper = CommandKeeper(Order.ARM, state, ENDS, RULES, unsettled_until_s=1.0)
+    assert len(keeper.start(0.5)) == 1
+    answer(keeper, mavlink.MAV_RESULT_ACCEPTED, 0.6)
+    assert keeper.outcome is None
+    again = heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129)
+    state.receive(again, 1.0)
+    keeper.receive(again, 1.0)
+    assert keeper.outcome == APPLIED

@@ -1,3 +1,5 @@
+"""Reading back what a vehicle holds."""
+
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -33,6 +35,16 @@ def test_list_is_read_as_it_is_over_a_bad_link(flavour: str, loss: float, seed: 
     outcome = Channel(download, holding(flavour, 60), Link(loss, duplicates=0.1, reordered=0.1), seed).run()
     assert outcome.state is TransferState.DONE
     assert not differences(mission(60), held_list(download.read, KIND, Flavour(flavour)), Flavour(flavour))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_reading_that_px4_breaks_off_for_a_late_request_is_paced_from_then_on(seed: int):
+    """Nothing is lost, but every tenth request comes twice, and some of these late."""
+    download = Download(KIND, ENDS, RULES)
+    channel = Channel(download, holding("px4", 200), Link(duplicates=0.1, reordered=0.1), seed)
+    assert channel.run().state is TransferState.DONE
+    begun = [message.get_type() for message in channel.to_vehicle].count("MISSION_REQUEST_LIST")
+    assert begun <= 3
 
 
 def test_empty_list_is_read_at_once():

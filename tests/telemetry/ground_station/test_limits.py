@@ -1,3 +1,5 @@
+"""What a vehicle's limits mean for a mission."""
+
 import math
 from itertools import pairwise
 

@@ -1,7 +1,11 @@
+"""Bringing a flight's load onto a vehicle, and what is done after a failure."""
+
+from typing import Any
+
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.content import FlightLoad, MissionType
+from missions.mavlink.content import FlightLoad, MissionItem, MissionType
 from telemetry.ground_station.compare import differences
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
@@ -13,7 +17,7 @@ from telemetry.ground_station.wire import held_list
 from tests.telemetry.vehicles.ardupilot import AUTO, BRAKE, ArduPilot
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon, rally
-from tests.telemetry.vehicles.px4 import HOLD, MISSION
+from tests.telemetry.vehicles.px4 import HOLD, MISSION, Px4
 from tests.telemetry.vehicles.vehicle import Vehicle
 
 OLD = load(9, east=40_000, fence=polygon(9_000))
@@ -215,6 +219,20 @@ def test_cancelling_at_any_message_leaves_the_old_mission_or_none(flavour: str):
         assert holds(vehicle, OLD) if outcome.state is KeeperState.INTACT else holds_no_mission(vehicle)
 
 
+def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
+    """ArduPilot knows no cancelling, and asks on for 8 s."""
+    vehicle = holding("ardupilot", OLD)
+    keeper = keeper_for(vehicle, load(12, fence=OLD.fence))
+    channel = Channel(keeper, vehicle, ground_dies_after=26)
+    channel.run()
+    assert keeper.progress.stage == "sending"
+    channel.ground_dies_after = None
+    items = sent(channel).count("MISSION_ITEM_INT")
+    channel.send(keeper.cancel(channel.now_s))
+    assert channel.go_on().state is KeeperState.CLEARED
+    assert sent(channel).count("MISSION_ITEM_INT") == items > 0
+
+
 def test_cancelling_after_the_end_changes_nothing():
     vehicle = holding("px4", OLD)
     keeper = keeper_for(vehicle)
@@ -272,3 +290,79 @@ def test_two_ground_stations_after_one_another_do_not_confuse_each_other(flavour
         first.ground, first.ground_dies_after = keeper_for(vehicle), None
         assert first.run().state is KeeperState.READY
         assert holds(vehicle, NEW)
+
+
+class Forgetful(Px4):
+    """A memory in which one item is always a metre too low, or only the next time it is read."""
+
+    for_ever = True
+    reads_wrong = 0
+
+    def _as_read(self, item: MissionItem, number: int, kind: MissionType) -> Any:
+        message = super()._as_read(item, number, kind)
+        if kind is MissionType.MISSION and number == 3 and len(self.lists[kind]) == 12 and (self.for_ever or not self.reads_wrong):
+            self.reads_wrong += 1
+            message.z -= 1.0
+        return message
+
+
+def test_vehicle_that_keeps_something_else_is_not_ready_and_loses_the_mission():
+    vehicle = Forgetful()
+    vehicle.lists[MissionType.MISSION] += OLD.mission
+    outcome, channel = bring(vehicle)
+    assert (outcome.state, outcome.code, outcome.sha256) == (KeeperState.CLEARED, "differs", "")
+    assert outcome.mixes[0].words == "12 items where 12 are approved: 0-2 are new, 3 is of neither list, 4-11 are new"
+    assert [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"].count(MissionType.MISSION) == 3
+    assert vehicle.lists[MissionType.MISSION] == []
+
+
+def test_one_wrong_reading_is_read_again_before_anything_is_said():
+    vehicle = Forgetful()
+    vehicle.for_ever = False
+    outcome, channel = bring(vehicle)
+    assert (outcome.state, outcome.mixes, vehicle.reads_wrong) == (KeeperState.READY, (), 1)
+    assert [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"].count(MissionType.MISSION) == 1
+
+
+def test_announcement_that_comes_twice_is_served_again_and_does_not_hold_up_the_reading():
+    """ArduPilot begins to receive anew, and would deny to be read for 8 s."""
+    vehicle = holding("ardupilot", OLD)
+    keeper = keeper_for(vehicle, load(12, fence=OLD.fence))
+    channel = Channel(keeper, vehicle)
+
+    class Doubled:
+        is_done = False
+
+        def receive(self, message: Any, now_s: float) -> None:
+            if message.get_type() == "MISSION_ACK" and message.type == mavlink.MAV_MISSION_ACCEPTED and not self.is_done:
+                self.is_done = True
+                channel.send([count for count in channel.to_vehicle if count.get_type() == "MISSION_COUNT"][-1:])
+
+    channel.listeners.append(Doubled())
+    assert channel.run().state is KeeperState.READY
+    assert holds(vehicle, load(12, fence=OLD.fence))
+    assert [count.get_type() for count in channel.to_vehicle].count("MISSION_COUNT") == 2
+    assert channel.now_s < 6.0
+
+
+def test_mission_that_is_there_though_the_link_was_away_while_it_was_read_is_kept():
+    vehicle = holding("px4", OLD)
+    keeper = keeper_for(vehicle, load(12, fence=OLD.fence))
+    channel = Channel(keeper, vehicle)
+
+    class Outage:
+        """From the vehicle's yes on it hears nothing, until the ground station has tried all that it does."""
+
+        begun_s = 0.0
+
+        def receive(self, message: Any, now_s: float) -> None:
+            if message.get_type() == "MISSION_ACK" and message.mission_type == MissionType.MISSION and not self.begun_s:
+                self.begun_s, vehicle.is_alive = now_s, False
+
+    outage = Outage()
+    channel.listeners.append(outage)
+    with pytest.raises(AssertionError, match="nothing more happens"):
+        channel.run(until_s=115.0)
+    vehicle.restart()
+    assert channel.go_on().state is KeeperState.READY
+    assert holds(vehicle, load(12, fence=OLD.fence))

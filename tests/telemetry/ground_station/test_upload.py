@@ -158,7 +158,7 @@ def test_silent_vehicle_is_announced_to_every_timeout():
     while upload.wake_at_s is not None:
         now_s = upload.wake_at_s
         times += [now_s] * len(upload.tick(now_s))
-    assert times == [1.5, 3.0, 4.5, 6.0]
+    assert times == [1.5, 3.0, 4.5, 6.0, 7.5]
     assert upload.outcome is not None
     assert upload.outcome.state is TransferState.SILENT
 

@@ -1,3 +1,5 @@
+"""What is known of a vehicle from its messages."""
+
 from typing import Any
 
 import pytest

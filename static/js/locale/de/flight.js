@@ -138,7 +138,6 @@ export default {
   "in {count} flight": ["in {count} Flug", "in {count} Flügen"],
   "In part": "Zum Teil",
   "In the air": "In der Luft",
-  "It takes {needed} Wh there and back, {missing} Wh more than the battery of the UAV that comes nearest to it may give.": "Hin und zurück braucht es {needed} Wh, {missing} Wh mehr, als der Akku des UAV geben darf, das ihm am nächsten kommt.",
   "its range": "seine Reichweite",
   "Kept apart: {changes}.": "Auf Abstand gehalten: {changes}.",
   "Kept in reserve": "Reserve",

@@ -1,6 +1,19 @@
 /** Planning: priorities, who flies what, locks, how good a plan is. English → German; [one, other] where there is a plural. */
 
 export default {
+  "Each UAV that can do it has as many targets as it may have.": "Jedes UAV, das es könnte, hat so viele Ziele, wie es haben darf.",
+  "However {name} charges on the way, it alone takes {missing} Wh more than its battery may give.": "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es {missing} Wh mehr, als sein Akku geben darf.",
+  "However {name} charges on the way, the battery does not last for it.": "Wie auch immer {name} unterwegs lädt: Der Akku reicht dafür nicht.",
+  "It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it.": "Es sind {needed} {there}, {missing} mehr als die Reichweite des UAV, das ihm am nächsten kommt.",
+  "It is within range alone, but not after the other targets.": "Allein liegt es in Reichweite, nach den anderen Zielen nicht mehr.",
+  "It takes {needed} Wh {there}, {missing} Wh more than the battery of the UAV that comes nearest to it may give.": "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku des UAV geben darf, das ihm am nächsten kommt.",
+  "or|list": "oder",
+  "Over the ground and what stands tall it takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.": "Über Gelände und Hohes hinweg braucht es {needed} Wh {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
+  "Over the ground and what stands tall, all routes that were tried with it take more than the battery may give.": "Über Gelände und Hohes hinweg brauchen alle versuchten Routen mit ihm mehr, als der Akku geben darf.",
+  "The battery lasts for it alone, but not after the other targets.": "Allein reicht der Akku dafür, nach den anderen Zielen nicht mehr.",
+  "there and back|way": "hin und zurück",
+  "there and on to the nearest base|way": "hin und weiter zur nächsten Basis",
+  "there|way": "hin",
   "(locked)": "(festgelegt)",
   "As good as is possible.": "So gut wie möglich.",
   "Add a base": "Basis anlegen",

@@ -1,0 +1,179 @@
+"""One command on its way to one vehicle, from its row and back to it.
+
+What the row says is written as it happens. Once another gateway carries the command, or a later command has taken its place, nothing is
+written any more: an upload that had begun is undone, and what it left is told all the same.
+"""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from django.conf import settings
+
+from missions.models import UavCommand
+from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_released, note_sent
+from telemetry.gateway.conversation import Conversation
+from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.preparation import CannotCarry, Task, reason_not_to, task_of
+from telemetry.gateway.session import Session
+from telemetry.ground_station.command import CommandEnd, CommandOutcome
+from telemetry.ground_station.command_keeper import CommandKeeper
+from telemetry.ground_station.ends import Ends
+from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
+from telemetry.ground_station.mission_keeper import MissionKeeper
+from telemetry.services.loads import Carried, begin_loading, end_loading, fail_loading
+from telemetry.services.mission_alerts import tell_of_mission
+
+logger = logging.getLogger(__name__)
+
+PROGRESS_EVERY_S = 0.5
+TRY_AGAIN_IN_S = 2.0
+UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
+MOST_ATTEMPTS = 100
+UNSETTLED_S = 2.0  # for which what was sent before may still arrive
+DATABASE_RETRY_S = 0.5
+
+
+@dataclass
+class Carriage:
+    """`is_dropped`: the row is not ours any more, or is to be given back; `is_closing`: the latter."""
+
+    command: UavCommand
+    session: Session
+    database: DatabaseThread
+    is_dropped: bool = False
+    is_closing: bool = False
+    has_ended: bool = False
+    _notes: set[asyncio.Task[Any]] = field(default_factory=set)
+
+    @property
+    def carried(self) -> Carried:
+        return Carried.of(self.command)
+
+    async def run(self) -> None:
+        try:
+            task = await self._surely(task_of, self.command)
+            if isinstance(task, Task):
+                task = reason_not_to(task, self.session.state) or task
+            if isinstance(task, CannotCarry):
+                await self._refuse(task)
+            elif task.load is not None:
+                await self._load(task)
+            else:
+                await self._order(task)
+        except Exception:
+            logger.exception("the command %s of %s broke down", self.command.kind, self.session.uav.name)
+            await self._end(note_failed, "internal", "The gateway failed; the error is in its log.")
+        finally:
+            await asyncio.gather(*self._notes, return_exceptions=True)
+
+    async def _refuse(self, reason: CannotCarry) -> None:
+        if reason.is_for_good or self.command.attempts >= MOST_ATTEMPTS:
+            await self._end(note_failed, reason.code, reason.words)
+        else:
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words)
+
+    async def _order(self, task: Task) -> None:
+        assert task.order is not None  # noqa: S101 - of two only one is None
+        if not await self._surely(note_sent, self.command.pk, **self._fence):
+            self.has_ended = True
+            return
+        keeper = CommandKeeper(
+            task.order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
+            parameters=task.parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
+        )  # fmt: skip
+        told = False
+
+        def change() -> None:
+            nonlocal told
+            self.session.commanded_s = time.monotonic()
+            if keeper.is_acknowledged and not told:
+                told = True
+                self._note(note_acknowledged, self.command.pk, **self._fence)
+
+        self.session.commanded_s = time.monotonic()
+        outcome = await Conversation(self.session, keeper).run(on_change=change, is_wanted=lambda: not self.is_dropped)
+        if isinstance(outcome, CommandOutcome):
+            await self._tell_order(outcome)
+
+    async def _tell_order(self, outcome: CommandOutcome) -> None:
+        await asyncio.gather(*self._notes, return_exceptions=True)
+        if outcome.state is CommandEnd.APPLIED:
+            await self._end(note_applied, note=outcome.words)
+        elif outcome.code in UNHEARD:
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=outcome.words)
+        else:
+            await self._end(note_failed, outcome.code or "failed", outcome.words or "The vehicle did not do it.")
+
+    async def _load(self, task: Task) -> None:
+        assert task.load is not None  # noqa: S101 - the caller has looked
+        if not await self._surely(begin_loading, self.carried):
+            self.has_ended = True
+            return
+        keeper = MissionKeeper(task.load, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES, known=task.known)
+        noted_s, mixes = 0.0, 0
+
+        def change() -> None:
+            nonlocal noted_s, mixes
+            if self.is_dropped:
+                self.session.send(keeper.cancel(time.monotonic()))
+            if len(keeper.mixes) > mixes:
+                mixes = len(keeper.mixes)
+                words = "; ".join(mix.words for mix in keeper.mixes)
+                self._note(tell_of_mission, self.command, is_mixed=True, words=words)
+            if time.monotonic() - noted_s >= PROGRESS_EVERY_S:
+                noted_s = time.monotonic()
+                progress = keeper.progress
+                self._note(note_progress, self.command.pk, done=progress.done, total=progress.total, **self._fence)
+
+        outcome = await Conversation(self.session, keeper).run(on_change=change, is_wanted=lambda: True)
+        await asyncio.gather(*self._notes, return_exceptions=True)
+        await self._tell_load(task, outcome)
+
+    async def _tell_load(self, task: Task, outcome: KeeperOutcome) -> None:
+        """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
+        still_mixed = outcome.state is KeeperState.MIXED or (outcome.state is KeeperState.UNREAD and outcome.is_critical)
+        await self._surely(tell_of_mission, self.command, is_mixed=still_mixed, words=outcome.words)
+        before = task.before if outcome.state is KeeperState.INTACT else None
+        if outcome.state is KeeperState.READY:
+            await self._end_with(end_loading, task.wanted, note=outcome.words)
+        elif self.is_closing or (outcome.code in UNHEARD and not outcome.is_critical):
+            await self._end(note_released, retry_in_s=0.0 if self.is_closing else TRY_AGAIN_IN_S, note=outcome.words)
+        else:
+            await self._end_with(fail_loading, before, outcome.code or outcome.state.value, outcome.words)
+
+    @property
+    def _fence(self) -> dict[str, Any]:
+        return {"attempt": self.carried.attempt, "holder": self.carried.holder}
+
+    async def _end(self, note: Callable[..., bool], /, *values: Any, **named: Any) -> None:
+        self.has_ended = True
+        await self._surely(note, self.command.pk, *values, **named, **self._fence)
+
+    async def _end_with(self, note: Callable[..., bool], /, *values: Any, **named: Any) -> None:
+        self.has_ended = True
+        await self._surely(note, self.carried, *values, **named)
+
+    async def _surely(self, do: Callable[..., Any], /, *values: Any, **named: Any) -> Any:
+        """Waits for a database that is away."""
+        while True:
+            try:
+                return await self.database.run(do, *values, **named)
+            except DatabaseAway:
+                await asyncio.sleep(DATABASE_RETRY_S)
+
+    def _note(self, do: Callable[..., Any], /, *values: Any, **named: Any) -> None:
+        """Meanwhile; without it nothing is lost."""
+
+        async def inside() -> None:
+            try:
+                await self.database.run(do, *values, **named)
+            except DatabaseAway:
+                logger.debug("not noted: %s", do)
+
+        task = asyncio.create_task(inside())
+        self._notes.add(task)
+        task.add_done_callback(self._notes.discard)

@@ -1,0 +1,66 @@
+"""One keeper and its vehicle: messages go to and fro, and time goes on, until there is an outcome."""
+
+import asyncio
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from missions.mavlink.frames import Message
+from telemetry.gateway.session import Session
+
+LONGEST_NAP_S = 0.5
+
+
+class Keeper(Protocol):
+    """A machine of telemetry/ground_station. Times are monotonic seconds."""
+
+    @property
+    def outcome(self) -> Any: ...
+
+    @property
+    def wake_at_s(self) -> float | None: ...
+
+    def start(self, now_s: float) -> list[Message]: ...
+
+    def receive(self, message: Message, now_s: float) -> list[Message]: ...
+
+    def tick(self, now_s: float) -> list[Message]: ...
+
+
+@dataclass
+class Conversation:
+    session: Session
+    keeper: Keeper
+    _heard: asyncio.Event = field(default_factory=asyncio.Event)
+
+    async def run(self, *, on_change: Callable[[], None], is_wanted: Callable[[], bool]) -> Any:
+        """The outcome; None once it is not wanted any more."""
+        self.session.listeners.append(self._hear)
+        try:
+            self.session.send(self.keeper.start(time.monotonic()))
+            while self.keeper.outcome is None:
+                if not is_wanted():
+                    return None
+                await self._wait()
+                now_s = time.monotonic()
+                if self.keeper.outcome is None and self.keeper.wake_at_s is not None and self.keeper.wake_at_s <= now_s:
+                    self.session.send(self.keeper.tick(now_s))
+                on_change()
+            return self.keeper.outcome
+        finally:
+            self.session.listeners.remove(self._hear)
+
+    def _hear(self, message: Message, now_s: float) -> None:
+        if self.keeper.outcome is None:
+            self.session.send(self.keeper.receive(message, now_s))
+            self._heard.set()
+
+    async def _wait(self) -> None:
+        wake_at_s = self.keeper.wake_at_s
+        nap_s = LONGEST_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), LONGEST_NAP_S)
+        try:
+            await asyncio.wait_for(self._heard.wait(), nap_s)
+        except TimeoutError:
+            return
+        self._heard.clear()

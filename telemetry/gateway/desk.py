@@ -1,0 +1,118 @@
+"""Commands of the outbox, carried to the vehicles that this gateway serves.
+
+Of one vehicle at most one command about the same thing is carried at a time. Uploads are long, so only so many go on at once, the most
+urgent first; what stops a UAV or brings it back waits for nothing.
+"""
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from uuid import UUID
+
+from missions.models import CommandKind, CommandPriority, UavCommand
+from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
+from telemetry.gateway.carriage import Carriage
+from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.preparation import LOADING
+from telemetry.gateway.session import Session
+
+logger = logging.getLogger(__name__)
+
+LOOK_EVERY_S = 1.0
+HEARD_WITHIN_S = 5.0  # else its commands wait for it, or for another gateway
+MOST_AT_ONCE = 200
+MOST_UPLOADS = 8
+RETRY_S = 0.5
+END_WITHIN_S = 4.0
+
+
+@dataclass
+class Desk:
+    holder: str
+    lease_s: float
+    sessions: Callable[[], list[Session]]
+    database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-commands"))
+    _carriages: dict[UUID, Carriage] = field(default_factory=dict)
+    _tasks: dict[UUID, asyncio.Task[None]] = field(default_factory=dict)
+    _hint: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def hint(self) -> None:
+        self._hint.set()
+
+    async def run(self) -> None:
+        while True:
+            try:
+                await self.look()
+            except DatabaseAway:
+                await asyncio.sleep(RETRY_S)
+            try:
+                await asyncio.wait_for(self._hint.wait(), LOOK_EVERY_S)
+            except TimeoutError:
+                continue
+            self._hint.clear()
+
+    async def look(self) -> None:
+        """Drops what is not ours any more, takes what waits, begins what can begin."""
+        self._forget_ended()
+        if self._carriages:
+            held = await self.database.run(renew_claims, holder=self.holder, lease_s=self.lease_s)
+            for command_id, carriage in self._carriages.items():
+                if held.get(command_id) != carriage.carried.attempt:
+                    carriage.is_dropped = True
+        now_s = time.time()
+        served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, HEARD_WITHIN_S)}
+        await self.database.run(expire_overdue)
+        room = MOST_AT_ONCE - len(self._carriages)
+        if served and room > 0:
+            claimed = await self.database.run(claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room)
+            for command in claimed:
+                self._carriages[command.pk] = Carriage(command, served[command.uav_id], self.database)
+        self._begin()
+
+    async def close(self) -> None:
+        """Ends what goes on, and gives back what has not ended by then."""
+        for carriage in self._carriages.values():
+            carriage.is_dropped = carriage.is_closing = True
+        if self._tasks:
+            await asyncio.wait(self._tasks.values(), timeout=END_WITHIN_S)
+        for command_id, carriage in self._carriages.items():
+            if not carriage.has_ended:
+                await self.database.run(note_released, command_id, attempt=carriage.carried.attempt, holder=self.holder)
+        for task in self._tasks.values():
+            task.cancel()
+
+    def _begin(self) -> None:
+        waiting = [carriage for command_id, carriage in self._carriages.items() if command_id not in self._tasks]
+        for carriage in sorted(waiting, key=lambda carriage: (carriage.command.priority, carriage.command.created_at)):
+            if carriage.is_dropped:
+                carriage.has_ended = True
+            elif self._may_begin(carriage.command):
+                command_id = carriage.command.pk
+                task = self._tasks[command_id] = asyncio.create_task(carriage.run(), name=f"command {command_id}")
+                task.add_done_callback(self._ended)
+        self._forget_ended()
+
+    def _may_begin(self, command: UavCommand) -> bool:
+        under_way = [self._carriages[command_id].command for command_id in self._tasks]
+        own = [other for other in under_way if other.uav_id == command.uav_id]
+        if any(other.axis == command.axis for other in own):
+            return False
+        if command.priority <= CommandPriority.PAUSE:
+            return True
+        if command.kind == CommandKind.START and any(other.kind in LOADING for other in own):
+            return False
+        return command.kind not in LOADING or sum(other.kind in LOADING for other in under_way) < MOST_UPLOADS
+
+    def _ended(self, task: asyncio.Task[None]) -> None:
+        if not task.cancelled() and task.exception() is not None:
+            logger.error("a command broke down", exc_info=task.exception())
+        self.hint()
+
+    def _forget_ended(self) -> None:
+        for command_id in [key for key, task in self._tasks.items() if task.done()]:
+            del self._tasks[command_id]
+            self._carriages.pop(command_id, None)
+        for command_id in [key for key, carriage in self._carriages.items() if carriage.has_ended and key not in self._tasks]:
+            del self._carriages[command_id]

@@ -1,0 +1,57 @@
+"""Reading a few parameters of a vehicle by name."""
+
+from collections.abc import Sequence
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from telemetry.ground_station.ends import Ends, Message, Messages
+from telemetry.ground_station.rules import TransferRules
+from telemetry.ground_station.vehicle_state import VehicleState
+
+BY_NAME = -1  # in place of a parameter's number
+
+
+class ParameterReading:
+    """Asks until each was told or said not to exist; `outcome` has those that were. `state` is to have taken a message before.
+
+    A parameter that a vehicle does not have draws no answer from many: it is missing from the outcome once the tries are used up.
+    """
+
+    def __init__(self, names: Sequence[str], state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+        self.outcome: dict[str, float] | None = None
+        self.wake_at_s: float | None = None
+        self._open = list(dict.fromkeys(names))
+        self._state = state
+        self._ends = ends
+        self._rules = rules
+        self._tries = 0
+        self._read: dict[str, float] = {}
+
+    def start(self, now_s: float) -> Messages:
+        return self._asked(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if self.outcome is None and message.get_type() == "PARAM_VALUE" and self._ends.has_sent(message) and message.param_id in self._open:
+            if message.param_id in self._state.parameters:
+                self._read[message.param_id] = self._state.parameters[message.param_id]
+            self._open.remove(message.param_id)
+            if not self._open:
+                self._end()
+        return []
+
+    def tick(self, now_s: float) -> Messages:
+        return [] if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s else self._asked(now_s)
+
+    def _asked(self, now_s: float) -> Messages:
+        if not self._open or self._tries > self._rules.retries:
+            return self._end()
+        self._tries += 1
+        self.wake_at_s = now_s + self._rules.timeout_s
+        return [
+            mavlink.MAVLink_param_request_read_message(self._ends.system, self._ends.component, name.encode(), BY_NAME)
+            for name in self._open
+        ]
+
+    def _end(self) -> Messages:
+        self.outcome, self.wake_at_s = self._read, None
+        return []

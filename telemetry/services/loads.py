@@ -1,0 +1,74 @@
+"""What a vehicle holds, as far as it was read back: written together with the end of the command that brought it there."""
+
+from dataclasses import dataclass
+from uuid import UUID
+
+from django.db import transaction
+
+from missions.models import UavCommand
+from missions.services.commands import note_applied, note_failed, note_sent
+from telemetry.models import UavLink
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """`sha256` is a FlightLoad's."""
+
+    sha256: str
+    approval: UUID
+    flight: int
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A command that is carried, and by whom: what is noted with it counts only as long as nobody else carries it."""
+
+    command_id: UUID
+    uav_id: int
+    attempt: int
+    holder: str
+
+    @classmethod
+    def of(cls, command: UavCommand) -> "Carried":
+        return cls(command.pk, command.uav_id, command.attempts, command.holder)
+
+
+def loaded_on(uav_id: int) -> Loaded | None:
+    link = UavLink.objects.filter(uav=uav_id).exclude(loaded_sha256="").first()
+    if link is None or link.loaded_approval is None or link.loaded_flight is None:
+        return None
+    return Loaded(link.loaded_sha256, link.loaded_approval, link.loaded_flight)
+
+
+def begin_loading(carried: Carried) -> bool:
+    """From now on nobody knows what the vehicle holds. False: another one carries the command."""
+    with transaction.atomic():
+        if not note_sent(carried.command_id, attempt=carried.attempt, holder=carried.holder):
+            return False
+        _write(carried.uav_id, None)
+    return True
+
+
+def end_loading(carried: Carried, loaded: Loaded | None, *, note: str = "") -> bool:
+    """The vehicle holds what it was to hold: `loaded`, or nothing."""
+    with transaction.atomic():
+        if not note_applied(carried.command_id, attempt=carried.attempt, holder=carried.holder, note=note):
+            return False
+        _write(carried.uav_id, loaded)
+    return True
+
+
+def fail_loading(carried: Carried, before: Loaded | None, code: str, words: str) -> bool:
+    """before: what it held and holds still; None where that is not known, or nothing that was approved."""
+    with transaction.atomic():
+        if not note_failed(carried.command_id, code, words, attempt=carried.attempt, holder=carried.holder):
+            return False
+        _write(carried.uav_id, before)
+    return True
+
+
+def _write(uav_id: int, loaded: Loaded | None) -> None:
+    values = {"loaded_sha256": "", "loaded_approval": None, "loaded_flight": None}
+    if loaded is not None:
+        values = {"loaded_sha256": loaded.sha256, "loaded_approval": loaded.approval, "loaded_flight": loaded.flight}
+    UavLink.objects.filter(uav=uav_id).update(**values)

@@ -1,0 +1,48 @@
+"""What is older than the settings want is forgotten, in pieces: nothing waits for a long deletion."""
+
+import time
+from datetime import timedelta
+from pathlib import Path
+
+from django.conf import settings
+from django.db import connection
+from django.utils import timezone
+
+from telemetry.models import FlightLog, VehicleText
+
+ROWS_AT_ONCE = 5_000
+LONGEST_S = 20.0
+
+_FORGET_RECORDS = """
+DELETE FROM telemetry_telemetryrecord WHERE id = ANY(ARRAY(
+    SELECT id FROM telemetry_telemetryrecord WHERE received_at < %s LIMIT %s FOR UPDATE SKIP LOCKED
+))
+"""
+_FORGET_STREAMS = """
+DELETE FROM telemetry_telemetrystream stream WHERE started_at < %s
+    AND NOT EXISTS (SELECT 1 FROM telemetry_telemetryrecord record WHERE record.stream_id = stream.id)
+    AND NOT EXISTS (SELECT 1 FROM telemetry_inspectionresult result WHERE result.stream_id = stream.id)
+"""
+
+
+def forget_old_telemetry() -> int:
+    """Records, texts and logs of flights that are older than TELEMETRY_DAYS; 0 keeps all. Returns how many records went.
+
+    Results of inspections stay. Ends after a while; the next call goes on.
+    """
+    if settings.TELEMETRY_DAYS <= 0:
+        return 0
+    before = timezone.now() - timedelta(days=settings.TELEMETRY_DAYS)
+    forgotten, until_s = 0, time.monotonic() + LONGEST_S
+    with connection.cursor() as cursor:
+        while time.monotonic() < until_s:
+            cursor.execute(_FORGET_RECORDS, [before, ROWS_AT_ONCE])
+            forgotten += cursor.rowcount
+            if cursor.rowcount < ROWS_AT_ONCE:
+                cursor.execute(_FORGET_STREAMS, [before])
+                break
+    VehicleText.objects.filter(received_at__lt=before).delete()
+    for log in FlightLog.objects.filter(ended_at__lt=before):
+        (Path(settings.FLIGHT_LOG_DIR) / log.path).unlink(missing_ok=True)
+        log.delete()
+    return forgotten

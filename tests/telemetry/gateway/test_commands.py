@@ -1,0 +1,153 @@
+"""Commands of the outbox reach vehicles through the gateway, and their rows tell what became of them."""
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
+from missions.mavlink.content import FlightLoad, MissionType
+from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, Uav, UavCommand
+from missions.services.commands import queue_command
+from missions.services.dispatch import dispatch_mission, load_of
+from telemetry.ground_station.compare import differences
+from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.wire import held_list
+from telemetry.models import Alert, UavLink
+from tests.missions.flights import approved, ground
+from tests.missions.worlds import UAV_AT, world
+from tests.telemetry.gateway.flyer import Flyer
+from tests.telemetry.gateway.station import gateway_at_work, port_of, unsigned_uav, wait_for
+from tests.telemetry.vehicles.ardupilot import ArduPilot
+from tests.telemetry.vehicles.px4 import Px4
+from tests.workspace.people import somebody
+
+pytestmark = pytest.mark.django_db(transaction=True)
+FLAVOURS = {Flavour.PX4: Px4, Flavour.ARDUPILOT: ArduPilot}
+
+
+@pytest.fixture(autouse=True)
+def own_folders(settings, tmp_path):
+    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
+    settings.FLIGHT_LOG_DIR = tmp_path
+
+
+@pytest.fixture
+def uav() -> Uav:
+    return unsigned_uav(7, is_simulated=True)
+
+
+@pytest.fixture
+def mission(uav, own_folders, tmp_path) -> Mission:
+    author = somebody()
+    ground(tmp_path / "hill.tif", 100.0)
+    mission, _ = approved(author, [uav], world().towers[:2])
+    return mission
+
+
+def dispatch(mission: Mission) -> UavCommand:
+    (command,) = dispatch_mission(mission=mission, actor=mission.author)
+    return command
+
+
+def begin(uav: Uav, mission: Mission, approval: Approval) -> UavCommand:
+    return queue_command(uav=uav, kind=CommandKind.START, actor=None, mission=mission, approval=approval, parameters={"flight": 1})
+
+
+def ended(command: UavCommand) -> UavCommand:
+    def found() -> bool:
+        command.refresh_from_db()
+        return command.state in (CommandState.APPLIED, CommandState.FAILED, CommandState.EXPIRED)
+
+    wait_for(found, f"the end of {command.kind}")
+    return command
+
+
+def holds(vehicle, load: FlightLoad, flavour: Flavour) -> bool:
+    return all(not differences(load.of(kind), held_list(vehicle.held(kind), kind, flavour), flavour) for kind in MissionType)
+
+
+def flyer(vehicle, gateway, **values) -> Flyer:
+    return Flyer(vehicle, port_of(gateway), **{"at": UAV_AT, "altitude_amsl_m": 101.0, **values})
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_mission_is_brought_started_and_taken_off(flavour, uav, mission, tmp_path):
+    vehicle = FLAVOURS[flavour]()
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        upload = ended(dispatch(mission))
+        load = load_of(upload)
+        assert upload.state == CommandState.APPLIED, upload.outcome
+        assert holds(vehicle, load.load, flavour)
+        link = UavLink.objects.get(uav=uav)
+        assert (link.loaded_sha256, link.loaded_approval, link.loaded_flight) == (load.content_sha256, upload.approval_id, 1)
+        states = list(upload.events.values_list("state", flat=True))
+        assert states[:2] == ["queued", "sent"] and states[-1] == "applied"
+
+        start = queue_command(
+            uav=uav, kind=CommandKind.START, actor=None, mission=mission, approval=upload.approval, parameters={"flight": 1}
+        )
+        assert ended(start).state == CommandState.APPLIED, start.outcome
+        assert vehicle.is_in_air
+        mission.refresh_from_db()
+        assert mission.state == MissionState.ACTIVE
+
+        hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
+        assert ended(hold).state == CommandState.APPLIED, hold.outcome
+
+
+def test_a_start_without_the_mission_on_the_vehicle_is_refused(uav, mission, tmp_path):
+    with gateway_at_work(tmp_path) as gateway, flyer(ArduPilot(), gateway):
+        start = begin(uav, mission, mission.approvals.get())
+        assert (ended(start).state, start.outcome_code) == (CommandState.FAILED, "not-loaded")
+
+
+@pytest.mark.parametrize(
+    ("facts", "code"), [({"at": LonLat(UAV_AT.lon + 0.01, UAV_AT.lat)}, "elsewhere"), ({"altitude_amsl_m": 900.0}, "other-height")]
+)
+def test_a_vehicle_that_stands_elsewhere_is_given_nothing(facts, code, uav, mission, tmp_path):
+    vehicle = ArduPilot()
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, **facts) as flying:
+        upload = ended(dispatch(mission))
+        assert (upload.state, upload.outcome_code) == (CommandState.FAILED, code), upload.outcome
+        assert not any(message.get_type() == "MISSION_COUNT" for message in flying.heard)
+
+
+def test_a_refused_upload_is_told_and_leaves_no_mix(uav, mission, tmp_path):
+    vehicle = ArduPilot(refuses={3: mavlink.MAV_MISSION_INVALID_PARAM7})
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        upload = ended(dispatch(mission))
+        assert (upload.state, UavLink.objects.get(uav=uav).loaded_sha256) == (CommandState.FAILED, "")
+        assert len(vehicle.lists[MissionType.MISSION]) == 1, "home alone"
+        wait_for(lambda: not Alert.objects.filter(closed_at=None).exists())
+        assert Alert.objects.filter(code="mission-mixed", level="critical", uav=uav).exists(), "it was mixed for a while"
+
+
+def test_commands_wait_for_a_vehicle_that_is_not_there(uav, tmp_path):
+    with gateway_at_work(tmp_path) as gateway:
+        hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
+        vehicle = Px4(is_armed=True, is_in_air=True)
+        with flyer(vehicle, gateway):
+            assert ended(hold).state == CommandState.APPLIED, hold.outcome
+
+
+def test_a_later_command_takes_the_place_of_one_that_goes_on(uav, tmp_path):
+    vehicle = Px4(denied={mavlink.MAV_CMD_DO_SET_MODE: mavlink.MAV_RESULT_IN_PROGRESS}, is_armed=True, is_in_air=True)
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        first = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
+        wait_for(lambda: UavCommand.objects.filter(pk=first.pk, state=CommandState.SENT).exists())
+        second = queue_command(uav=uav, kind=CommandKind.RETURN, actor=None)
+        vehicle.denied.clear()
+        assert ended(second).state == CommandState.APPLIED, second.outcome
+    first.refresh_from_db()
+    assert (first.state, first.outcome_code) == (CommandState.EXPIRED, "superseded")
+
+
+def test_a_stopped_gateway_gives_its_commands_back(uav, tmp_path):
+    vehicle = Px4(denied={mavlink.MAV_CMD_DO_SET_MODE: mavlink.MAV_RESULT_IN_PROGRESS}, is_armed=True, is_in_air=True)
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
+        wait_for(lambda: UavCommand.objects.filter(pk=hold.pk, state=CommandState.SENT).exists())
+    hold.refresh_from_db()
+    assert (hold.state, hold.holder) == (CommandState.QUEUED, "")
+    vehicle.denied.clear()
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        assert ended(hold).state == CommandState.APPLIED

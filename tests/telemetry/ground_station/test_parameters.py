@@ -1,0 +1,49 @@
+"""Parameters that are read from a vehicle."""
+
+import struct
+from typing import Any
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from telemetry.ground_station.parameters import ParameterReading
+from telemetry.ground_station.rules import TransferRules
+from tests.telemetry.vehicles.channel import Channel, Link
+from tests.telemetry.vehicles.loads import ENDS, known
+from tests.telemetry.vehicles.px4 import Px4
+
+RULES = TransferRules()
+
+
+class WithParameters(Px4):
+    """Knows one real and one whole one; of others it says nothing."""
+
+    def _param_request_read(self, message: Any, now_s: float) -> list[Any]:
+        bits = struct.unpack("<f", struct.pack("<i", 3))[0]
+        values = {"MIS_DIST_WPS": (900.0, 9), "NAV_DLL_ACT": (bits, 6)}
+        if message.param_id not in values:
+            return []
+        return [mavlink.MAVLink_param_value_message(message.param_id.encode(), *values[message.param_id], 2, 0)]
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_parameters_are_read_over_a_bad_link_and_whole_ones_are_whole(seed: int):
+    vehicle = WithParameters()
+    state = known(vehicle)
+    reading = ParameterReading(["MIS_DIST_WPS", "NAV_DLL_ACT"], state, ENDS, RULES)
+    channel = Channel(reading, vehicle, Link(0.3, duplicates=0.1, reordered=0.1), seed, listeners=[state])
+    assert channel.run() == {"MIS_DIST_WPS": 900.0, "NAV_DLL_ACT": 3.0}
+
+
+def test_parameter_that_the_vehicle_does_not_have_is_missing_in_the_end():
+    vehicle = WithParameters()
+    state = known(vehicle)
+    reading = ParameterReading(["MIS_DIST_1WP", "MIS_DIST_WPS"], state, ENDS, RULES)
+    channel = Channel(reading, vehicle, listeners=[state])
+    assert channel.run() == {"MIS_DIST_WPS": 900.0}
+    assert len(channel.to_vehicle) == 2 + RULES.retries
+
+
+def test_nothing_to_read_is_read_at_once():
+    reading = ParameterReading([], known(Px4()), ENDS, RULES)
+    assert (reading.start(0.0), reading.outcome) == ([], {})
