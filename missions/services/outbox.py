@@ -13,9 +13,11 @@ from django.conf import settings
 from django.db import connection, transaction
 from django.db.models import Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Now
+from django.utils.translation import gettext as _
 
-from missions.command_rules import axes_overtaken_by, axis_of, priority_of
+from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import OPEN_COMMANDS, Approval, CommandKind, CommandState, LinkKind, Mission, Uav, UavCommand, UavCommandEvent
+from missions.services.refused import refuse
 from workspace.models import User
 from workspace.services import record_change
 
@@ -49,14 +51,17 @@ def queue_command(
 ) -> UavCommand:
     """Give a UAV a command; unfinished ones about the same thing no longer count.
 
-    Without `expires_in_s` it is wanted for as long as the settings say of its kind. Rows are taken in the order mission,
-    UAV, command: a caller that needs a mission's takes it before.
+    Raises Refused while one of them makes the UAV safer than this one would: that one is not called off. Without `expires_in_s` it is
+    wanted for as long as the settings say of its kind. Rows are taken in the order mission, UAV, command: a caller that needs a mission's
+    takes it before.
     """
     wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
     with transaction.atomic():
         Uav.objects.select_for_update(no_key=True).values_list("pk").get(pk=uav.pk)
+        overtaken = UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind))
+        _refuse_to_overtake(kind, overtaken)
         _end(
-            UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind)),
+            overtaken,
             SUPERSEDED,
             f"A later command took its place: {CommandKind(kind).label}.",
         )
@@ -166,6 +171,13 @@ def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> in
         for uav_id in set(ended):
             _tell(uav_id)
     return number
+
+
+def _refuse_to_overtake(kind: CommandKind, commands: QuerySet[UavCommand]) -> None:
+    for open_kind in commands.filter(state__in=OPEN_COMMANDS).values_list("kind", flat=True):
+        if not may_overtake(kind, open_kind):
+            values = {"wanted": CommandKind(kind).label, "waiting": CommandKind(open_kind).label}
+            raise refuse("safety_first", _("“%(waiting)s” is not done yet: “%(wanted)s” cannot take its place.") % values)
 
 
 def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:

@@ -22,6 +22,7 @@ from missions.services.commands import (
     note_sent,
     renew_claims,
 )
+from missions.services.refused import Refused
 from missions.tasks import expire_commands
 from tests.missions.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
 from tests.workspace.people import somebody
@@ -85,6 +86,34 @@ def test_an_abort_takes_the_place_of_everything() -> None:
     abort = give(uav, CommandKind.ABORT)
     assert {now(command).outcome_code for command in earlier} == {"superseded"}
     assert claim(uav) == [abort]
+
+
+SAFETY_UPWARDS = (CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
+
+
+@pytest.mark.parametrize("waiting", SAFETY_UPWARDS)
+@pytest.mark.parametrize("later", [kind for kind in CommandKind if axis_of(kind) == Axis.FLIGHT])
+def test_what_makes_a_uav_safe_is_called_off_by_nothing_less(waiting: CommandKind, later: CommandKind) -> None:
+    uav = a_uav()
+    first = give(uav, waiting)
+    if later in SAFETY_UPWARDS and SAFETY_UPWARDS.index(later) >= SAFETY_UPWARDS.index(waiting):
+        second = give(uav, later)
+        assert claim(uav) == [second]
+        assert now(first).outcome_code == "superseded"
+        return
+    with pytest.raises(Refused) as error:
+        give(uav, later)
+    assert error.value.reasons[0].code == "safety_first"
+    assert claim(uav) == [first]
+
+
+def test_once_it_is_done_the_uav_goes_on() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (hold,) = claim(uav)
+    assert note_applied(hold.pk, **fence(hold))
+    resume = give(uav, CommandKind.RESUME)
+    assert claim(uav) == [resume]
 
 
 def test_other_uavs_keep_their_commands() -> None:
@@ -285,7 +314,7 @@ def test_whoever_listens_hears_of_a_committed_command_and_of_no_other() -> None:
 
 @pytest.mark.django_db(transaction=True)
 def test_many_at_once_give_one_uav_its_commands_in_an_order_without_gaps() -> None:
-    uav, kinds = a_uav(), [CommandKind.HOLD, CommandKind.CHANGE_SPEED, CommandKind.CLEAR_MISSION, CommandKind.ABORT]
+    uav, kinds = a_uav(), [CommandKind.ABORT, CommandKind.CHANGE_SPEED, CommandKind.CLEAR_MISSION, CommandKind.ABORT]
 
     def give_some() -> None:
         try:
