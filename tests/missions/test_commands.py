@@ -9,7 +9,9 @@ from django.conf import settings
 from django.db import IntegrityError, connection, transaction
 
 from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
-from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, UavCommand
+from missions.given_selectors import given_to
+from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, Uav, UavCommand
+from missions.services import change_uav
 from missions.services.commands import (
     CHANNEL,
     claim_commands,
@@ -169,6 +171,31 @@ def test_each_door_has_its_own_commands() -> None:
     asked = {"uav_ids": [kite.pk, tern.pk], "holder": "gateway-1", "lease_s": LEASE_S, "limit": 10}
     assert claim_commands(**asked, link=LinkKind.MAVLINK) == [by_mavlink]
     assert claim_commands(**asked) == [by_http]
+
+
+def test_a_uav_that_is_reached_otherwise_now_is_given_nothing_by_its_former_door() -> None:
+    kite = a_uav("Kite", link=LinkKind.HTTP)
+    give(kite, CommandKind.CHANGE_SPEED)
+    Uav.objects.update(link=LinkKind.MAVLINK)  # as nobody may while something waits
+    land = give(kite, CommandKind.LAND)
+    assert land.link == LinkKind.MAVLINK, "by the link of now, not of when the caller looked"
+    asked = {"uav_ids": [kite.pk], "holder": "gateway-1", "lease_s": LEASE_S, "limit": 10}
+    assert claim_commands(**asked, link=LinkKind.HTTP) == []
+    assert not given_to(kite.pk).waiting
+    assert claim_commands(**asked, link=LinkKind.MAVLINK) == [land]
+
+
+@pytest.mark.parametrize("change", [{"link": LinkKind.HTTP}, {"mavlink_system_id": 9}, {"allows_unsigned": True}])
+def test_how_a_uav_is_reached_does_not_change_while_a_command_waits(change: dict) -> None:
+    person, uav = somebody(), a_uav()
+    abort = give(uav, CommandKind.ABORT)
+    with pytest.raises(Refused) as error:
+        change_uav(uav=uav, actor=person, position=None, values=change)
+    assert error.value.reasons[0].code == "commands_waiting"
+    change_uav(uav=uav, actor=person, position=None, values={"name": "Owl"})
+    assert claim_commands(uav_ids=[uav.pk], holder="gateway-1", lease_s=LEASE_S, limit=1, link=LinkKind.MAVLINK) == [abort]
+    assert note_applied(abort.pk, attempt=1, holder="gateway-1")
+    change_uav(uav=uav, actor=person, position=None, values=change)
 
 
 def test_what_is_held_is_taken_by_nobody_else_until_the_lease_runs_out() -> None:
