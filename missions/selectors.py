@@ -25,6 +25,11 @@ def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, del
     )
 
 
+def mission_alone(organisation: Organisation, mission_id: UUID) -> Mission:
+    """One mission without what belongs to it. Raises Mission.DoesNotExist also for another organisation's mission."""
+    return Mission.objects.get(organisation=organisation, deleted_at=None, pk=mission_id)
+
+
 def revision_of_mission(organisation_id: int, mission_id: UUID) -> int | None:
     """The number behind the ETag, by one column of one row; None for a mission that is not there."""
     return Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("revision", flat=True).first()

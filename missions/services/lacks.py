@@ -9,6 +9,7 @@ from missions.services.assignment import route_end
 from missions.services.attempts import Attempt
 from missions.services.battery import KEPT_BACK
 from missions.services.least_lacks import IsClear, Lack, LeastLacks
+from missions.services.over_wires import NO_PATH, barred_text
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 from missions.services.unreached import LOCKED
@@ -48,14 +49,21 @@ def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[Lef
 
 
 def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
-    if item.reason == Reason.BEYOND_RANGE.value:
-        return item if lacks.is_clear is None or item.missing is None or lacks.of_range(item.target) else replace(item, missing=None)
-    least = lacks.of_battery(item.target)
+    """Who has the range, but was kept from a target, lacks the battery, even where the solver saw only the range of the others."""
+    by_range = item.reason == Reason.BEYOND_RANGE.value
+    is_alone = by_range and not item.missing
+    least = None if is_alone else lacks.of_battery(item.target)
+    if least is None and not by_range:
+        for target, uav in lacks.barred:
+            if target == item.target:
+                return LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name))
     if least is None:
-        return item if lacks.is_clear is None else replace(item, missing=None)
+        is_way = lacks.is_clear is None or (by_range and lacks.of_range(item.target) is not None)
+        return item if is_way else replace(item, missing=None)
+    told = replace(item, reason=Reason.BEYOND_ENERGY.value)
     if least.missing <= 0.0:
-        return replace(item, message=item.message if item.message == KEPT_BACK else ALONE, missing=0.0)
-    return replace(item, message=_message(least, request), missing=least.missing)
+        return replace(told, message=item.message if item.message == KEPT_BACK else ALONE, missing=0.0)
+    return replace(told, message=_message(least, request), missing=least.missing)
 
 
 def _message(lack: Lack, request: PlanRequest) -> str:

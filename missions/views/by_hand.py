@@ -9,8 +9,9 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions import services
+from missions import selectors, services
 from missions.leg_selectors import Leg, LegEnd, LegFlyer, faults_of_legs
+from missions.models import Mission
 from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
@@ -53,7 +54,10 @@ class RouteWaypointsLook(APIView):
         responses=by_hand.HandLookSerializer,
     )
     def post(self, request: Request, mission_id: UUID, uav: int) -> Response:
-        mission = mission_or_404(request.user, mission_id)
+        try:
+            mission = selectors.mission_alone(request.user.organisation, mission_id)
+        except Mission.DoesNotExist as error:
+            raise Http404 from error
         body = by_hand.HandRouteSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with api_problems():

@@ -28,7 +28,7 @@ class MissionKeeper:
 
     Ready means: all three lists were read back and are the approved ones. A vehicle that is armed is only sent anything while it is held
     (see `VehicleState.is_held`): ArduPilot flies a new item as soon as it has it, even of an upload that it then refuses, and PX4 flies a
-    new mission from its first item.
+    new mission from its first item. One that leaves its hold meanwhile gets the rest all the same: half a list would be worse.
 
     After a failure fence and rally points are put back as they were. The mission is left alone where it is the one from before, whole;
     anything else is taken off, for the vehicle would fly it. `mixes` tells at once what was found, while the keeper still works on it.
@@ -113,7 +113,7 @@ class MissionKeeper:
             if self.found_before[kind] is Found.MIXED:
                 self._note_mix(kind, read)
         for kind in ORDER:
-            if not (yield from self._bring(kind)):
+            if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
                 return (yield from self._give_up())
         held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
         words = f"The vehicle holds {held}."
@@ -162,6 +162,13 @@ class MissionKeeper:
                 return False
             self._reason = self._reason or "differs"
         return False
+
+    def _has_come_unseen(self, kind: MissionType) -> Generator[Machine, None, bool]:
+        """Where no reading got through after the last sending: whether it is there all the same."""
+        if self._is_cancelled or self._now.get(kind) is not None:
+            return False
+        held = yield from self._read(kind)
+        return held is not None and not self._differs(kind, held)
 
     def _put(self, kind: MissionType, items: Sequence[MissionItem]) -> Generator[Machine, None, TransferState]:
         self._now[kind] = None

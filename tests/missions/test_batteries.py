@@ -190,6 +190,16 @@ def test_with_the_wh_that_are_missing_it_is_flown_and_with_less_it_is_not(chargi
     assert ("However Tern charges on the way" in item["message"]) == (charging_w is not None)
 
 
+def test_who_has_the_range_lacks_the_battery_though_others_lack_the_range() -> None:
+    """Once the target is kept from the one that charges, the solver knows of nothing but the other one's range."""
+    world()
+    there = TargetRequest(None, LonLat(10.001, 55.975))
+    uavs = (iris(battery_wh=8.0, end_action=EndAction.RETURN), uav(name="Gull", max_range_m=1_000.0, end_action=EndAction.RETURN))
+    (item,) = make_plan(request=request(there, uavs=uavs, charging_w=300.0))["unassigned"]
+    assert item["reason"] == "beyond_energy"
+    assert item["message"].startswith("However Tern charges on the way, it alone takes ")
+
+
 def test_a_target_that_is_in_reach_alone_is_told_so_and_flown_when_it_comes_first() -> None:
     here = world()
     there = TargetRequest(None, LonLat(10.001, 55.985))

@@ -3,6 +3,7 @@
 import math
 from datetime import UTC, datetime, timedelta
 from typing import Any
+from uuid import uuid4
 
 import pytest
 from django.test import Client
@@ -119,5 +120,6 @@ def test_where_nobody_flies_there_is_nothing_to_look_at(here: World, client: Cli
     mission = post(client, "missions", mission_body(here.towers[0])).json()
     wished = [{"position": [10.0, 56.0], "altitude_agl_m": 60.0, "was": 0}]
     assert post(client, f"missions/{mission['id']}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 400
+    assert post(client, f"missions/{uuid4()}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 404
     viewer = client_of(somebody(Role.VIEWER))
     assert post(viewer, f"missions/{mission['id']}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 403

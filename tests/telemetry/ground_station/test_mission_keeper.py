@@ -343,3 +343,26 @@ def test_announcement_that_comes_twice_is_served_again_and_does_not_hold_up_the_
     assert holds(vehicle, load(12, fence=OLD.fence))
     assert [count.get_type() for count in channel.to_vehicle].count("MISSION_COUNT") == 2
     assert channel.now_s < 6.0
+
+
+def test_mission_that_is_there_though_the_link_was_away_while_it_was_read_is_kept():
+    vehicle = holding("px4", OLD)
+    keeper = keeper_for(vehicle, load(12, fence=OLD.fence))
+    channel = Channel(keeper, vehicle)
+
+    class Outage:
+        """From the vehicle's yes on it hears nothing, until the ground station has tried all that it does."""
+
+        begun_s = 0.0
+
+        def receive(self, message: Any, now_s: float) -> None:
+            if message.get_type() == "MISSION_ACK" and message.mission_type == MissionType.MISSION and not self.begun_s:
+                self.begun_s, vehicle.is_alive = now_s, False
+
+    outage = Outage()
+    channel.listeners.append(outage)
+    with pytest.raises(AssertionError, match="nothing more happens"):
+        channel.run(until_s=115.0)
+    vehicle.restart()
+    assert channel.go_on().state is KeeperState.READY
+    assert holds(vehicle, load(12, fence=OLD.fence))
