@@ -39,8 +39,10 @@ def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[Lef
 
     def least(item: LeftOut) -> LeftOut:
         same = theirs.get(item.target)
-        if same is None or item.missing is None:
+        if same is None or item.reason not in OUT_OF_REACH:
             return item
+        if item.missing is None:
+            return same
         if item.reason != same.reason:
             return item if item.reason == Reason.BEYOND_ENERGY.value else same
         return item if item.missing <= same.missing else same
