@@ -4,6 +4,7 @@ Each is shown once. Kept is only what is needed to check it: a token's SHA-256, 
 """
 
 import secrets
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -61,6 +62,11 @@ def note_link_token_use(*, credential_id: int, last_used_at: datetime | None) ->
     now = timezone.now()
     if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
         prepared_rows(_NOTE_USE, [now, credential_id])
+
+
+def note_mavlink_key_use(*, credential_ids: Collection[int]) -> None:
+    """UAVs have signed with these."""
+    UavCredential.objects.filter(pk__in=credential_ids).update(last_used_at=timezone.now())
 
 
 def mavlink_signing_key(*, credential: UavCredential) -> bytes:

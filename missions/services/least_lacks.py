@@ -12,6 +12,7 @@ from missions.routing.problem import RANGE_RESERVE
 from missions.routing.quantities import Kind
 from missions.services.assignment import COUNTED_CLOSE
 from missions.services.attempts import Attempt
+from missions.services.over_wires import spans_in_the_way
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest
 from missions.services.wishes import may_do
@@ -55,6 +56,7 @@ class LeastLacks:
         self._visits = found.problem.visits_of_target()
         self._number = {place.target: number for number, place in enumerate(found.drawing.places)}
         self._drawn = 0
+        self.barred: set[tuple[int, int]] = set()  # targets and UAVs: a way that was drawn passes what cannot be flown over
 
     def of_battery(self, target: int, only: int | None = None) -> Lack | None:
         """Of all UAVs, or one of them; None where there is no way, or MOST_DRAWN are drawn already."""
@@ -66,6 +68,9 @@ class LeastLacks:
                 continue
             self._drawn += 1
             route = self.found.drawn_alone(uav, order, self.ground)
+            if route is not None and spans_in_the_way([route], self.found.scene.network, self.ground):
+                self.barred.add((target, uav))
+                continue
             missing_wh = max(counted_wh, lack_wh(self.request, uav, route))  # who is refused by the one is not helped by the other
             if route is not None and (best is None or missing_wh < best.missing) and (self.is_clear is None or self.is_clear(route)):
                 best = Lack(missing_wh, uav, route)

@@ -8,11 +8,12 @@ import asyncio
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from django.conf import settings
 
+from missions.mavlink.content import FlightLoad
 from missions.models import UavCommand
 from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_released, note_sent
 from telemetry.gateway.conversation import Conversation
@@ -22,15 +23,19 @@ from telemetry.gateway.session import Session
 from telemetry.ground_station.command import CommandEnd, CommandOutcome
 from telemetry.ground_station.command_keeper import CommandKeeper
 from telemetry.ground_station.ends import Ends
+from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
+from telemetry.ground_station.limits import PARAMETERS, leg_warnings
 from telemetry.ground_station.mission_keeper import MissionKeeper
+from telemetry.ground_station.parameters import ParameterReading
 from telemetry.services.loads import Carried, begin_loading, end_loading, fail_loading
-from telemetry.services.mission_alerts import tell_of_mission
+from telemetry.services.mission_alerts import tell_of_limits, tell_of_mission
 
 logger = logging.getLogger(__name__)
 
 PROGRESS_EVERY_S = 0.5
 TRY_AGAIN_IN_S = 2.0
+PARAMETER_RETRIES = 2
 UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
 MOST_ATTEMPTS = 100
 UNSETTLED_S = 2.0  # for which what was sent before may still arrive
@@ -129,9 +134,27 @@ class Carriage:
                 progress = keeper.progress
                 self._note(note_progress, self.command.pk, done=progress.done, total=progress.total, **self._fence)
 
+        reading = asyncio.create_task(self._parameters())
         outcome = await Conversation(self.session, keeper).run(on_change=change, is_wanted=lambda: True)
         await asyncio.gather(*self._notes, return_exceptions=True)
+        if outcome.state is KeeperState.READY and task.load.mission:
+            await self._warn(task.load, await reading)
+        reading.cancel()
         await self._tell_load(task, outcome)
+
+    async def _parameters(self) -> dict[str, float]:
+        """The limits of legs that the vehicle keeps, while it is being loaded."""
+        if self.session.flavour is not Flavour.PX4:
+            return {}
+        rules = replace(settings.TRANSFER_RULES, retries=PARAMETER_RETRIES)
+        keeper = ParameterReading(PARAMETERS, self.session.state, Ends(self.session.uav.system), rules)
+        return await Conversation(self.session, keeper).run(on_change=lambda: None, is_wanted=lambda: not self.is_dropped) or {}
+
+    async def _warn(self, load: FlightLoad, parameters: dict[str, float]) -> None:
+        """Of what the vehicle holds and would refuse to fly."""
+        state = self.session.state
+        warnings = leg_warnings(load, parameters, state.position)
+        await self._surely(tell_of_limits, self.command, words=" ".join(warning.words for warning in warnings))
 
     async def _tell_load(self, task: Task, outcome: KeeperOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID
 
-from missions.models import CommandKind, CommandPriority, UavCommand
+from missions.models import CommandKind, CommandPriority, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
@@ -66,7 +66,9 @@ class Desk:
         await self.database.run(expire_overdue)
         room = MOST_AT_ONCE - len(self._carriages)
         if served and room > 0:
-            claimed = await self.database.run(claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room)
+            claimed = await self.database.run(
+                claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK
+            )
             for command in claimed:
                 self._carriages[command.pk] = Carriage(command, served[command.uav_id], self.database)
         self._begin()

@@ -15,6 +15,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, message_of
+from missions.services.credentials import note_mavlink_key_use
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
@@ -37,6 +38,7 @@ FLEET_EVERY_S = 1.0
 LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
+KEYS_EVERY_S = 30.0
 SENDERS_EVERY_S = 2.0
 SECOND_SENDER_GONE_S = 60.0
 WAITED_TOO_LONG_S = 15.0
@@ -53,7 +55,7 @@ class Gateway:
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)
     _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
-    _early: deque[tuple[list[Frame], Peer, float]] = field(default_factory=lambda: deque(maxlen=5_000))
+    _early: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=20_000))
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
@@ -68,7 +70,7 @@ class Gateway:
 
     def receive(self, frames: list[Frame], peer: Peer, now_s: float) -> None:
         if self._uavs is None:
-            self._early.append((frames, peer, now_s))
+            self._early.extend((frame, peer, now_s) for frame in frames)
             return
         for frame in frames:
             if frame.message_id in RADIO and not frame.is_signed:
@@ -154,6 +156,7 @@ class Gateway:
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
             "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
+            "keys": self._every(KEYS_EVERY_S, self._note_keys),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
 
@@ -202,7 +205,8 @@ class Gateway:
             elif uav != session.uav:
                 session.change(uav)
         while self._early:
-            self.receive(*self._early.popleft())
+            frame, peer, now_s = self._early.popleft()
+            self.receive([frame], peer, now_s)
 
     async def _lease_loop(self) -> None:
         while True:
@@ -282,6 +286,13 @@ class Gateway:
             else:
                 session.second_sender = None
                 await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
+
+    async def _note_keys(self) -> None:
+        signed = [session for session in self.sessions.values() if session.has_signed]
+        for session in signed:
+            session.has_signed = False
+        if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
+            await self.database.run(note_mavlink_key_use, credential_ids=used)
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())

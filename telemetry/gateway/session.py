@@ -31,7 +31,8 @@ logger = logging.getLogger(__name__)
 
 MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
 SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
-ASK_AGAIN_S = 5.0  # for positions that do not come
+ASK_AGAIN_S = 5.0  # for positions that do not come; for what is told once after ever longer
+ASK_SELDOM_S = 60.0
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
@@ -57,6 +58,7 @@ class Session:
     log: Callable[[bytes, int, float], None] | None = None
     second_sender: tuple[str, float] | None = None  # who, and when last
     is_unsaved: bool = False
+    has_signed: bool = False  # since somebody asked last
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
@@ -67,7 +69,8 @@ class Session:
     _position_s: float = 0.0
     _asked_s: float = 0.0
     _greeted_s: float = 0.0
-    _is_asked_once: bool = False
+    _questioned_s: float = 0.0
+    _question_again_s: float = ASK_AGAIN_S
 
     def __post_init__(self) -> None:
         self.state = VehicleState(self.uav.system)
@@ -153,13 +156,15 @@ class Session:
         self.send([greeting.heartbeat()], now_s)
         flavour = self.state.flavour
         is_here = now_s - self.heard_s < SENDER_SILENT_S
-        if flavour is None or not is_here or now_s - self._asked_s < ASK_AGAIN_S:
+        if flavour is None or not is_here:
             return
-        if now_s - self._position_s > POSITIONS_MISSING_S:
+        if now_s - self._position_s > POSITIONS_MISSING_S and now_s - self._asked_s >= ASK_AGAIN_S:
             self._asked_s = now_s
             self.send(greeting.requests(self.uav.system, flavour), now_s)
-        if self.state.firmware is None or self.state.home is None:
-            self._asked_s = now_s
+        is_all_known = self.state.firmware is not None and self.state.home is not None
+        if not is_all_known and now_s - self._questioned_s >= self._question_again_s:
+            self._questioned_s = now_s
+            self._question_again_s = min(2 * self._question_again_s, ASK_SELDOM_S)
             self.send(greeting.questions(self.uav.system), now_s)
 
     # What is known
@@ -195,6 +200,7 @@ class Session:
     def _refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
         if self._check is not None and frame.is_signed:
             refusal = self._check.refusal(frame, now_s)
+            self.has_signed |= refusal is None
             if refusal is Refusal.TOO_OLD:
                 self._greet_late_clock(peer, now_s)
             return refusal

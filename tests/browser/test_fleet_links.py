@@ -93,7 +93,7 @@ def test_an_unknown_vehicle_is_adopted_and_another_ignored(site: Site, visitor: 
     expect(unknown(page).get_by_text("System 42")).to_be_visible()
     unknown(page).get_by_role("button", name="Ignore system 42").click()
     unknown(page).get_by_role("button", name="Show 1 ignored one").click()
-    expect(unknown(page).get_by_role("button", name="List system 42 again")).to_be_visible()
+    expect(unknown(page).get_by_role("button", name="List again: system 42")).to_be_visible()
 
     unknown(page).get_by_role("button", name="Adopt system 41").click()
     expect(unknown(page).get_by_label("It is")).to_be_focused()
