@@ -9,6 +9,7 @@ from missions.services.assignment import route_end
 from missions.services.attempts import Attempt
 from missions.services.battery import KEPT_BACK
 from missions.services.least_lacks import IsClear, Lack, LeastLacks
+from missions.services.over_wires import NO_PATH, barred_text
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 from missions.services.unreached import LOCKED
@@ -38,8 +39,10 @@ def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[Lef
 
     def least(item: LeftOut) -> LeftOut:
         same = theirs.get(item.target)
-        if same is None or item.missing is None:
+        if same is None or item.reason not in OUT_OF_REACH:
             return item
+        if item.missing is None:
+            return same
         if item.reason != same.reason:
             return item if item.reason == Reason.BEYOND_ENERGY.value else same
         return item if item.missing <= same.missing else same
@@ -52,6 +55,10 @@ def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
     by_range = item.reason == Reason.BEYOND_RANGE.value
     is_alone = by_range and not item.missing
     least = None if is_alone else lacks.of_battery(item.target)
+    if least is None and not by_range:
+        for target, uav in lacks.barred:
+            if target == item.target:
+                return LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name))
     if least is None:
         is_way = lacks.is_clear is None or (by_range and lacks.of_range(item.target) is not None)
         return item if is_way else replace(item, missing=None)

@@ -9,9 +9,10 @@ from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.sorties import wh_of_sorties
 from missions.routing.least_route import LeastRoutes
 from missions.routing.problem import RANGE_RESERVE
-from missions.routing.quantities import Kind
+from missions.routing.quantities import NO_WAY_M, Kind
 from missions.services.assignment import COUNTED_CLOSE
 from missions.services.attempts import Attempt
+from missions.services.over_wires import spans_in_the_way
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest
 from missions.services.wishes import may_do
@@ -55,6 +56,7 @@ class LeastLacks:
         self._visits = found.problem.visits_of_target()
         self._number = {place.target: number for number, place in enumerate(found.drawing.places)}
         self._drawn = 0
+        self.barred: set[tuple[int, int]] = set()  # targets and UAVs: a way that was drawn passes what cannot be flown over
 
     def of_battery(self, target: int, only: int | None = None) -> Lack | None:
         """Of all UAVs, or one of them; None where there is no way, or MOST_DRAWN are drawn already."""
@@ -66,6 +68,9 @@ class LeastLacks:
                 continue
             self._drawn += 1
             route = self.found.drawn_alone(uav, order, self.ground)
+            if route is not None and spans_in_the_way([route], self.found.scene.network, self.ground):
+                self.barred.add((target, uav))
+                continue
             missing_wh = max(counted_wh, lack_wh(self.request, uav, route))  # who is refused by the one is not helped by the other
             if route is not None and (best is None or missing_wh < best.missing) and (self.is_clear is None or self.is_clear(route)):
                 best = Lack(missing_wh, uav, route)
@@ -102,7 +107,7 @@ class LeastLacks:
             for visit in self._visits[self._number[target]]:
                 least = (routes.route(start, visit).order for routes in (self._wh, self._metres))
                 orders = ((visit,), *least) if charges else tuple(least)
-                for order in [order for order in orders if self._metres_of(start, order) <= limit_m][:1]:
+                for order in [order for order in orders if self._metres_of(start, order) <= min(limit_m, NO_WAY_M)][:1]:
                     counted_wh = self.found.problem.route_wh(start, order)
                     if counted_wh is not None and math.isfinite(counted_wh):
                         lacks_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - (usable_wh or 0.0)

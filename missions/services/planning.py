@@ -25,7 +25,7 @@ from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
 from missions.services.lacks import OUT_OF_REACH, least_missing, with_lacks
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
-from missions.services.over_wires import spans_in_the_way, walls_of_spans, without_routes_barred
+from missions.services.over_wires import spans_in_the_way, targets_barred, told_of_wires, walls_of_spans, without_routes_barred
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.requests import PlanRequest
@@ -161,6 +161,7 @@ class _Planner:
         terrain = ground_heights_m if has_terrain else None
         usable_share: dict[int, float] = {}
         kept_from: dict[int, frozenset[int]] = {}
+        wired: dict[int, frozenset[int]] = {}
         barred: frozenset[int] = frozenset()
         for number in range(MOST_TRIES):
             found = attempt(
@@ -178,7 +179,12 @@ class _Planner:
                 found, alone = without_overruns(self.request, found, alone, over)
                 found, alone = without_routes_barred(self.request, found, alone, in_the_way)
             if in_the_way:
-                barred |= frozenset().union(*in_the_way.values())
+                spans = frozenset().union(*in_the_way.values())
+                if spans <= barred:  # walls do not help: what is to be inspected lies there
+                    for uav, targets in targets_barred(found, in_the_way, scene.network, terrain).items():
+                        wired[uav] = wired.get(uav, frozenset()) | targets
+                        kept_from[uav] = kept_from.get(uav, frozenset()) | targets
+                barred |= spans
                 wires = walls_of_spans(scene.network, barred)
                 scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires), is_by_length=is_by_length)
             if number < MOST_TRIES - 2:
@@ -189,6 +195,7 @@ class _Planner:
                 usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
         on_all = (chosen == choice.widest).all()
         is_clear = None if on_all else lambda route: not keys_of_zones_met([route], self.request.departs_at, choice.table)
+        found = replace(found, left_out=told_of_wires(self.request, found.left_out, wired))
         found = replace(found, left_out=with_lacks(self.request, found, terrain, is_clear))
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)

@@ -46,7 +46,7 @@ def handed_to(uav_id: int, given: Given) -> Given:
     """The same after whatever waited has been handed over: from now on it has been sent."""
     if not given.has_unclaimed:
         return given
-    for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MOST_AT_ONCE):
+    for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MOST_AT_ONCE, link=LinkKind.HTTP):
         note_sent(command.pk, attempt=command.attempts, holder=HOLDER)
     return given_to(uav_id)
 

@@ -7,7 +7,7 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from missions.models import Uav, UavType
+from missions.models import LinkKind, Uav, UavType
 from missions.services import change_uav, create_uav
 from telemetry.models import UnknownVehicle, UnknownVehicleState
 from workspace.models import User
@@ -33,9 +33,12 @@ class NewUav:
 
 @transaction.atomic
 def adopt_vehicle(*, vehicle: UnknownVehicle, actor: User, uav: Uav | NewUav) -> Uav:
-    """The UAV gets the vehicle's system id. Raises AlreadySettled, NoPlace, NameTaken or SystemIdTaken."""
+    """The UAV gets the vehicle's system id, and is told what to do by MAVLink from now on.
+
+    Raises AlreadySettled, NoPlace, NameTaken or SystemIdTaken.
+    """
     held = _held(vehicle, UnknownVehicleState.NEW, UnknownVehicleState.IGNORED)
-    system_id: dict[str, Any] = {"mavlink_system_id": held.mavlink_system_id}
+    system_id: dict[str, Any] = {"mavlink_system_id": held.mavlink_system_id, "link": LinkKind.MAVLINK}  # a gateway serves no others
     if isinstance(uav, Uav):
         owner = change_uav(uav=uav, actor=actor, position=None, values=system_id)
     else:

@@ -51,9 +51,10 @@ def test_new_ones_are_listed_the_last_heard_first(client: Client) -> None:
 
 
 def test_a_uav_that_exists_gets_the_system_id(client: Client) -> None:
-    kite, found = a_uav("Kite"), vehicle(41)
+    kite, found = a_uav("Kite", link="http"), vehicle(41)
     answer = post(client, f"unknown-vehicles/{found.pk}/adopt", {"uav": kite.pk})
-    assert (answer.status_code, answer.json()["properties"]["mavlink_system_id"]) == (200, 41)
+    facts = answer.json()["properties"]
+    assert (answer.status_code, facts["mavlink_system_id"], facts["link"]) == (200, 41, "mavlink")
     found.refresh_from_db()
     assert (found.state, found.uav, found.settled_by is not None) == (UnknownVehicleState.ADOPTED, kite, True)
     assert AuditEntry.objects.filter(subject_type="unknown_vehicle", action="settle").count() == 1

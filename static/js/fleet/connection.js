@@ -36,7 +36,7 @@ function drawing(connection) {
       { class: "facts" },
       term(t("Told by"), LINKS[connection.link].words),
       term(t("Mode"), [mode, flightWords(connection)].filter(Boolean).join(", ")),
-      term(t("Charged to"), battery_percent === null ? "" : percentText(battery_percent)),
+      term(t("Charge now"), battery_percent === null ? "" : percentText(battery_percent)),
       term(t("Autopilot"), [autopilot, firmware].filter(Boolean).join(" ")),
       term(t("On it"), loaded_approval ? t("flight {number} of an approved mission", { number: loaded_flight }) : ""),
     ),

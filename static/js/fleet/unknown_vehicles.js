@@ -100,7 +100,7 @@ export function mountUnknownVehicles({ onAdopted }) {
         { class: "acts" },
         adopting !== vehicle.id && h("button", { type: "button", class: "button", "aria-label": t("Adopt system {id}", id), onclick: () => openForm(vehicle) }, icon("plus", "small"), t("Adopt")),
         isIgnored
-          ? h("button", { type: "button", class: "button quiet", "aria-label": t("List system {id} again", id), onclick: () => heed(vehicle) }, t("List again"))
+          ? h("button", { type: "button", class: "button quiet", "aria-label": t("List again: system {id}", id), onclick: () => heed(vehicle) }, t("List again"))
           : h("button", { type: "button", class: "button quiet", "aria-label": t("Ignore system {id}", id), onclick: () => ignore(vehicle) }, t("Ignore")),
       ),
       adopting === vehicle.id && adoptionForm(vehicle, uavs),

@@ -5,6 +5,7 @@ import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { clockText } from "../units.js";
 import { whoseSave } from "./draft.js";
+import { isFrozen } from "./flying.js";
 import { isAlike, merged, wordsOfChange } from "./merge.js";
 import { isUnsaved } from "./plan_view.js";
 import * as picks from "./selection.js";
@@ -35,7 +36,7 @@ export function createConflicts({ store, history, selection, change, problem, fa
     store.update({ name: both.name });
     saving().shownAs(theirs, stored, plan);
     const words = wordsOfChange(before ?? now, now);
-    if (isOwn || (!words.length && !plan)) return;
+    if (isOwn || isFrozen(theirs) || (!words.length && !plan)) return; // of one that is approved only the stage can have changed: the page says it
     const { actor } = await lastSave(theirs);
     const who = actor === page.userName ? t("You, in another window") : (actor ?? t("Another operator"));
     toast(t("{who}: {what}.", { who, what: words.join(", ") || t("planned") }));

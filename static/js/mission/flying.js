@@ -74,7 +74,7 @@ export function boardWords(command) {
   }
   if (state === "failed" || state === "expired") return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
   if (progress?.total) return { words: t("Sending, {done} of {total} items", progress), image: "loader-circle", share: progress.done / progress.total };
-  return { words: state === "queued" ? t("Waiting for the UAV") : t("Sending"), image: state === "queued" ? "timer" : "loader-circle", share: 0 };
+  return state === "queued" ? { words: t("Waiting for the UAV"), image: "timer" } : { words: t("Sending"), image: "loader-circle", share: 0 };
 }
 
 /** "Hold: done 14:05", with the reason where it did not come to that: { words, image, level }. */

@@ -3,14 +3,14 @@
 import { byId, h, icon } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
-import { t } from "../../text.js";
+import { language, localeOf, t } from "../../text.js";
 import { exactText } from "../../units.js";
 import { boardOf, boardWords, commandWords, flightOf, flightToSend, flyersOf, isMixed, isOnItsWay, KINDS, stageActs, stageWords, timesOf, whyNoStart } from "../flying.js";
 
 const BESIDE = ["hold", "return", "land"];
 const MORE = [["arm", "plane-takeoff"], ["take-off", "plane-takeoff"], ["pause", "timer"], ["resume", "refresh-cw"], ["change-speed", "settings"], ["abort", "octagon-alert"]];
 
-const secondsText = (iso) => new Date(iso).toLocaleTimeString(document.documentElement.lang || undefined, { timeZone: document.documentElement.dataset.timeZone || undefined });
+const secondsText = (iso) => new Date(iso).toLocaleTimeString(localeOf(language), { timeZone: document.documentElement.dataset.timeZone || undefined });
 
 /** flying: see flying_actions.js; save(): a copy. */
 export function mountFlying(store, flying, { canFly, saveCopy }) {

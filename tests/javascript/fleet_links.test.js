@@ -1,0 +1,28 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { agoText, heardWords } from "../../static/js/fleet/connection.js";
+import { aboutVehicle } from "../../static/js/fleet/unknown_vehicles.js";
+
+const heard = (heard_at, heard_by = "mavlink") => heardWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
+
+test("when a UAV was heard is told by the server's clock, with the door", () => {
+  assert.deepEqual(heard("2026-11-22T12:00:00Z"), { words: "Last heard 12 s ago by MAVLink.", isHeard: false });
+  assert.deepEqual(heard("2026-11-22T12:00:07Z", "http"), { words: "Last heard 5 s ago over HTTP.", isHeard: true });
+  assert.deepEqual(heard(null, null), { words: "It has never been heard.", isHeard: false });
+});
+
+test("what was heard a moment ahead of the clock was heard now", () => {
+  assert.equal(heard("2026-11-22T12:00:13Z").words, "Last heard 0 s ago by MAVLink.");
+});
+
+test("an age is told in seconds, then in minutes", () => {
+  assert.equal(agoText(59.4, ""), "59 s ago");
+  assert.equal(agoText(61, ""), "1 min ago");
+  assert.equal(agoText(3_500, ""), "58 min ago");
+});
+
+test("of a vehicle that nobody knows only what is known is told", () => {
+  const vehicle = { autopilot: "px4", vehicle_type: "", address: "udp 10.0.0.7:14550", is_signed: false, heard_at: "2026-11-22T12:00:00Z" };
+  assert.equal(aboutVehicle(vehicle, Date.parse("2026-11-22T12:00:03Z")), "px4 · udp 10.0.0.7:14550 · not signed · heard 3 s ago");
+});
