@@ -120,7 +120,7 @@ class CommandSerializer(serializers.Serializer):
     finished_at = serializers.DateTimeField(allow_null=True)
     progress = ProgressSerializer(allow_null=True)
     outcome_code = serializers.CharField()
-    outcome = serializers.CharField(help_text="why it failed or expired")
+    outcome = serializers.CharField(help_text="why it failed or expired; of one that is applied: what to beware of")
 
 
 class CommandEventSerializer(serializers.Serializer):

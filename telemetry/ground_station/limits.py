@@ -57,7 +57,7 @@ def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: L
         length_m = path_length_m(np.array([stands_at, position_of(flown[0][1])]))
         if length_m > most_m:
             warnings.append(
-                LimitWarning("far-first-waypoint", f"The first item is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
+                LimitWarning("far-first-waypoint", f"The first waypoint is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
             )
     most_m = parameters.get(ANY_LEG, 0.0)
     if most_m > 0:
