@@ -202,7 +202,7 @@ def test_many_records_take_no_more_memory_than_a_few(kind: str, number: int) -> 
 
     def peak_bytes(count: int) -> int:
         tracemalloc.start()
-        written = sum(len(piece) for piece in KINDS[kind](replace(told, sequence=place) for place in range(count))
+        written = sum(len(piece) for piece in KINDS[kind](replace(told, sequence=place) for place in range(count)))
         peak = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert written > count * 100
