@@ -55,7 +55,7 @@ class Gateway:
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)
     _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
-    _early: deque[tuple[list[Frame], Peer, float]] = field(default_factory=lambda: deque(maxlen=5_000))
+    _early: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=20_000))
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
@@ -70,7 +70,7 @@ class Gateway:
 
     def receive(self, frames: list[Frame], peer: Peer, now_s: float) -> None:
         if self._uavs is None:
-            self._early.append((frames, peer, now_s))
+            self._early.extend((frame, peer, now_s) for frame in frames)
             return
         for frame in frames:
             if frame.message_id in RADIO and not frame.is_signed:
@@ -205,7 +205,8 @@ class Gateway:
             elif uav != session.uav:
                 session.change(uav)
         while self._early:
-            self.receive(*self._early.popleft())
+            frame, peer, now_s = self._early.popleft()
+            self.receive([frame], peer, now_s)
 
     async def _lease_loop(self) -> None:
         while True:

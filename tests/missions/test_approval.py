@@ -2,6 +2,7 @@
 
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 from django.utils import timezone
@@ -13,6 +14,8 @@ from inspection.models import NoFlyZone
 from missions.flight_plan.lost_link import LostLink
 from missions.mavlink.content import load_from_json
 from missions.mavlink.frozen import route_from_json
+from missions.mavlink.items import flight_loads
+from missions.mavlink.points_between import with_points_between
 from missions.models import Approval, CommandState, Mission, MissionState, TargetState, Uav, UavState, UavType
 from missions.services import (
     MissionChange,
@@ -30,6 +33,7 @@ from missions.services.approval_document import approval_document, content_sha25
 from missions.services.commands import note_applied, note_failed
 from missions.services.refused import Refused
 from missions.services.requests import LostLinkRequest
+from telemetry.ground_station.limits import leg_warnings
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
 from tests.missions.outbox import claim, fence, now
@@ -109,9 +113,9 @@ def test_a_zone_saved_between_the_checks_and_the_document_is_not_approved(
 ) -> None:
     mission = planned(person, fleet(), here.towers[1:2])
 
-    def late(loaded: Mission) -> dict:
+    def late(loaded: Mission, **more: Any) -> dict[str, Any]:
         worlds.zone_around((10.0025, 55.9975), 0.002, name="Saved meanwhile")
-        return approval_document(loaded)
+        return approval_document(loaded, **more)
 
     monkeypatch.setattr("missions.services.approval.approval_document", late)
     assert refused(mission, person) == ["ground_changed"]
@@ -398,3 +402,17 @@ def with_other(value: object, place: tuple) -> object:
     if isinstance(value, dict):
         return value | inner
     return [inner.get(index, entry) for index, entry in enumerate(value)]  # type: ignore[arg-type]
+
+
+def test_points_are_put_in_where_wished_and_are_part_of_what_is_approved(here: World, person: User) -> None:
+    mission = planned(person, fleet(), here.towers[:2])
+    approval = approve_mission(mission=mission, actor=person, longest_leg_m=50.0)
+    (route,) = approval.document["routes"]
+    (flight,) = route["flights"]
+    (plain,) = flight_loads(route_from_json(route["route"]))
+    load = load_from_json(flight["items"])
+    assert load.mission == with_points_between(plain, 50.0).mission != plain.mission
+    assert load.content_sha256 == flight["content_sha256"]
+    assert approval.document["longest_leg_m"] == 50.0
+    assert leg_warnings(load, {"MIS_DIST_WPS": 50.0}, None) == ()
+    assert leg_warnings(plain, {"MIS_DIST_WPS": 50.0}, None) != ()
