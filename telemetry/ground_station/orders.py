@@ -71,7 +71,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     if order is Order.DISARM:
         return OrderPlan(_is_disarmed, ((_DISARM,),))
     if order is Order.RESUME:
-        if state.is_in_air is False:
+        if not _is_told_to_fly(state):
             raise CannotOrder("not-flying", "The UAV is on the ground: a mission is started there, not resumed.")
         return OrderPlan(_is_in(Mode.MISSION), ((_mode(state, Mode.MISSION),),))
     return _take_off(state, parameters) if order is Order.TAKE_OFF else _start(state)
@@ -139,15 +139,20 @@ def _start(state: VehicleState) -> OrderPlan:
 
     ArduCopter agrees to start while it is disarmed, and does nothing: only flying is a start.
     """
-    if state.is_in_air is None:
-        raise CannotOrder("not-told", "The UAV does not tell whether it stands or flies.")
-    if state.is_in_air:
+    if _is_told_to_fly(state):
         return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
     first = _first_item(state)
     if state.flavour is Flavour.PX4:
         return OrderPlan(_flies_mission, ((first, _mode(state, Mode.MISSION), _ARM, _LEAVE_GROUND),))
     begin = () if state.is_armed else (_mode(state, Mode.GUIDED), _ARM)
     return OrderPlan(_flies_mission, ((first, *begin, _mode(state, Mode.MISSION), _MISSION_START),))
+
+
+def _is_told_to_fly(state: VehicleState) -> bool:
+    """Raises CannotOrder where it is not known."""
+    if state.is_in_air is None:
+        raise CannotOrder("not-told", "The UAV does not tell whether it stands or flies.")
+    return state.is_in_air
 
 
 def _first_item(state: VehicleState) -> CommandStep:

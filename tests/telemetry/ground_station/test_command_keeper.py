@@ -123,11 +123,12 @@ def test_start_in_the_air_goes_on_where_it_was_held(flavour: str):
     assert vehicle.current_item == 5
 
 
-def test_start_of_a_uav_that_does_not_tell_whether_it_flies_is_refused():
+@pytest.mark.parametrize("order", [Order.START, Order.RESUME])
+def test_uav_that_does_not_tell_whether_it_flies_is_not_set_in_motion(order: Order):
     keeper, state = fresh()
     state.receive(heard(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)), 0.0)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), RULES.fresh_s + 0.1)
-    keeper = CommandKeeper(Order.START, state, ENDS, RULES)
+    keeper = CommandKeeper(order, state, ENDS, RULES)
     assert keeper.start(RULES.fresh_s + 0.2) == []
     assert keeper.outcome is not None and keeper.outcome.code == "not-told"
 
