@@ -103,17 +103,22 @@ def claim_commands(*, uav_ids: Collection[int], holder: str, lease_s: float, lim
 
 
 def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
-    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once."""
+    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once.
+
+    What was not sent in its time is no longer held.
+    """
     with transaction.atomic():
         held = UavCommand.objects.select_for_update().filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+        held = held.exclude(sent_at=None, expires_at__lte=Now())
         attempts = dict(held.order_by("pk").values_list("pk", "attempts"))
         UavCommand.objects.filter(pk__in=attempts).update(lease_expires_at=Now() + timedelta(seconds=lease_s))
     return attempts
 
 
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
-    """It goes out now; an attempt after another one sends it again."""
-    return _note(command_id, attempt, holder, CommandState.SENT, {"sent_at": Coalesce("sent_at", Now())})
+    """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
+    still_wanted = Q(expires_at=None) | Q(expires_at__gt=Now())
+    return _note(command_id, attempt, holder, CommandState.SENT, {"sent_at": Coalesce("sent_at", Now())}, only=still_wanted)
 
 
 def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
@@ -172,9 +177,11 @@ def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:
     return UavCommand.objects.filter(pk=command_id, attempts=attempt, holder=holder, state__in=OPEN_COMMANDS)
 
 
-def _note(command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "") -> bool:
+def _note(
+    command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "", *, only: Q | None = None
+) -> bool:
     with transaction.atomic():
-        if not _held(command_id, attempt, holder).update(state=state, **values):
+        if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
             return False
         UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
     return True
