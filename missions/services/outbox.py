@@ -15,7 +15,18 @@ from django.db.models import Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Now
 
 from missions.command_rules import axes_overtaken_by, axis_of, priority_of
-from missions.models import OPEN_COMMANDS, Approval, CommandKind, CommandState, LinkKind, Mission, Uav, UavCommand, UavCommandEvent
+from missions.models import (
+    OPEN_COMMANDS,
+    Approval,
+    CommandAxis,
+    CommandKind,
+    CommandState,
+    LinkKind,
+    Mission,
+    Uav,
+    UavCommand,
+    UavCommandEvent,
+)
 from workspace.models import User
 from workspace.services import record_change
 
@@ -27,6 +38,7 @@ _CLAIM = """
         SELECT id FROM missions_uavcommand
         WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
             AND (%s::text IS NULL OR link = %s::text)
+            AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
             AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
             AND (expires_at IS NULL OR expires_at > statement_timestamp())
         ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
@@ -89,16 +101,25 @@ def queue_command(
     return command
 
 
-def claim_commands(*, uav_ids: Collection[int], holder: str, lease_s: float, limit: int, link: LinkKind | None = None) -> list[UavCommand]:
+def claim_commands(
+    *,
+    uav_ids: Collection[int],
+    holder: str,
+    lease_s: float,
+    limit: int,
+    link: LinkKind | None = None,
+    axes: Collection[CommandAxis] | None = None,
+) -> list[UavCommand]:
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
 
-    With `link` only those that go by this door.
+    With `link` only those that go by this door, with `axes` only those about these.
 
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
+    about = None if axes is None else [str(axis) for axis in axes]
     with transaction.atomic():
-        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, limit, holder, lease_s]))
+        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, about, about, limit, holder, lease_s]))
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
 
 
