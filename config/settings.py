@@ -373,6 +373,7 @@ TRANSFER_RULES = TransferRules(
     timeout_s=_float("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
     item_timeout_s=_float("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),
     retries=int(_float("SPANWISE_TRANSFER_RETRIES", TransferRules.retries)),
+    attempts=int(_float("SPANWISE_TRANSFER_ATTEMPTS", TransferRules.attempts)),
 )
 VEHICLE_COMMAND_RULES = VehicleCommandRules(
     timeout_s=_float("SPANWISE_VEHICLE_COMMAND_TIMEOUT_S", VehicleCommandRules.timeout_s),

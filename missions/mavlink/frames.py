@@ -20,6 +20,7 @@ HEADER_V1, HEADER_V2 = 6, 10  # bytes, with the marker
 CHECKSUM = 2
 SIGNATURE = 13  # link id, 6 bytes of time, 6 bytes of hash
 IS_SIGNED = 0x01  # of the incompatibility flags; a frame with any other of them must be dropped
+MOST_FAULTS = 512  # in one datagram or piece of a stream; the rest of it is given up, so that nobody can keep us searching
 LONGEST_FRAME = HEADER_V2 + 255 + CHECKSUM + SIGNATURE
 _MARKERS = (bytes([MARKER_V1]), bytes([MARKER_V2]))
 
@@ -86,10 +87,13 @@ def _scan(data: bytes, damages: Counter[Damage], *, is_whole: bool) -> tuple[lis
     """The frames of data, and what may be the beginning of one more."""
     frames: list[Frame] = []
     place = 0
+    faults = 0
     is_lost = False  # in the middle of what was counted already
     for start in _markers(data):
         if start < place:
             continue
+        if faults == MOST_FAULTS:
+            return frames, b""
         if start > place and not is_lost:
             damages[Damage.NOT_MAVLINK] += 1
         found = _frame_at(data, start)
@@ -100,6 +104,7 @@ def _scan(data: bytes, damages: Counter[Damage], *, is_whole: bool) -> tuple[lis
         if found is Damage.CUT and not is_whole:
             return frames, data[start:]
         damages[found] += 1
+        faults += 1
         place, is_lost = start + 1, True
     if place < len(data) and not is_lost:
         damages[Damage.NOT_MAVLINK] += 1

@@ -7,6 +7,7 @@ from rest_framework import serializers
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
 from workspace.stored_words import in_words
 
 LONGEST_WHY = 300
@@ -44,6 +45,17 @@ class MissionApprovalSerializer(ApprovalSerializer):
 class ApprovalDocumentSerializer(ApprovalSerializer):
     document = serializers.JSONField(
         help_text="routes with their flights and items, zones, conditions, ground, lost link, separation, figures of UAVs: as approved"
+    )
+
+
+class ApproveInputSerializer(KnownFieldsSerializer):
+    longest_leg_m = serializers.FloatField(
+        required=False,
+        allow_null=True,
+        default=None,
+        min_value=SHORTEST_LEG_M,
+        max_value=LONGEST_LEG_M,
+        help_text="autopilots are given points on each leg that is longer, on the same line; without it: legs as planned",
     )
 
 
@@ -108,7 +120,7 @@ class CommandSerializer(serializers.Serializer):
     finished_at = serializers.DateTimeField(allow_null=True)
     progress = ProgressSerializer(allow_null=True)
     outcome_code = serializers.CharField()
-    outcome = serializers.CharField(help_text="why it failed or expired")
+    outcome = serializers.CharField(help_text="why it failed or expired; of one that is applied: what to beware of")
 
 
 class CommandEventSerializer(serializers.Serializer):

@@ -18,4 +18,5 @@ MOST_WIND_LAYERS = 10
 MOST_DAYS_AHEAD = 730
 MOST_SORTIES = 20
 MOST_RALLY_POINTS = 50
+SHORTEST_LEG_M, LONGEST_LEG_M = 50.0, 5_000.0  # that legs may be divided to
 LEAST_CHARGING_W = 20.0  # what a UAV takes while it stands is less

@@ -35,8 +35,11 @@ REVOKED = "revoked"
 SETS_IN_MOTION = (CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START, CommandKind.RESUME)
 
 
-def approve_mission(*, mission: Mission, actor: User, expected_revision: int | None = None) -> Approval:
-    """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so."""
+def approve_mission(*, mission: Mission, actor: User, expected_revision: int | None = None, longest_leg_m: float | None = None) -> Approval:
+    """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so.
+
+    With `longest_leg_m` autopilots are given points on each leg that is longer; they fly the same lines.
+    """
     with transaction.atomic():
         held = held_mission(mission.pk, expected_revision)
         if held.state == MissionState.DRAFT:
@@ -45,12 +48,14 @@ def approve_mission(*, mission: Mission, actor: User, expected_revision: int | N
             raise refuse("not_planned", _("Only a planned mission can be approved."))
         loaded = mission_of_organisation(held.organisation, held.pk)
         refuse_for(reasons_against(loaded, now=timezone.now()))
-        document = approval_document(loaded)
+        document = approval_document(loaded, longest_leg_m=longest_leg_m)
         approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
         held.ground_revision = document["ground"]["revision"]  # which the routes have just been checked against
         held.targets.update(state=TargetState.PENDING)
         held.routes.update(flights_flown=0)
-        change_state(held, MissionState.APPROVED, actor, "approve", {"approval": str(approval.pk), "sha256": approval.content_sha256})
+        facts = {"approval": str(approval.pk), "sha256": approval.content_sha256}
+        facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}
+        change_state(held, MissionState.APPROVED, actor, "approve", facts)
     return approval
 
 

@@ -18,10 +18,11 @@ from inspection.zones.reach import ZoneTable
 from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
 from missions.flight_plan.waypoints import WaypointKind
 from missions.flight_plan.zone_facts import zones_near
-from missions.mavlink.content import MissionItem, load_to_json
+from missions.mavlink.content import FlightLoad, MissionItem, load_to_json
 from missions.mavlink.fence import fence_of, rally_items
 from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
 from missions.mavlink.items import CannotBeFlown, flight_loads
+from missions.mavlink.points_between import with_points_between
 from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
 from missions.services.approved_fence import rally_points, zones_beside
 from missions.services.approved_targets import approved_targets
@@ -49,8 +50,11 @@ def _canonical(value: Any) -> Any:
     return value
 
 
-def approval_document(mission: Mission) -> dict[str, Any]:
-    """Of a planned mission, as loaded by selectors.mission_of_organisation. Raises Refused for routes that a UAV cannot be given."""
+def approval_document(mission: Mission, *, longest_leg_m: float | None = None) -> dict[str, Any]:
+    """Of a planned mission, as loaded by selectors.mission_of_organisation. Raises Refused for routes that a UAV cannot be given.
+
+    With `longest_leg_m` an autopilot's items have points put in on each leg that is longer.
+    """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     return {
         "version": VERSION,
@@ -75,7 +79,8 @@ def approval_document(mission: Mission) -> dict[str, Any]:
         "separation": mission.separation,
         "zones": _zones(flown),
         "targets": approved_targets(mission),
-        "routes": _routes(flown, mission),
+        "longest_leg_m": longest_leg_m,
+        "routes": _routes(flown, mission, longest_leg_m),
     }
 
 
@@ -111,7 +116,7 @@ def _waypoint(row: Waypoint, sequence_of: dict[int, int]) -> FrozenWaypoint:
     )
 
 
-def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
+def _routes(routes: list[Route], mission: Mission, longest_leg_m: float | None) -> list[dict[str, Any]]:
     found, reasons = [], []
     for route in routes:
         uav = route.mission_uav
@@ -119,7 +124,8 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
             frozen = frozen_route(route, mission)
             fence = fence_of(zones_beside(route, departure_s(mission)), frozen)
             by_mavlink = uav.uav is None or uav.uav.link == LinkKind.MAVLINK
-            flights = _flights(frozen, fence.items, rally_items(rally_points(mission, uav.sequence)), by_mavlink=by_mavlink)
+            rally = rally_items(rally_points(mission, uav.sequence))
+            flights = _flights(frozen, _loads(frozen, fence.items, rally, longest_leg_m) if by_mavlink else None)
         except (CannotBeFlown, NotARoute) as error:
             values = {"uav": uav.name, "why": str(error)}
             reasons.append(Reason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
@@ -146,11 +152,16 @@ def _routes(routes: list[Route], mission: Mission) -> list[dict[str, Any]]:
     return found
 
 
-def _flights(
-    route: FrozenRoute, fence: tuple[MissionItem, ...], rally: tuple[MissionItem, ...], *, by_mavlink: bool
-) -> list[dict[str, Any]]:
+def _loads(
+    route: FrozenRoute, fence: tuple[MissionItem, ...], rally: tuple[MissionItem, ...], longest_leg_m: float | None
+) -> list[FlightLoad]:
+    loads = flight_loads(route, fence=fence, rally=rally)
+    return list(loads) if longest_leg_m is None else [with_points_between(load, longest_leg_m) for load in loads]
+
+
+def _flights(route: FrozenRoute, own: list[FlightLoad] | None) -> list[dict[str, Any]]:
     """With what each flight is flown from: items for an autopilot, the flight in plain values for a companion computer."""
-    loads = flight_loads(route, fence=fence, rally=rally) if by_mavlink else [None] * len(route.flights)
+    loads = [None] * len(route.flights) if own is None else own
     found = []
     for flight, load in zip(route.flights, loads, strict=True):
         content = flight_to_json(flight, route) if load is None else None

@@ -39,13 +39,13 @@ __all__ = [
 ]
 
 
-def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "") -> bool:
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
     """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked."""
     with transaction.atomic():
         command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id").filter(pk=command_id).first()
         if command is not None and command.mission_id is not None:
             Mission.objects.select_for_update().values_list("pk").get(pk=command.mission_id)  # missions are held before commands
-        if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note):
+        if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note, warnings=warnings):
             return False
         assert command is not None  # noqa: S101 - it has just been written to
         if command.kind == CommandKind.START and command.mission_id is not None:

@@ -39,8 +39,10 @@ def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[Lef
 
     def least(item: LeftOut) -> LeftOut:
         same = theirs.get(item.target)
-        if same is None or item.missing is None:
+        if same is None or item.reason not in OUT_OF_REACH:
             return item
+        if item.missing is None:
+            return same
         if item.reason != same.reason:
             return item if item.reason == Reason.BEYOND_ENERGY.value else same
         return item if item.missing <= same.missing else same
@@ -59,7 +61,10 @@ def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
                 return LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name))
     if least is None:
         is_way = lacks.is_clear is None or (by_range and lacks.of_range(item.target) is not None)
-        return item if is_way else replace(item, missing=None)
+        if is_way or by_range:
+            return item if is_way else replace(item, missing=None)
+        anyhow = _told(item, request, LeastLacks(request, lacks.found, lacks.ground))  # where zones are not in force: no less is missing
+        return replace(anyhow, missing=None)
     told = replace(item, reason=Reason.BEYOND_ENERGY.value)
     if least.missing <= 0.0:
         return replace(told, message=item.message if item.message == KEPT_BACK else ALONE, missing=0.0)

@@ -9,7 +9,7 @@ from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.sorties import wh_of_sorties
 from missions.routing.least_route import LeastRoutes
 from missions.routing.problem import RANGE_RESERVE
-from missions.routing.quantities import Kind
+from missions.routing.quantities import NO_WAY_M, Kind
 from missions.services.assignment import COUNTED_CLOSE
 from missions.services.attempts import Attempt
 from missions.services.over_wires import spans_in_the_way
@@ -107,7 +107,7 @@ class LeastLacks:
             for visit in self._visits[self._number[target]]:
                 least = (routes.route(start, visit).order for routes in (self._wh, self._metres))
                 orders = ((visit,), *least) if charges else tuple(least)
-                for order in [order for order in orders if self._metres_of(start, order) <= limit_m][:1]:
+                for order in [order for order in orders if self._metres_of(start, order) <= min(limit_m, NO_WAY_M)][:1]:
                     counted_wh = self.found.problem.route_wh(start, order)
                     if counted_wh is not None and math.isfinite(counted_wh):
                         lacks_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - (usable_wh or 0.0)

@@ -156,10 +156,10 @@ def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, tot
     return bool(_held(command_id, attempt, holder).update(progress={"done": done, "total": total}))
 
 
-def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "") -> bool:
-    """The vehicle was seen to do it."""
-    ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None}
-    return _note(command_id, attempt, holder, CommandState.APPLIED, ended, note)
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
+    """The vehicle was seen to do it. `warnings` are for whoever gave the command."""
+    ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None, "outcome": warnings[:500]}
+    return _note(command_id, attempt, holder, CommandState.APPLIED, ended, " ".join(filter(None, [note, warnings])))
 
 
 def note_failed(command_id: UUID, code: str, words: str, *, attempt: int, holder: str) -> bool:

@@ -63,15 +63,16 @@ class MissionApprove(APIView):
         operation_id="approve_mission",
         summary="Approve a planned mission: from now on it is frozen",
         parameters=[IF_MATCH],
-        request=None,
+        request=shapes.ApproveInputSerializer,
         responses={200: MissionSerializer, **REFUSED},
     )
     @idempotent
     def post(self, request: Request, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
+        values = _body(shapes.ApproveInputSerializer, request)
         with api_problems(has_precondition=expected is not None), refusals():
-            approve_mission(mission=mission, actor=request.user, expected_revision=expected)
+            approve_mission(mission=mission, actor=request.user, expected_revision=expected, longest_leg_m=values["longest_leg_m"])
         return answer_mission(request.user, mission_id)
 
 

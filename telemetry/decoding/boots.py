@@ -9,12 +9,13 @@ from typing import Any
 
 from telemetry.decoding.clock import ON_TIME_S, VehicleClock
 
-OUT_OF_ORDER_S = 10.0  # of the vehicle's time; so far back a message may come late without any question
+OUT_OF_ORDER_S = 1.0  # of the vehicle's time; so far back a message may come late without any question
 SAME_EPOCH_S = 5.0
 REBOOT_SLACK_S = 2.0
 FIRST_DAY_S = 1_420_070_400.0  # 2015: a clock that shows less has not been set
 BOOTS_KEPT = 3
 LEAP_S = 10.0
+LEAPS_BELIEVED = 5  # one after the other
 
 
 @dataclass
@@ -42,16 +43,23 @@ class VehicleTime:
     """Fed with every time since boot that a vehicle tells. All times of ours are seconds since 1970."""
 
     boots: list[Boot] = field(default_factory=list)  # the present one last
+    _leaps: int = 0
 
     @property
     def clock(self) -> VehicleClock | None:
         return self.boots[-1].clock if self.boots else None
 
     def receive(self, boot_ms: int, now_s: float, *, unix_s: float | None = None) -> Stamp:
-        """unix_s: the vehicle's day time, where the message tells it (SYSTEM_TIME)."""
+        """unix_s: the vehicle's day time, where the message tells it (SYSTEM_TIME).
+
+        A time far ahead of all before it is a fault until several in a row say so: it is stamped with its receipt and teaches nothing.
+        """
         boot_s = boot_ms / 1000.0
         epoch_s = unix_s - boot_s if unix_s is not None and unix_s >= FIRST_DAY_S else None
         boot = self._boot_of(boot_s, now_s, epoch_s)
+        self._leaps = self._leaps + 1 if self._is_leap(boot, boot_s, now_s) else 0
+        if 0 < self._leaps < LEAPS_BELIEVED:
+            return Stamp(boot.key, boot_ms, now_s)
         boot.clock.receive(boot_s, now_s)
         if boot.clock.lateness_s(boot_s, now_s) < ON_TIME_S:
             boot.live_at_s = max(boot.live_at_s, now_s)
@@ -77,12 +85,16 @@ class VehicleTime:
 
     def _former(self, boot_s: float, now_s: float) -> Boot | None:
         """A boot before the present one, if the time cannot be of the present one yet but was reached then."""
-        present = self.boots[-1]
-        since_s = max(now_s - present.live_at_s, 0.0) * present.clock.rate
-        if boot_s - present.highest_s <= LEAP_S + 3 * since_s:
+        if not self._is_leap(self.boots[-1], boot_s, now_s):
             return None
         reached = (boot for boot in reversed(self.boots[:-1]) if boot_s <= boot.highest_s + LEAP_S)
         return next(reached, None)
+
+    @staticmethod
+    def _is_leap(boot: Boot, boot_s: float, now_s: float) -> bool:
+        """Whether the vehicle's clock would have run far more than ours since it was last heard."""
+        since_s = max(now_s - boot.live_at_s, 0.0) * boot.clock.rate
+        return boot_s - boot.highest_s > LEAP_S + 3 * since_s
 
     def _new(self, boot_s: float, now_s: float) -> Boot:
         rate = self.boots[-1].clock.rate if self.boots else 1.0

@@ -8,7 +8,7 @@ import asyncio
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 from django.conf import settings
@@ -21,22 +21,19 @@ from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import CannotCarry, Task, reason_not_to, task_of
 from telemetry.gateway.reading import read_aboard
 from telemetry.gateway.session import Session
+from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
 from telemetry.ground_station.command import CommandEnd, CommandOutcome
 from telemetry.ground_station.command_keeper import CommandKeeper
 from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
-from telemetry.ground_station.limits import PARAMETERS, leg_warnings
 from telemetry.ground_station.mission_keeper import MissionKeeper
-from telemetry.ground_station.parameters import ParameterReading
 from telemetry.services.loads import Carried, begin_loading, end_loading, fail_loading
-from telemetry.services.mission_alerts import tell_of_limits, tell_of_mission
+from telemetry.services.mission_alerts import tell_of_mission
 
 logger = logging.getLogger(__name__)
 
 PROGRESS_EVERY_S = 0.5
 TRY_AGAIN_IN_S = 2.0
-PARAMETER_RETRIES = 2
 UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
 NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
 CLEAR_AGAIN_IN_S = 15.0
@@ -71,7 +68,7 @@ class Carriage:
         try:
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
-                task = reason_not_to(task, self.session.state) or task
+                task = reason_not_to(task, self.session.state) or await self._beyond_limits(task) or task
             if isinstance(task, CannotCarry):
                 await self._refuse(task)
             elif task.load is not None:
@@ -89,6 +86,11 @@ class Carriage:
             await self._end(note_failed, reason.code, reason.words)
         else:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words)
+
+    async def _beyond_limits(self, task: Task) -> CannotCarry | None:
+        if task.load is None or not task.load.mission:
+            return None
+        return await reason_not_to_load(task.load, self.session, is_wanted=lambda: self.is_ours)
 
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
@@ -160,30 +162,12 @@ class Carriage:
                 progress = keeper.progress
                 self._note(note_progress, self.command.pk, done=progress.done, total=progress.total, **self._fence)
 
-        reading = asyncio.create_task(self._parameters())
         outcome = await Conversation(self.session, keeper, lambda: self.session.is_held).run(on_change=change)
         await asyncio.gather(*self._notes, return_exceptions=True)
-        if outcome is not None and outcome.state is KeeperState.READY and task.load.mission:
-            await self._warn(task.load, await reading)
-        reading.cancel()
         if outcome is None:
             await self._end(note_released)
         else:
             await self._tell_load(task, outcome)
-
-    async def _parameters(self) -> dict[str, float]:
-        """The limits of legs that the vehicle keeps, while it is being loaded."""
-        if self.session.flavour is not Flavour.PX4:
-            return {}
-        rules = replace(settings.TRANSFER_RULES, retries=PARAMETER_RETRIES)
-        keeper = ParameterReading(PARAMETERS, self.session.state, Ends(self.session.uav.system), rules)
-        return await Conversation(self.session, keeper, lambda: self.is_ours).run(on_change=lambda: None) or {}
-
-    async def _warn(self, load: FlightLoad, parameters: dict[str, float]) -> None:
-        """Of what the vehicle holds and would refuse to fly."""
-        state = self.session.state
-        warnings = leg_warnings(load, parameters, state.position)
-        await self._surely(tell_of_limits, self.command, words=" ".join(warning.words for warning in warnings))
 
     async def _tell_load(self, task: Task, outcome: KeeperOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
@@ -191,7 +175,9 @@ class Carriage:
         await self._surely(tell_of_mission, self.command, is_mixed=still_mixed, words=outcome.words)
         before = task.before if outcome.state is KeeperState.INTACT else None
         if outcome.state is KeeperState.READY:
-            await self._end_with(end_loading, task.wanted, note=outcome.words)
+            warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
+            told = " ".join(filter(None, [outcome.left_alone, warnings]))
+            await self._end_with(end_loading, task.wanted, note=outcome.words, warnings=told)
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)
         elif self.is_closing or (outcome.code in UNHEARD and not outcome.is_critical):

@@ -5,6 +5,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.mavlink.frames import Message
 from telemetry.ground_station.ends import AUTOPILOT
 from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.limits import PARAMETERS
+from telemetry.ground_station.parameters import BY_NAME
 
 INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 0.2,
@@ -40,6 +42,11 @@ def requests(system: int, flavour: Flavour) -> list[Message]:
 def questions(system: int) -> list[Message]:
     """For what is told once."""
     return [_command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, number) for number in ONCE]
+
+
+def limit_questions(system: int) -> list[Message]:
+    """For the parameters that say what it would not fly."""
+    return [mavlink.MAVLink_param_request_read_message(system, AUTOPILOT, name.encode(), BY_NAME) for name in PARAMETERS]
 
 
 def _command(system: int, command: int, one: float, two: float = 0.0) -> Message:

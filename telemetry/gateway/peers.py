@@ -16,7 +16,8 @@ from telemetry.gateway.options import Address
 logger = logging.getLogger(__name__)
 
 LARGEST_DATAGRAM = 65_535
-DATAGRAMS_AT_ONCE = 200  # before other work has its turn
+DRAINED_FOR_S = 0.02  # before other work has its turn
+PIECE = 16_384  # bytes of a connection that are looked at together
 RECEIVE_BUFFER = 8 * 1024 * 1024  # bytes, as far as the system grants them
 MOST_CONNECTIONS = 256
 MOST_UNSENT = 256 * 1024  # bytes of a connection that takes nothing
@@ -74,7 +75,7 @@ class Listeners:
         """Where it listens, with the ports that the system chose for 0. Raises OSError."""
         names = [f"udp:{self._open_udp(address)}" for address in udp]
         for address in tcp:
-            server = await asyncio.start_server(self._serve, address.host, address.port, limit=LARGEST_DATAGRAM)
+            server = await asyncio.start_server(self._serve, address.host, address.port, limit=PIECE)
             self._servers.append(server)
             host, port = server.sockets[0].getsockname()[:2]
             names.append(f"tcp:{Address(host, port)}")
@@ -105,7 +106,8 @@ class Listeners:
         return Address(*listener.getsockname()[:2])
 
     def _drain(self, listener: socket.socket) -> None:
-        for _ in range(DATAGRAMS_AT_ONCE):
+        until_s = time.monotonic() + DRAINED_FOR_S
+        while time.monotonic() < until_s:
             try:
                 datagram, address = listener.recvfrom(LARGEST_DATAGRAM)
             except BlockingIOError:
@@ -124,7 +126,7 @@ class Listeners:
         host, port = writer.get_extra_info("peername")[:2]
         peer, parser = TcpPeer(writer, f"tcp:{host}:{port}"), StreamParser(self.damages)
         try:
-            while piece := await asyncio.wait_for(reader.read(LARGEST_DATAGRAM), SILENT_CONNECTION_S):
+            while piece := await asyncio.wait_for(reader.read(PIECE), SILENT_CONNECTION_S):
                 frames = parser.receive(piece)
                 if frames:
                     self.receive(frames, peer, time.time())

@@ -23,7 +23,7 @@ from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_EVERY_S, Flights
 from telemetry.gateway.hints import listen
-from telemetry.gateway.leases import held_until_s
+from telemetry.gateway.leases import served_until_s
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
@@ -59,7 +59,7 @@ class Gateway:
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)
     _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
-    _early: deque[tuple[list[Frame], Peer, float]] = field(default_factory=lambda: deque(maxlen=5_000))
+    _early: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=20_000))
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
@@ -74,7 +74,7 @@ class Gateway:
 
     def receive(self, frames: list[Frame], peer: Peer, now_s: float) -> None:
         if self._uavs is None:
-            self._early.append((frames, peer, now_s))
+            self._early.extend((frame, peer, now_s) for frame in frames)
             return
         for frame in frames:
             if frame.message_id in RADIO and not frame.is_signed:
@@ -211,7 +211,8 @@ class Gateway:
             elif uav != session.uav:
                 session.change(uav)
         while self._early:
-            self.receive(*self._early.popleft())
+            frame, peer, now_s = self._early.popleft()
+            self.receive([frame], peer, now_s)
 
     async def _lease_loop(self) -> None:
         while True:
@@ -235,7 +236,7 @@ class Gateway:
             self.flights.end(held[uav_id], now_s)
             held[uav_id].lose()
         for uav_id in still:
-            held[uav_id].held_until_s = held_until_s(asked_s, self.options.lease_s)
+            held[uav_id].held_until_s = served_until_s(asked_s, self.options.lease_s)
         wanted = {}
         for session in self.sessions.values():
             while session.waiting and now_s - session.waiting[0][2] > WAITED_TOO_LONG_S:
@@ -250,7 +251,7 @@ class Gateway:
             session = wanted[lease.uav_id]
             logger.info("serves %s", session.uav.name)
             waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
-            session.serve(lease, held_until_s(asked_s, self.options.lease_s))
+            session.serve(lease, served_until_s(asked_s, self.options.lease_s))
             for frame, peer, at_s in waiting:
                 self._receive_known(session, frame, peer, at_s)
 

@@ -25,6 +25,7 @@ from telemetry.ground_station.ends import AUTOPILOT
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.flown import FlightWatch
 from telemetry.ground_station.flown import Flown as FlownItem
+from telemetry.ground_station.limits import PARAMETERS
 from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links import Lease, LinkState
@@ -35,6 +36,7 @@ MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
 SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
 ASK_AGAIN_S = 5.0  # for positions that do not come; for what is told once after ever longer
 ASK_SELDOM_S = 60.0
+LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
@@ -63,6 +65,7 @@ class Session:
     second_sender: tuple[str, float] | None = None  # who, and when last
     is_unsaved: bool = False
     has_signed: bool = False  # since somebody asked last
+    limit_questions_left: int = LIMIT_QUESTIONS
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
@@ -173,13 +176,29 @@ class Session:
         if now_s - self._position_s > POSITIONS_MISSING_S and now_s - self._asked_s >= ASK_AGAIN_S:
             self._asked_s = now_s
             self.send(greeting.requests(self.uav.system, flavour), now_s)
-        is_all_known = self.state.firmware is not None and self.state.home is not None
-        if not is_all_known and now_s - self._questioned_s >= self._question_again_s:
+        questions = self._questions()
+        if questions and now_s - self._questioned_s >= self._question_again_s:
             self._questioned_s = now_s
             self._question_again_s = min(2 * self._question_again_s, ASK_SELDOM_S)
-            self.send(greeting.questions(self.uav.system), now_s)
+            self.limit_questions_left -= self.may_ask_limits
+            self.send(questions, now_s)
+
+    def _questions(self) -> list[Message]:
+        """For what is told once, and was not yet."""
+        is_told = self.state.firmware is not None and self.state.home is not None
+        limits = greeting.limit_questions(self.uav.system) if self.may_ask_limits else []
+        return [*([] if is_told else greeting.questions(self.uav.system)), *limits]
 
     # What is known
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """Of ground_station.limits.PARAMETERS those that the vehicle has told, in metres."""
+        return {name: self.state.parameters[name] for name in PARAMETERS if name in self.state.parameters}
+
+    @property
+    def may_ask_limits(self) -> bool:
+        return self.flavour is Flavour.PX4 and self.limit_questions_left > 0 and len(self.limits) < len(PARAMETERS)
 
     def link_state(self) -> LinkState:
         state, clock = self.state, self.time.clock
@@ -202,6 +221,7 @@ class Session:
             boots=self.time.to_json(),
             signing=self._signing(),
             losses=dict(self.losses),
+            limits=(self.lease.limits if self.lease else {}) | self.limits,
         )
 
     def _signing(self) -> dict[str, Any]:

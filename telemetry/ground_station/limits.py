@@ -1,14 +1,14 @@
 """What a vehicle cannot take: lists that are too long, and legs longer than its parameters allow."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat, path_length_m
-from missions.mavlink.content import FlightLoad, MissionItem, MissionType
+from missions.mavlink.content import FlightLoad, MissionType
+from missions.mavlink.points_between import FLOWN, leg_length_m, position_of
 from telemetry.ground_station.flavour import Flavour
 
 # ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
@@ -18,7 +18,6 @@ USUAL_ITEMS = {(Flavour.PX4, MissionType.MISSION): 500, (Flavour.PX4, MissionTyp
 FIRST_LEG = "MIS_DIST_1WP"  # PX4, in metres; 0 or below: not limited
 ANY_LEG = "MIS_DIST_WPS"
 PARAMETERS = (FIRST_LEG, ANY_LEG)
-FLOWN = frozenset({mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LAND})
 
 
 @dataclass(frozen=True)
@@ -55,70 +54,17 @@ def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: L
     flown = [(place, item) for place, item in enumerate(load.mission) if item.command in FLOWN]
     most_m = parameters.get(FIRST_LEG, 0.0)
     if most_m > 0 and flown and stands_at is not None:
-        length_m = _distance_m(stands_at, _position(flown[0][1]))
+        length_m = path_length_m(np.array([stands_at, position_of(flown[0][1])]))
         if length_m > most_m:
             warnings.append(
-                LimitWarning("far-first-waypoint", f"The first item is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
+                LimitWarning("far-first-waypoint", f"The first waypoint is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
             )
     most_m = parameters.get(ANY_LEG, 0.0)
     if most_m > 0:
         for (_, left), (place, right) in pairwise(flown):
-            length_m = _length_m(left, right)
+            length_m = leg_length_m(left, right)
             if length_m > most_m:
                 warnings.append(
                     LimitWarning("long-leg", f"The leg to item {place} is {length_m:.0f} m; {ANY_LEG} allows {most_m:.0f} m.", place)
                 )
     return tuple(warnings)
-
-
-def with_points_between(load: FlightLoad, most_m: float) -> FlightLoad:
-    """With waypoints put in on the straight line of each leg that is longer.
-
-    This makes another load with another hash: what is read back is compared with it, and a vehicle is ready only by this hash. So it is
-    made when a mission is approved, and frozen, or else derived from the approved load by the same rule at both ends: the same load and
-    the same metres always give the same hash. It is never done silently on the way to the vehicle.
-    """
-    if not most_m > 0:
-        raise ValueError("most_m must be above 0")
-    mission: list[MissionItem] = []
-    last: MissionItem | None = None
-    for item in load.mission:
-        if item.command in FLOWN:
-            if last is not None:
-                mission += _between(last, item, most_m)
-            last = item
-        mission.append(item)
-    return replace(load, mission=tuple(mission))
-
-
-def _between(left: MissionItem, right: MissionItem, most_m: float) -> list[MissionItem]:
-    legs = max(1, -int(-_length_m(left, right) // most_m))
-    # a landing's altitude is the ground's: before it the vehicle stays as high as it was
-    rise_m = 0.0 if right.command == mavlink.MAV_CMD_NAV_LAND else right.altitude_m - left.altitude_m
-    points = []
-    for number in range(1, legs):
-        share = number / legs
-        points.append(
-            MissionItem(
-                mavlink.MAV_CMD_NAV_WAYPOINT,
-                left.frame,
-                (0.0, 0.0, 0.0, float("nan")),
-                left.longitude_e7 + round(share * (right.longitude_e7 - left.longitude_e7)),
-                left.latitude_e7 + round(share * (right.latitude_e7 - left.latitude_e7)),
-                round(left.altitude_m + share * rise_m, 2),
-                right.waypoint,
-            )
-        )
-    return points
-
-
-def _length_m(left: MissionItem, right: MissionItem) -> float:
-    return _distance_m(_position(left), _position(right))
-
-
-def _distance_m(one: LonLat, other: LonLat) -> float:
-    return path_length_m(np.array([one, other]))
-
-
-def _position(item: MissionItem) -> LonLat:
-    return LonLat(item.longitude_e7 / 1e7, item.latitude_e7 / 1e7)

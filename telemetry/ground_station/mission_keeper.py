@@ -128,8 +128,8 @@ class MissionKeeper:
             if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
                 return (yield from self._give_up())
         held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
-        words = " ".join([f"The vehicle holds {held}.", *self._left_alone_in_words()])
-        return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes))
+        words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
+        return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes), left_alone=left)
 
     def _cannot_begin(self) -> KeeperOutcome | None:
         state = self._state
@@ -181,10 +181,10 @@ class MissionKeeper:
             return False
         return self.found_before[kind] is Found.FOREIGN
 
-    def _left_alone_in_words(self) -> list[str]:
+    def _left_alone_in_words(self) -> str:
         names = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points"}
         left = [kind for kind in ORDER if self._is_left_alone(kind)]
-        return [f"Its own {names[kind]} ({len(self.before[kind])} items) were left as they are." for kind in left]
+        return " ".join(f"Of its own {names[kind]} {len(self.before[kind])} items were left as they are." for kind in left)
 
     def _has_come_unseen(self, kind: MissionType) -> Generator[Machine, None, bool]:
         """Where no reading got through after the last sending: whether it is there all the same."""

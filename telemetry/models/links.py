@@ -37,6 +37,12 @@ class UavLink(models.Model):
     )
     signing = models.JSONField(default=dict, blank=True, help_text="last timestamps by link, so that nothing is taken twice")
     losses = models.JSONField(default=dict, blank=True, help_text="what was refused or lost, by cause")
+    limits = models.JSONField(
+        default=dict,
+        db_default={},
+        blank=True,
+        help_text="what it would not fly, by its parameters' names [m]; see ground_station/limits.py",
+    )
 
     class Meta:
         verbose_name = "UAV's link"

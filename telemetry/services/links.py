@@ -16,13 +16,14 @@ UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not 
 
 @dataclass(frozen=True)
 class Lease:
-    """What the gateway before has left: `signing`, `boots` and `losses` as in UavLink."""
+    """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink."""
 
     uav_id: int
     signing: dict[str, Any]
     boots: list[dict[str, Any]]
     losses: dict[str, int]
     loaded_sha256: str
+    limits: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -46,19 +47,20 @@ class LinkState:
     boots: list[dict[str, Any]] = field(default_factory=list)
     signing: dict[str, Any] = field(default_factory=dict)
     losses: dict[str, int] = field(default_factory=dict)
+    limits: dict[str, float] = field(default_factory=dict)
 
 
 TAKE = """
 INSERT INTO telemetry_uavlink
-    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses)
-SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}'
+    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses, limits)
+SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}', '{}'
 FROM missions_uav uav WHERE uav.id = ANY(%(uav_ids)s) ORDER BY uav.id
 ON CONFLICT (uav_id) DO UPDATE SET holder = excluded.holder, lease_expires_at = excluded.lease_expires_at
 WHERE telemetry_uavlink.holder IN ('', excluded.holder)
     OR split_part(telemetry_uavlink.holder, '/', 1) = split_part(excluded.holder, '/', 1)
     OR telemetry_uavlink.lease_expires_at IS NULL OR telemetry_uavlink.lease_expires_at < now()
     OR telemetry_uavlink.heard_at < now() - make_interval(secs => %(unheard_s)s)
-RETURNING uav_id, signing, boots, losses, loaded_sha256
+RETURNING uav_id, signing, boots, losses, loaded_sha256, limits
 """
 
 
@@ -68,7 +70,10 @@ def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> lis
     with connection.cursor() as cursor:
         cursor.execute(TAKE, values)
         rows = cursor.fetchall()
-    return [Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256) for uav_id, signing, boots, losses, sha256 in rows]
+    return [
+        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits))
+        for uav_id, signing, boots, losses, sha256, limits in rows
+    ]
 
 
 def renew_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> set[int]:
@@ -89,7 +94,7 @@ def release_leases(*, holder: str) -> None:
 
 _TYPES = {
     "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4",
-    "boots": "jsonb", "signing": "jsonb", "losses": "jsonb",
+    "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb",
     "address": "text", "autopilot": "text", "firmware": "text", "mode": "text",
 }  # fmt: skip
 _COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}

@@ -49,10 +49,10 @@ def begin_loading(carried: Carried) -> bool:
     return True
 
 
-def end_loading(carried: Carried, loaded: Loaded | None, *, note: str = "") -> bool:
+def end_loading(carried: Carried, loaded: Loaded | None, *, note: str = "", warnings: str = "") -> bool:
     """The vehicle holds what it was to hold: `loaded`, or nothing."""
     with transaction.atomic():
-        if not note_applied(carried.command_id, attempt=carried.attempt, holder=carried.holder, note=note):
+        if not note_applied(carried.command_id, attempt=carried.attempt, holder=carried.holder, note=note, warnings=warnings):
             return False
         _write(carried.uav_id, loaded)
     return True

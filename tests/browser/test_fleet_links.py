@@ -57,7 +57,7 @@ def test_a_uav_that_is_heard_over_http_says_so_in_its_panel(site: Site, visitor:
 
 def test_only_an_administrator_says_that_a_uav_is_simulated_or_needs_no_signature(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    uav = writes(page, "POST", "/uavs", {"name": "Turnstone", "position": YARD})["id"]
+    uav = writes(page, "POST", "/uavs", {"name": "Stint", "position": YARD})["id"]
     fleet(page, f"?id={uav}")
     page.get_by_role("button", name="Edit", exact=True).click()
     switch = page.get_by_role("switch", name="MAVLink without a signature")
@@ -72,7 +72,7 @@ def test_only_an_administrator_says_that_a_uav_is_simulated_or_needs_no_signatur
     page.get_by_label("Told what to do by").select_option("a companion computer over HTTP")
     assert faults(page) == []
     page.get_by_role("button", name="Save", exact=True).click()
-    expect(page.get_by_text("Turnstone is saved.")).to_be_visible()
+    expect(page.get_by_text("Stint is saved.")).to_be_visible()
     facts = asks(page, f"/uavs/{uav}")["properties"]
     assert (facts["allows_unsigned"], facts["is_simulated"], facts["link"]) == (True, True, "http")
     expect(details(page).get_by_text("is taken for its word")).to_be_visible()

@@ -35,6 +35,8 @@ test("what is on board is what was said last of it", () => {
   assert.equal(words(command("upload-mission", "expired", { outcome: "It could not be delivered in time." })), "Not on the UAV: It could not be delivered in time.");
   assert.equal(words(command("clear-mission", "applied"), command("upload-mission", "applied")), "Taken off the UAV");
   assert.equal(words(command("clear-mission", "failed", { outcome: "It flies." })), "Still on the UAV: It flies.");
+  const beware = flying.boardWords(command("upload-mission", "applied", { outcome: "The mission has 501 items." }));
+  assert.deepEqual([beware.words, beware.level], ["On the UAV: what was approved – The mission has 501 items.", "warning"]);
 });
 
 test("a mixed mission is said loudest", () => {

@@ -13,6 +13,8 @@ from inspection.models import NoFlyZone
 from missions.flight_plan.lost_link import LostLink
 from missions.mavlink.content import load_from_json
 from missions.mavlink.frozen import route_from_json
+from missions.mavlink.items import flight_loads
+from missions.mavlink.points_between import with_points_between
 from missions.models import Approval, CommandState, Mission, MissionState, TargetState, Uav, UavState, UavType
 from missions.services import (
     MissionChange,
@@ -30,6 +32,7 @@ from missions.services.approval_document import content_sha256
 from missions.services.commands import note_applied, note_failed
 from missions.services.refused import Refused
 from missions.services.requests import LostLinkRequest
+from telemetry.ground_station.limits import leg_warnings
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
 from tests.missions.outbox import claim, fence, now
@@ -385,3 +388,17 @@ def with_other(value: object, place: tuple) -> object:
     if isinstance(value, dict):
         return value | inner
     return [inner.get(index, entry) for index, entry in enumerate(value)]  # type: ignore[arg-type]
+
+
+def test_points_are_put_in_where_wished_and_are_part_of_what_is_approved(here: World, person: User) -> None:
+    mission = planned(person, fleet(), here.towers[:2])
+    approval = approve_mission(mission=mission, actor=person, longest_leg_m=50.0)
+    (route,) = approval.document["routes"]
+    (flight,) = route["flights"]
+    (plain,) = flight_loads(route_from_json(route["route"]))
+    load = load_from_json(flight["items"])
+    assert load.mission == with_points_between(plain, 50.0).mission != plain.mission
+    assert load.content_sha256 == flight["content_sha256"]
+    assert approval.document["longest_leg_m"] == 50.0
+    assert leg_warnings(load, {"MIS_DIST_WPS": 50.0}, None) == ()
+    assert leg_warnings(plain, {"MIS_DIST_WPS": 50.0}, None) != ()

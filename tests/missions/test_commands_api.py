@@ -96,6 +96,16 @@ def test_what_was_not_seen_is_not_approved(client: Client, here: World, person: 
     assert error(post(client, f"missions/{mission.pk}/approve", **{"If-Match": "nonsense"}), 412)["code"] == "mission_changed"
 
 
+def test_an_approval_may_ask_for_points_on_long_legs(client: Client, here: World, person: User) -> None:
+    mission = planned(person, fleet(), here.towers[:2])
+    for body in ({"longest_leg_m": 49}, {"longest_leg_m": 5001}, {"longest_leg_m": "far"}, {"longest_leg": 900}):
+        assert list(error(post(client, f"missions/{mission.pk}/approve", body), 400)["details"]) == list(body)
+    assert post(client, f"missions/{mission.pk}/approve", {"longest_leg_m": 60}).status_code == 200
+    assert get(client, f"missions/{mission.pk}/approval").json()["document"]["longest_leg_m"] == 60
+    (entry, *_) = get(client, f"missions/{mission.pk}/history").json()["results"]
+    assert entry["action"] == "approve"
+
+
 def test_revoking_needs_a_reason_which_is_kept(client: Client, here: World, person: User) -> None:
     mission, _approval = approved(person, fleet(), here.towers[:2])
     assert error(post(client, f"missions/{mission.pk}/revoke"), 400)["details"] == {"reason": ["This field is required."]}

@@ -69,7 +69,8 @@ export function boardWords(command) {
   if (isMixed(command)) return { words: t("Mixed mission on the UAV – {why}", { why }), image: "octagon-alert", level: "critical" };
   if (state === "applied") {
     const flight = parameters.flight ?? 1;
-    return { words: flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved"), image: "circle-check", level: "good" };
+    const words = flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved");
+    return outcome ? { words: `${words} – ${outcome}`, image: "triangle-alert", level: "warning" } : { words, image: "circle-check", level: "good" };
   }
   if (state === "failed" || state === "expired") return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
   if (progress?.total) return { words: t("Sending, {done} of {total} items", progress), image: "loader-circle", share: progress.done / progress.total };

@@ -64,9 +64,12 @@ export function createFlying(store, { failed, page }) {
         tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", { length: lengthText(mission().plan.total_length_m), names: uavsWords(flyers) }),
         t("From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked."),
       ],
+      field: { name: "longest_leg_m", label: t("Put points in on legs longer than [m]; empty: as planned"), type: "number", min: 50, max: 5000, step: "any" },
       act: t("Approve"), isBack: true, image: "badge-check",
     });
-    if (asked) await tried(t("Not approved."), async () => store.update({ mission: (await post(`/missions/${mission().id}/approve`, {}, ifMatch())).data }));
+    if (!asked) return;
+    const wishes = Number.isFinite(asked.longest_leg_m) ? asked : {};
+    await tried(t("Not approved."), async () => store.update({ mission: (await post(`/missions/${mission().id}/approve`, wishes, ifMatch())).data }));
   }
 
   async function revoke() {

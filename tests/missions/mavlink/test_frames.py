@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from missions.mavlink.frames import LONGEST_FRAME, Damage, StreamParser, frames_of_datagram, message_of
+from missions.mavlink.frames import LONGEST_FRAME, MOST_FAULTS, Damage, StreamParser, frames_of_datagram, message_of
 from missions.mavlink.signing import FrameWriter
 
 NOW_S = 1_800_000_000.0
@@ -113,3 +113,16 @@ def test_a_message_of_any_content_is_read_or_none():
             checksum = dialect.x25crc(body + bytes([known.crc_extra])).crc
             (frame,) = frames_of_datagram(b"\xfd" + body + checksum.to_bytes(2, "little"), Counter())
             message_of(frame)
+
+
+@pytest.mark.parametrize("marker", [b"\xfe", b"\xfd", b"\xfe\xfd", b"\xfd\x00\x00"])
+def test_markers_without_end_are_given_up(marker: bytes):
+    damages: Counter = Counter()
+    assert frames_of_datagram(marker * (65_000 // len(marker)), damages) == []
+    assert damages.total() <= MOST_FAULTS
+
+
+def test_a_stream_goes_on_after_a_piece_that_was_given_up():
+    good, parser = frames(1)[0], StreamParser()
+    assert parser.receive(b"\xfe" * 16_000) == []
+    assert raws(parser.receive(good)) == [good]

@@ -168,3 +168,30 @@ def test_the_same_message_twice_is_the_same_stamp_name():
     one = time.receive(vehicle.boot_ms(START_S), START_S + 0.1)
     two = time.receive(vehicle.boot_ms(START_S), START_S + 0.3)
     assert (one.stream, one.sequence) == (two.stream, two.sequence)
+
+
+@pytest.mark.parametrize("boot_ms", [4_000_000_000, 170_000])
+def test_one_wrong_time_teaches_nothing(boot_ms):
+    vehicle, time = Vehicle(), VehicleTime()
+    run(time, vehicle.reports(START_S, 20.0))
+    glitch = time.receive(boot_ms, START_S + 20.0)
+    assert glitch.measured_s == START_S + 20.0
+    stamped = run(time, vehicle.reports(START_S + 20.1, 60.0))
+    assert worst_error_s(vehicle, stamped) < 0.1
+    assert {stream for _, _, stream in stamped} == {glitch.stream}
+
+
+def test_a_leap_that_goes_on_is_believed():
+    vehicle, time = Vehicle(), VehicleTime()
+    run(time, vehicle.reports(START_S, 20.0))
+    ahead = Vehicle(booted_s=vehicle.booted_s - 86_400.0)
+    stamped = run(time, ahead.reports(START_S + 20.1, 60.0))
+    assert worst_error_s(ahead, stamped[100:]) < 0.2
+
+
+@pytest.mark.parametrize("ran_s", [5.0, 9.0, 30.0])
+def test_a_vehicle_that_boots_again_at_once_has_two_streams(ran_s):
+    first, second, time = Vehicle(booted_s=START_S - 0.5), Vehicle(booted_s=START_S + ran_s + 1.5), VehicleTime()
+    before = run(time, first.reports(START_S, ran_s))
+    after = run(time, second.reports(START_S + ran_s + 2.0, 30.0))
+    assert not {(stream, boot_ms) for boot_ms, _, stream in before} & {(stream, boot_ms) for boot_ms, _, stream in after}

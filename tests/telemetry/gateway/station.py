@@ -26,14 +26,14 @@ from workspace.models import User
 PATIENCE_S = 20.0
 
 
-def wait_for(fact: Callable[[], Any], what: str = "") -> Any:
+def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = PATIENCE_S) -> Any:
     """What `fact` tells as soon as it is true."""
-    until_s = time.monotonic() + PATIENCE_S
+    until_s = time.monotonic() + patience_s
     while time.monotonic() < until_s:
         if found := fact():
             return found
         time.sleep(0.02)
-    raise AssertionError(f"not within {PATIENCE_S:.0f} s: {what or fact}")
+    raise AssertionError(f"not within {patience_s:.0f} s: {what or fact}")
 
 
 def unsigned_uav(system: int = 1, **values: Any) -> Uav:

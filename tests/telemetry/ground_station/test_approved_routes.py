@@ -7,9 +7,9 @@ from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.fence import fence_of, rally_items
 from missions.mavlink.frozen import END_ACTIONS
 from missions.mavlink.items import flight_loads
+from missions.mavlink.points_between import with_points_between
 from missions.routing.problem import Task, TaskKind
 from telemetry.ground_station.keeper_outcome import KeeperState
-from telemetry.ground_station.limits import with_points_between
 from telemetry.ground_station.mission_keeper import MissionKeeper
 from telemetry.ground_station.rules import TransferRules
 from tests.missions.mavlink.routes import start_and_end, waypoint

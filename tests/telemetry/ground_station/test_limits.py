@@ -1,18 +1,15 @@
 """What a vehicle's limits mean for a mission."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.mavlink.content import FlightLoad, MissionItem
 from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.limits import FLOWN, count_warnings, leg_warnings, too_many, with_points_between
+from telemetry.ground_station.limits import count_warnings, leg_warnings, too_many
 from tests.telemetry.vehicles.loads import load, mission, polygon
 
 START = LonLat(9.8, 55.4)
@@ -42,31 +39,6 @@ def test_legs_and_a_start_beyond_px4s_limits_are_told():
 @pytest.mark.parametrize("parameters", [{}, {"MIS_DIST_1WP": 0.0, "MIS_DIST_WPS": -1.0}])
 def test_vehicle_without_limits_is_not_warned_of(parameters: dict[str, float]):
     assert leg_warnings(legs(0, 5_000), parameters, START) == ()
-
-
-@given(most_m=st.floats(50, 5_000), length_m=st.floats(1, 8_000))
-def test_points_put_in_keep_every_leg_within_the_limit(most_m: float, length_m: float):
-    whole = legs(0, 10, 10 + length_m)
-    divided = with_points_between(whole, most_m)
-    flown = [item for item in divided.mission if item.command in FLOWN]
-    lengths = [
-        path_length_m(np.array([(left.longitude_e7 / 1e7, left.latitude_e7 / 1e7), (right.longitude_e7 / 1e7, right.latitude_e7 / 1e7)]))
-        for left, right in pairwise(flown)
-    ]
-    assert max(lengths) <= most_m + 0.02
-    assert [item for item in divided.mission if item in whole.mission] == list(whole.mission)
-
-
-def test_load_with_points_put_in_has_a_hash_of_its_own_and_always_the_same():
-    whole = legs(0, 3_000)
-    assert with_points_between(whole, 900.0).content_sha256 == with_points_between(whole, 900.0).content_sha256
-    assert with_points_between(whole, 900.0).content_sha256 != whole.content_sha256
-    assert with_points_between(whole, 9_000.0) == whole
-
-
-def test_points_put_in_before_a_landing_stay_up():
-    mission = with_points_between(FlightLoad((*legs(0, 100).mission[:3], legs(0, 3_000).mission[-1])), 900.0).mission
-    assert {item.altitude_m for item in mission[:-1] if item.command in FLOWN} == {60.0}
 
 
 def test_list_that_is_too_long_for_its_flavour_is_told():

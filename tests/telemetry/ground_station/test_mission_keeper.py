@@ -374,7 +374,7 @@ def test_a_fence_and_rally_points_of_somebody_else_are_left(flavour):
     outcome, _ = bring(vehicle, load(12))
     assert outcome.state is KeeperState.READY and outcome.mixes == ()
     assert (len(vehicle.lists[MissionType.FENCE]), len(vehicle.lists[MissionType.RALLY])) == (4, 2)
-    assert "fence (4 items)" in outcome.words and "rally points (2 items)" in outcome.words
+    assert "own fence 4 items" in outcome.left_alone and "own rally points 2 items" in outcome.left_alone
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -383,5 +383,5 @@ def test_a_fence_and_rally_points_of_an_earlier_mission_are_taken_off(flavour, w
     earlier = FlightLoad(mission(5), fence=polygon(9_000), rally=rally())
     vehicle = holding(flavour, earlier)
     outcome = Channel(keeper_for(vehicle, wanted, known_loads=(earlier,)), vehicle).run()
-    assert outcome.state is KeeperState.READY and "left" not in outcome.words
+    assert outcome.state is KeeperState.READY and not outcome.left_alone
     assert not vehicle.lists[MissionType.FENCE] and not vehicle.lists[MissionType.RALLY]

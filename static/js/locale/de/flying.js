@@ -80,6 +80,7 @@ export default {
   "Approve “{name}”?": "„{name}“ freigeben?",
   "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.": "Von da an kann nichts an der Mission geändert werden, und nur was freigegeben ist, wird an UAVs gesendet. Die Freigabe kann widerrufen werden.",
   "Approve": "Freigeben",
+  "Put points in on legs longer than [m]; empty: as planned": "Punkte auf Strecken einfügen, die länger sind als [m]; leer: wie geplant",
   "Not approved.": "Nicht freigegeben.",
   "Revoke the approval of “{name}”?": "Die Freigabe von „{name}“ widerrufen?",
   "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.": "Jedem UAV, das die Mission haben kann, wird gesagt, sie zu löschen. Die Freigabe endet, sobald alle ohne sie gesehen wurden; dann kann die Mission wieder geändert werden.",
