@@ -367,7 +367,8 @@ GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # 
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
 LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
 TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
-TAKE_OFF_HEIGHT_M = _float("SPANWISE_TAKE_OFF_HEIGHT_M", 50.0)  # by which the height that it reports may differ from the planned one
+# by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
+TAKE_OFF_HEIGHT_M = min(_float("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
 TRANSFER_RULES = TransferRules(
     timeout_s=_float("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
     item_timeout_s=_float("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),

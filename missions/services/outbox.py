@@ -16,7 +16,18 @@ from django.db.models.functions import Coalesce, Now
 from django.utils.translation import gettext as _
 
 from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
-from missions.models import OPEN_COMMANDS, Approval, CommandKind, CommandState, LinkKind, Mission, Uav, UavCommand, UavCommandEvent
+from missions.models import (
+    OPEN_COMMANDS,
+    Approval,
+    CommandAxis,
+    CommandKind,
+    CommandState,
+    LinkKind,
+    Mission,
+    Uav,
+    UavCommand,
+    UavCommandEvent,
+)
 from missions.services.refused import refuse
 from workspace.models import User
 from workspace.services import record_change
@@ -30,6 +41,7 @@ _CLAIM = """
         WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
             AND (%s::text IS NULL OR (link = %s::text
                 AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = uav_id AND uav.link = %s::text)))
+            AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
             AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
             AND (expires_at IS NULL OR expires_at > statement_timestamp())
         ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
@@ -95,31 +107,45 @@ def queue_command(
     return command
 
 
-def claim_commands(*, uav_ids: Collection[int], holder: str, lease_s: float, limit: int, link: LinkKind | None = None) -> list[UavCommand]:
+def claim_commands(
+    *,
+    uav_ids: Collection[int],
+    holder: str,
+    lease_s: float,
+    limit: int,
+    link: LinkKind | None = None,
+    axes: Collection[CommandAxis] | None = None,
+) -> list[UavCommand]:
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
 
-    With `link` only those that go by this door, to UAVs that are reached by it now.
+    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these.
 
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
+    about = None if axes is None else [str(axis) for axis in axes]
     with transaction.atomic():
-        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, link, limit, holder, lease_s]))
+        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, link, about, about, limit, holder, lease_s]))
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
 
 
 def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
-    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once."""
+    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once.
+
+    What was not sent in its time is no longer held.
+    """
     with transaction.atomic():
         held = UavCommand.objects.select_for_update().filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+        held = held.exclude(sent_at=None, expires_at__lte=Now())
         attempts = dict(held.order_by("pk").values_list("pk", "attempts"))
         UavCommand.objects.filter(pk__in=attempts).update(lease_expires_at=Now() + timedelta(seconds=lease_s))
     return attempts
 
 
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
-    """It goes out now; an attempt after another one sends it again."""
-    return _note(command_id, attempt, holder, CommandState.SENT, {"sent_at": Coalesce("sent_at", Now())})
+    """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
+    still_wanted = Q(expires_at=None) | Q(expires_at__gt=Now())
+    return _note(command_id, attempt, holder, CommandState.SENT, {"sent_at": Coalesce("sent_at", Now())}, only=still_wanted)
 
 
 def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
@@ -185,9 +211,11 @@ def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:
     return UavCommand.objects.filter(pk=command_id, attempts=attempt, holder=holder, state__in=OPEN_COMMANDS)
 
 
-def _note(command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "") -> bool:
+def _note(
+    command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "", *, only: Q | None = None
+) -> bool:
     with transaction.atomic():
-        if not _held(command_id, attempt, holder).update(state=state, **values):
+        if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
             return False
         UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
     return True

@@ -13,11 +13,13 @@ from typing import Any
 
 from django.conf import settings
 
-from missions.models import UavCommand
+from missions.mavlink.content import FlightLoad
+from missions.models import CommandKind, UavCommand
 from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_released, note_sent
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import CannotCarry, Task, reason_not_to, task_of
+from telemetry.gateway.reading import read_aboard
 from telemetry.gateway.session import Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
 from telemetry.ground_station.command import CommandEnd, CommandOutcome
@@ -33,6 +35,8 @@ logger = logging.getLogger(__name__)
 PROGRESS_EVERY_S = 0.5
 TRY_AGAIN_IN_S = 2.0
 UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
+NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
+CLEAR_AGAIN_IN_S = 15.0
 MOST_ATTEMPTS = 100
 UNSETTLED_S = 2.0  # for which what was sent before may still arrive
 DATABASE_RETRY_S = 0.5
@@ -45,6 +49,7 @@ class Carriage:
     command: UavCommand
     session: Session
     database: DatabaseThread
+    held_until_s: float = 0.0  # monotonic: past it another gateway may carry the command
     is_dropped: bool = False
     is_closing: bool = False
     has_ended: bool = False
@@ -53,6 +58,11 @@ class Carriage:
     @property
     def carried(self) -> Carried:
         return Carried.of(self.command)
+
+    @property
+    def is_ours(self) -> bool:
+        """Surely, also when the database was not heard of for a while."""
+        return not self.is_dropped and self.session.is_held and time.monotonic() < self.held_until_s
 
     async def run(self) -> None:
         try:
@@ -80,12 +90,14 @@ class Carriage:
     async def _beyond_limits(self, task: Task) -> CannotCarry | None:
         if task.load is None or not task.load.mission:
             return None
-        return await reason_not_to_load(task.load, self.session, is_wanted=lambda: not self.is_dropped)
+        return await reason_not_to_load(task.load, self.session, is_wanted=lambda: self.is_ours)
 
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
+        if task.aboard is not None and not await self._is_aboard(task.aboard):
+            return
         if not await self._surely(note_sent, self.command.pk, **self._fence):
-            self.has_ended = True
+            await self._end(note_released)
             return
         keeper = CommandKeeper(
             task.order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
@@ -101,9 +113,24 @@ class Carriage:
                 self._note(note_acknowledged, self.command.pk, **self._fence)
 
         self.session.commanded_s = time.monotonic()
-        outcome = await Conversation(self.session, keeper).run(on_change=change, is_wanted=lambda: not self.is_dropped)
+        outcome = await Conversation(self.session, keeper, lambda: self.is_ours).run(on_change=change)
         if isinstance(outcome, CommandOutcome):
             await self._tell_order(outcome)
+        else:
+            await self._end(note_released)
+
+    async def _is_aboard(self, load: FlightLoad) -> bool:
+        """Whether the vehicle holds the list that it is about to fly, by reading it now. What is not so ends the command."""
+        reading = await read_aboard(self.session, load, lambda: self.is_ours)
+        if reading is None:
+            await self._end(note_released)
+        elif reading.is_aboard:
+            return True
+        elif reading.code in UNHEARD:
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words)
+        else:
+            await self._end_with(fail_loading, None, reading.code, reading.words)
+        return False
 
     async def _tell_order(self, outcome: CommandOutcome) -> None:
         await asyncio.gather(*self._notes, return_exceptions=True)
@@ -117,14 +144,14 @@ class Carriage:
     async def _load(self, task: Task) -> None:
         assert task.load is not None  # noqa: S101 - the caller has looked
         if not await self._surely(begin_loading, self.carried):
-            self.has_ended = True
+            await self._end(note_released)
             return
         keeper = MissionKeeper(task.load, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES, known=task.known)
         noted_s, mixes = 0.0, 0
 
         def change() -> None:
             nonlocal noted_s, mixes
-            if self.is_dropped:
+            if self.is_dropped or keeper.is_endangered:
                 self.session.send(keeper.cancel(time.monotonic()))
             if len(keeper.mixes) > mixes:
                 mixes = len(keeper.mixes)
@@ -135,9 +162,12 @@ class Carriage:
                 progress = keeper.progress
                 self._note(note_progress, self.command.pk, done=progress.done, total=progress.total, **self._fence)
 
-        outcome = await Conversation(self.session, keeper).run(on_change=change, is_wanted=lambda: True)
+        outcome = await Conversation(self.session, keeper, lambda: self.session.is_held).run(on_change=change)
         await asyncio.gather(*self._notes, return_exceptions=True)
-        await self._tell_load(task, outcome)
+        if outcome is None:
+            await self._end(note_released)
+        else:
+            await self._tell_load(task, outcome)
 
     async def _tell_load(self, task: Task, outcome: KeeperOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
@@ -146,7 +176,10 @@ class Carriage:
         before = task.before if outcome.state is KeeperState.INTACT else None
         if outcome.state is KeeperState.READY:
             warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
-            await self._end_with(end_loading, task.wanted, note=outcome.words, warnings=warnings)
+            told = " ".join(filter(None, [outcome.left_alone, warnings]))
+            await self._end_with(end_loading, task.wanted, note=outcome.words, warnings=told)
+        elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
+            await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)
         elif self.is_closing or (outcome.code in UNHEARD and not outcome.is_critical):
             await self._end(note_released, retry_in_s=0.0 if self.is_closing else TRY_AGAIN_IN_S, note=outcome.words)
         else:

@@ -32,17 +32,20 @@ class Keeper(Protocol):
 class Conversation:
     session: Session
     keeper: Keeper
+    is_wanted: Callable[[], bool]
     _heard: asyncio.Event = field(default_factory=asyncio.Event)
 
-    async def run(self, *, on_change: Callable[[], None], is_wanted: Callable[[], bool]) -> Any:
-        """The outcome; None once it is not wanted any more."""
+    async def run(self, *, on_change: Callable[[], None]) -> Any:
+        """The outcome; None once it is not wanted any more, which is asked before anything is sent."""
+        if not self.is_wanted():
+            return None
         self.session.listeners.append(self._hear)
         try:
             self.session.send(self.keeper.start(time.monotonic()))
             while self.keeper.outcome is None:
-                if not is_wanted():
-                    return None
                 await self._wait()
+                if not self.is_wanted():
+                    return None
                 now_s = time.monotonic()
                 if self.keeper.outcome is None and self.keeper.wake_at_s is not None and self.keeper.wake_at_s <= now_s:
                     self.session.send(self.keeper.tick(now_s))
@@ -52,7 +55,7 @@ class Conversation:
             self.session.listeners.remove(self._hear)
 
     def _hear(self, message: Message, now_s: float) -> None:
-        if self.keeper.outcome is None:
+        if self.keeper.outcome is None and self.is_wanted():
             self.session.send(self.keeper.receive(message, now_s))
             self._heard.set()
 

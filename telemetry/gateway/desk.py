@@ -11,18 +11,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID
 
-from missions.models import CommandKind, CommandPriority, LinkKind, UavCommand
+from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.preparation import LOADING
+from telemetry.gateway.leases import held_until_s
+from telemetry.gateway.preparation import LOADING, SETS_IN_MOTION
 from telemetry.gateway.session import Session
 
 logger = logging.getLogger(__name__)
 
 LOOK_EVERY_S = 1.0
 HEARD_WITHIN_S = 5.0  # else its commands wait for it, or for another gateway
-MOST_AT_ONCE = 200
+MOST_AT_ONCE = 200  # claims of a look
+FLYING_AXES = (CommandAxis.FLIGHT, CommandAxis.SPEED)
 MOST_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
@@ -57,21 +59,33 @@ class Desk:
         """Drops what is not ours any more, takes what waits, begins what can begin."""
         self._forget_ended()
         if self._carriages:
+            asked_s = time.monotonic()
             held = await self.database.run(renew_claims, holder=self.holder, lease_s=self.lease_s)
             for command_id, carriage in self._carriages.items():
                 if held.get(command_id) != carriage.carried.attempt:
                     carriage.is_dropped = True
+                else:
+                    carriage.held_until_s = held_until_s(asked_s, self.lease_s)
         now_s = time.time()
         served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, HEARD_WITHIN_S)}
         await self.database.run(expire_overdue)
-        room = MOST_AT_ONCE - len(self._carriages)
-        if served and room > 0:
-            claimed = await self.database.run(
-                claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK
-            )
-            for command in claimed:
-                self._carriages[command.pk] = Carriage(command, served[command.uav_id], self.database)
+        if served:
+            await self._claim(served, FLYING_AXES, MOST_AT_ONCE)
+            loading = sum(carriage.command.kind in LOADING for carriage in self._carriages.values())
+            await self._claim(served, (CommandAxis.MISSION,), MOST_UPLOADS - loading)
         self._begin()
+
+    async def _claim(self, served: dict[int, Session], axes: tuple[CommandAxis, ...], room: int) -> None:
+        """Uploads no more than may begin; what stops a UAV never waits for room."""
+        if room <= 0:
+            return
+        asked_s = time.monotonic()
+        claimed = await self.database.run(
+            claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK, axes=axes
+        )
+        for command in claimed:
+            session = served[command.uav_id]
+            self._carriages[command.pk] = Carriage(command, session, self.database, held_until_s(asked_s, self.lease_s))
 
     async def close(self) -> None:
         """Ends what goes on, and gives back what has not ended by then."""
@@ -101,9 +115,9 @@ class Desk:
         own = [other for other in under_way if other.uav_id == command.uav_id]
         if any(other.axis == command.axis for other in own):
             return False
-        if command.priority <= CommandPriority.PAUSE:
-            return True
-        if command.kind == CommandKind.START and any(other.kind in LOADING for other in own):
+        if command.kind in SETS_IN_MOTION:
+            return not any(other.kind in LOADING for other in own)
+        if command.kind in LOADING and any(other.kind in SETS_IN_MOTION for other in own):
             return False
         return command.kind not in LOADING or sum(other.kind in LOADING for other in under_way) < MOST_UPLOADS
 

@@ -9,14 +9,17 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
 from missions.mavlink.content import FlightLoad
 from missions.mavlink.frozen import TakeOff
-from missions.models import CommandKind, UavCommand
-from missions.services.dispatch import ApprovedLoad, DamagedApproval, load_of
+from missions.models import CommandKind, MissionState, UavCommand
+from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from telemetry.ground_station.orders import Order
 from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.loads import Loaded, loaded_on
 
 LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
+FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
+SETS_IN_MOTION = (*FLIES_LIST, CommandKind.ARM, CommandKind.TAKE_OFF)
 EMPTY = FlightLoad(())
+KNOWN_LOADS = 5
 
 
 @dataclass(frozen=True)
@@ -30,11 +33,15 @@ class CannotCarry:
 
 @dataclass(frozen=True)
 class Task:
-    """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed."""
+    """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
+
+    `aboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list.
+    """
 
     load: FlightLoad | None = None
     order: Order | None = None
     parameters: dict[str, float] | None = None
+    aboard: FlightLoad | None = None
     take_off: TakeOff | None = None
     wanted: Loaded | None = None
     before: Loaded | None = None
@@ -45,56 +52,88 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
     """Reads the database."""
     before = loaded_on(command.uav_id)
     if command.kind == CommandKind.CLEAR_MISSION:
-        return Task(load=EMPTY, before=before)
-    if command.kind not in (CommandKind.UPLOAD_MISSION, CommandKind.START) or command.approval_id is None:
+        return Task(load=EMPTY, before=before, known=_others(command, EMPTY))
+    if command.kind not in (CommandKind.UPLOAD_MISSION, *FLIES_LIST):
         parameters = {name: float(value) for name, value in command.parameters.items() if isinstance(value, int | float)}
         return Task(order=Order(command.kind), parameters=parameters, before=before)
     try:
-        approved = load_of(command)
+        approved = _approved(command, before)
     except DamagedApproval:
         return CannotCarry("damaged-approval", "The approval is not the one that was given: its hash is another one.")
     except (LookupError, StopIteration):
         return CannotCarry("no-flight", "The approval has no such flight of this UAV.")
+    if isinstance(approved, CannotCarry):
+        return approved
     if approved.load is None:
         return CannotCarry("not-mavlink", "It was approved for a UAV with a companion computer. Revoke, and approve it again.")
     wanted = Loaded(approved.load.content_sha256, approved.approval, approved.flight)
     if command.kind == CommandKind.UPLOAD_MISSION:
-        return Task(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, known=_others(command, approved))
+        known = _others(command, approved.load)
+        return Task(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, known=known)
     if before != wanted:
         return CannotCarry("not-loaded", "The UAV does not hold this flight of the approved mission: send it first.")
-    return Task(order=Order.START, take_off=approved.take_off, before=before)
+    return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before)
+
+
+def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | CannotCarry:
+    """The flight that a command is about; a resumed one is that which is on the UAV. Raises as `load_of`."""
+    approval = command.approval
+    if approval is None or command.mission is None:
+        return CannotCarry("no-mission", "Only a mission that was approved can be flown.")
+    if command.kind in FLIES_LIST and (approval.revoked_at is not None or approval.revoke_requested_at is not None):
+        return CannotCarry("revoked", "The approval was taken back.")
+    if command.kind != CommandKind.RESUME:
+        return load_of(command)
+    if command.mission.state != MissionState.ACTIVE:
+        return CannotCarry("not-active", "Only a mission that is being flown can be resumed.")
+    if before is None or before.approval != approval.pk:
+        return CannotCarry("not-loaded", "The UAV does not hold a flight of the approved mission.")
+    return approved_load(approval, uav_id=command.uav_id, flight=before.flight)
 
 
 def reason_not_to(task: Task, state: VehicleState) -> CannotCarry | None:
-    """Whether the vehicle stands where its flight was planned to begin. One that flies is not asked."""
-    if task.take_off is None or state.is_in_air:
+    """Whether the vehicle stands where its flight was planned to begin, and counts its heights from there."""
+    if task.take_off is None:
         return None
-    if state.position is None:
-        return CannotCarry("no-position", "The UAV has not told where it stands.", is_for_good=False)
-    away_m = _apart_m(state.position, task.take_off.position)
+    if not state.is_in_air:
+        if state.position is None:
+            return CannotCarry("no-position", "The UAV has not told where it stands.", is_for_good=False)
+        elsewhere = _elsewhere(task.take_off, state.position, state.altitude_amsl_m, "UAV stands", "UAV reports", "")
+        if elsewhere is not None:
+            return elsewhere
+    if task.order is None:
+        return None
+    if state.home is None:
+        return CannotCarry("no-home", "The UAV has not told where its home is, from which it counts its heights.", is_for_good=False)
+    return _elsewhere(task.take_off, state.home, state.home_amsl_m, "UAV's home is", "UAV's home is", "home-")
+
+
+def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, stands: str, reports: str, code: str) -> CannotCarry | None:
+    """amsl_m: None is not compared, as is a take-off without a height."""
+    away_m = _apart_m(place, take_off.position)
     if away_m > settings.TAKE_OFF_DISTANCE_M:
-        words = f"The UAV stands {away_m:.0f} m from the planned take-off; {settings.TAKE_OFF_DISTANCE_M:.0f} m are allowed."
-        return CannotCarry("elsewhere", words)
-    if task.take_off.altitude_amsl_m is None or state.altitude_amsl_m is None:
+        words = f"The {stands} {away_m:.0f} m from the planned take-off; {settings.TAKE_OFF_DISTANCE_M:.0f} m are allowed."
+        return CannotCarry(f"{code}elsewhere", words)
+    if take_off.altitude_amsl_m is None or amsl_m is None:
         return None
-    above_m = state.altitude_amsl_m - task.take_off.altitude_amsl_m
+    above_m = amsl_m - take_off.altitude_amsl_m
     if abs(above_m) > settings.TAKE_OFF_HEIGHT_M:
         side = "above" if above_m > 0 else "below"
-        words = f"The UAV reports {abs(above_m):.0f} m {side} the planned take-off; {settings.TAKE_OFF_HEIGHT_M:.0f} m are allowed."
-        return CannotCarry("other-height", words)
+        words = f"The {reports} {abs(above_m):.0f} m {side} the planned take-off; {settings.TAKE_OFF_HEIGHT_M:.0f} m are allowed."
+        return CannotCarry(f"{code or 'other-'}height", words)
     return None
 
 
-def _others(command: UavCommand, approved: ApprovedLoad) -> list[FlightLoad]:
+def _others(command: UavCommand, wanted: FlightLoad) -> list[FlightLoad]:
     """Loads that were sent to the vehicle before: what it holds may be one of them."""
     earlier = UavCommand.objects.filter(uav=command.uav_id, kind=CommandKind.UPLOAD_MISSION, sequence__lt=command.sequence)
     loads = []
-    for other in earlier.select_related("approval").order_by("-sequence")[:3]:
+    for other in earlier.select_related("approval").order_by("-sequence")[:KNOWN_LOADS]:
         try:
             load = load_of(other).load
         except (DamagedApproval, LookupError, StopIteration):
             continue
-        if load is not None and load != approved.load:
+        if load is not None and load != wanted:
             loads.append(load)
     return loads
 

@@ -1,6 +1,7 @@
 """The gateway as a whole: sockets, vehicles, the database, and the clock that drives them."""
 
 import asyncio
+import hashlib
 import logging
 import os
 import signal
@@ -22,12 +23,14 @@ from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_EVERY_S, Flights
 from telemetry.gateway.hints import listen
+from telemetry.gateway.leases import served_until_s
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
 from telemetry.ground_station.flavour import flavour_of
 from telemetry.services.alerts import tell_of_second_sender
+from telemetry.services.flown import note_flown
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
 from telemetry.services.sightings import Sighting
@@ -39,6 +42,7 @@ LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
 KEYS_EVERY_S = 30.0
+FLOWN_EVERY_S = 0.2
 SENDERS_EVERY_S = 2.0
 SECOND_SENDER_GONE_S = 60.0
 WAITED_TOO_LONG_S = 15.0
@@ -156,6 +160,7 @@ class Gateway:
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
             "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
+            "flown": self._every(FLOWN_EVERY_S, self._tell_flown),
             "keys": self._every(KEYS_EVERY_S, self._note_keys),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
@@ -179,6 +184,7 @@ class Gateway:
             async with asyncio.timeout(STOP_WITHIN_S):
                 while await self.store.flush():
                     pass
+                await self._tell_flown()
                 await self.flights.write_rows(self.database)
                 await self.database.run(release_leases, holder=self.options.holder)
         except (DatabaseAway, TimeoutError):
@@ -222,13 +228,15 @@ class Gateway:
                 continue
 
     async def _lease(self) -> None:
-        now_s = time.time()
+        now_s, asked_s = time.time(), time.monotonic()
         held = {session.uav.uav_id: session for session in self.sessions.values() if session.lease is not None}
         still = await self.database.run(renew_leases, uav_ids=list(held), holder=self.options.holder, lease_s=self.options.lease_s)
         for uav_id in held.keys() - still:
             logger.warning("another gateway serves %s now", held[uav_id].uav.name)
             self.flights.end(held[uav_id], now_s)
             held[uav_id].lose()
+        for uav_id in still:
+            held[uav_id].held_until_s = served_until_s(asked_s, self.options.lease_s)
         wanted = {}
         for session in self.sessions.values():
             while session.waiting and now_s - session.waiting[0][2] > WAITED_TOO_LONG_S:
@@ -237,12 +245,13 @@ class Gateway:
                 wanted[session.uav.uav_id] = session
         if not wanted:
             return
+        asked_s = time.monotonic()
         leases = await self.database.run(take_leases, uav_ids=list(wanted), holder=self.options.holder, lease_s=self.options.lease_s)
         for lease in leases:
             session = wanted[lease.uav_id]
             logger.info("serves %s", session.uav.name)
             waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
-            session.serve(lease)
+            session.serve(lease, served_until_s(asked_s, self.options.lease_s))
             for frame, peer, at_s in waiting:
                 self._receive_known(session, frame, peer, at_s)
 
@@ -287,6 +296,13 @@ class Gateway:
                 session.second_sender = None
                 await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
 
+    async def _tell_flown(self) -> None:
+        """In order, each as often as it takes."""
+        for session in list(self.sessions.values()):
+            while session.flown:
+                await self.database.run(note_flown, uav_id=session.uav.uav_id, flown=session.flown[0])
+                session.flown.pop(0)
+
     async def _note_keys(self) -> None:
         signed = [session for session in self.sessions.values() if session.has_signed]
         for session in signed:
@@ -311,5 +327,5 @@ def _type_name(number: int) -> str:
 
 
 def _link_id(name: str) -> int:
-    """Of the signatures of this gateway: streams of several ones must not be mixed."""
-    return sum(name.encode()) % 256
+    """Of the signatures of this gateway: streams of several ones must not be mixed, and there are 256 of them only."""
+    return hashlib.sha256(name.encode()).digest()[0]

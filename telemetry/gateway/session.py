@@ -23,6 +23,8 @@ from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.ground_station.ends import AUTOPILOT
 from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flown import FlightWatch
+from telemetry.ground_station.flown import Flown as FlownItem
 from telemetry.ground_station.limits import PARAMETERS
 from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.ingest import NewRecord
@@ -44,16 +46,18 @@ Listener = Callable[[Message, float], None]
 
 @dataclass
 class Session:
-    """`records` and `texts` are what is to be stored; whoever stores them takes them out. Serves once it has a lease."""
+    """`records`, `texts` and `flown` are what is to be stored; whoever stores them takes them out. Serves once it has a lease."""
 
     uav: KnownUav
     records: deque[NewRecord]
     link_id: int
     lease: Lease | None = None
+    held_until_s: float = 0.0  # monotonic: past it another gateway may have the vehicle, and nothing is sent
     peer: Peer | None = None
     heard_s: float = 0.0
     losses: Counter[str] = field(default_factory=Counter)
     texts: list[StatusText] = field(default_factory=list)
+    flown: list[FlownItem] = field(default_factory=list)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
     listeners: list[Listener] = field(default_factory=list)  # hear every message of the autopilot
@@ -69,6 +73,7 @@ class Session:
     _reporter: Reporter = field(default_factory=Reporter)
     _collector: TextCollector = field(default_factory=TextCollector)
     _quality: LinkQuality = field(default_factory=LinkQuality)
+    _flight: FlightWatch = field(default_factory=FlightWatch)
     _position_s: float = 0.0
     _asked_s: float = 0.0
     _greeted_s: float = 0.0
@@ -110,9 +115,9 @@ class Session:
         if message is not None:
             self._quality.receive_radio(message, now_s)
 
-    def serve(self, lease: Lease) -> None:
+    def serve(self, lease: Lease, held_until_s: float) -> None:
         """From now on, with what the gateway before has left. `waiting` is for the caller to receive again."""
-        self.lease = lease
+        self.lease, self.held_until_s = lease, held_until_s
         self.losses = Counter(lease.losses)
         if not self.time.boots:
             self.time = VehicleTime.from_json(lease.boots)
@@ -131,9 +136,13 @@ class Session:
         self.lease = None
         self.waiting.clear()
 
+    @property
+    def is_held(self) -> bool:
+        return self.lease is not None and time.monotonic() < self.held_until_s
+
     def is_served(self, now_s: float, within_s: float) -> bool:
         """Whether it is ours and there, and has said what it is."""
-        return self.lease is not None and now_s - self.heard_s <= within_s and self.state.flavour is not None
+        return self.is_held and now_s - self.heard_s <= within_s and self.state.flavour is not None
 
     def unsettled_until_s(self, settling_s: float) -> float | None:
         """Until when what was sent before may still arrive; monotonic."""
@@ -142,6 +151,9 @@ class Session:
     # Frames out
 
     def send(self, messages: list[Message], now_s: float | None = None) -> None:
+        """Nothing while it is not surely ours."""
+        if not self.is_held:
+            return
         now_s = time.time() if now_s is None else now_s
         for message in messages:
             raw = self._writer.frame_of(message, now_s)
@@ -193,7 +205,7 @@ class Session:
         home = state.home
         return LinkState(
             uav_id=self.uav.uav_id,
-            heard_at=datetime.fromtimestamp(self.heard_s, UTC),
+            heard_ago_s=max(time.time() - self.heard_s, 0.0),
             address=self.peer.name[:100] if self.peer else "",
             autopilot=state.flavour or "",
             firmware=".".join(map(str, state.firmware)) if state.firmware else "",
@@ -255,6 +267,7 @@ class Session:
         monotonic_s = time.monotonic()
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
+            self.flown += self._flight.look(self.state, kind)
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)

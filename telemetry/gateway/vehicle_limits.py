@@ -30,7 +30,7 @@ async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: C
         session.limit_questions_left = 0
         rules = replace(settings.TRANSFER_RULES, retries=RETRIES)
         reading = ParameterReading(PARAMETERS, session.state, Ends(session.uav.system), rules)
-        await Conversation(session, reading).run(on_change=lambda: None, is_wanted=is_wanted)
+        await Conversation(session, reading, is_wanted).run(on_change=lambda: None)
     refused = leg_warnings(load, session.limits, session.state.position)
     return _refusal(refused) if refused else None
 

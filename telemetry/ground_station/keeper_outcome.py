@@ -28,7 +28,7 @@ class KeeperOutcome:
     """`code` names why it failed; `sha256` is of the load that the vehicle holds, empty unless it is ready.
 
     `mixes` tells of every mixed list that was found on the way, those that were put right among them; `is_critical` whether one is still
-    there, or may be.
+    there, or may be. `left_alone` says in words what of the vehicle's own was kept beside the load.
     """
 
     state: KeeperState
@@ -38,6 +38,7 @@ class KeeperOutcome:
     is_critical: bool = False
     mixes: tuple[Mix, ...] = ()
     differences: tuple[Difference, ...] = ()
+    left_alone: str = ""
 
 
 @dataclass(frozen=True)

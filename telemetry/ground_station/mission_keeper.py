@@ -8,7 +8,7 @@ from telemetry.ground_station.clear import Clear
 from telemetry.ground_station.compare import Difference, are_identical, differences
 from telemetry.ground_station.download import Download
 from telemetry.ground_station.ends import Ends, Message, Messages
-from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flavour import Flavour, Mode
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState, Mix, Progress
 from telemetry.ground_station.limits import too_many
 from telemetry.ground_station.mix import Found, found, mix_in_words
@@ -28,7 +28,9 @@ class MissionKeeper:
 
     Ready means: all three lists were read back and are the approved ones. A vehicle that is armed is only sent anything while it is held
     (see `VehicleState.is_held`): ArduPilot flies a new item as soon as it has it, even of an upload that it then refuses, and PX4 flies a
-    new mission from its first item. One that leaves its hold meanwhile gets the rest all the same: half a list would be worse.
+    new mission from its first item. Of one that leaves its hold meanwhile `is_endangered` says whether to go on.
+
+    A load without a fence or without rally points leaves those that somebody else gave the vehicle; those of `known` loads are taken off.
 
     After a failure fence and rally points are put back as they were. The mission is left alone where it is the one from before, whole;
     anything else is taken off, for the vehicle would fly it. `mixes` tells at once what was found, while the keeper still works on it.
@@ -87,11 +89,21 @@ class MissionKeeper:
     def tick(self, now_s: float) -> Messages:
         return self._steps.tick(now_s)
 
+    @property
+    def is_endangered(self) -> bool:
+        """Whether the vehicle has left its hold, so that this is to be cancelled.
+
+        Not where it flies the list that is being replaced: half a list would be worse than the rest of it.
+        """
+        state = self._state
+        has_left = bool(state.is_armed) and not state.is_held
+        return has_left and not (state.is_in(Mode.MISSION) and MissionType.MISSION in self._touched)
+
     def cancel(self, now_s: float) -> Messages:
         """Ends by a failure like others: what was begun is put back."""
         if self.outcome is not None or self._is_restoring:
             return []
-        self._is_cancelled, self._reason = True, "cancelled"
+        self._is_cancelled, self._reason = True, "left-hold" if self.is_endangered else "cancelled"
         self._sent.clear()
         step = self._steps.step
         messages = step.cancel(now_s) if isinstance(step, Upload | Download) else []
@@ -116,8 +128,8 @@ class MissionKeeper:
             if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
                 return (yield from self._give_up())
         held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
-        words = f"The vehicle holds {held}."
-        return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes))
+        words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
+        return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes), left_alone=left)
 
     def _cannot_begin(self) -> KeeperOutcome | None:
         state = self._state
@@ -143,7 +155,7 @@ class MissionKeeper:
         wanted = self.load.of(kind)
         if self._is_cancelled:
             return False
-        if not differences(wanted, self.before[kind], self._flavour):
+        if not differences(wanted, self.before[kind], self._flavour) or self._is_left_alone(kind):
             return True
         self._touched.append(kind)
         self._reason = ""
@@ -162,6 +174,17 @@ class MissionKeeper:
                 return False
             self._reason = self._reason or "differs"
         return False
+
+    def _is_left_alone(self, kind: MissionType) -> bool:
+        """A fence or rally points of somebody else, where the load has none."""
+        if kind is MissionType.MISSION or self.load.of(kind):
+            return False
+        return self.found_before[kind] is Found.FOREIGN
+
+    def _left_alone_in_words(self) -> str:
+        names = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points"}
+        left = [kind for kind in ORDER if self._is_left_alone(kind)]
+        return " ".join(f"Of its own {names[kind]} {len(self.before[kind])} items were left as they are." for kind in left)
 
     def _has_come_unseen(self, kind: MissionType) -> Generator[Machine, None, bool]:
         """Where no reading got through after the last sending: whether it is there all the same."""

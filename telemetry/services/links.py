@@ -7,7 +7,6 @@ it bears the same name: it is the same gateway, started again.
 import json
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, fields
-from datetime import datetime
 from typing import Any
 
 from django.db import connection
@@ -29,10 +28,10 @@ class Lease:
 
 @dataclass(frozen=True)
 class LinkState:
-    """What a gateway knows of a vehicle; the fields are UavLink's."""
+    """What a gateway knows of a vehicle; the fields are UavLink's, but for `heard_ago_s`: clocks of gateways do not matter."""
 
     uav_id: int
-    heard_at: datetime
+    heard_ago_s: float
     address: str
     autopilot: str
     firmware: str
@@ -94,14 +93,16 @@ def release_leases(*, holder: str) -> None:
 
 
 _TYPES = {
-    "uav_id": "int8", "heard_at": "timestamptz", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4",
+    "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4",
     "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb",
     "address": "text", "autopilot": "text", "firmware": "text", "mode": "text",
 }  # fmt: skip
 _COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}
+_MADE = ("uav_id", "heard_ago_s", "home_longitude_deg", "home_latitude_deg")
 _SAVE = f"""
 UPDATE telemetry_uavlink link
-SET {", ".join(f"{name} = heard.{name}" for name in _COLUMNS if name != "uav_id" and not name.startswith("home_l"))},
+SET {", ".join(f"{name} = heard.{name}" for name in _COLUMNS if name not in _MADE)},
+    heard_at = statement_timestamp() - make_interval(secs => heard_ago_s),
     home = ST_SetSRID(ST_MakePoint(home_longitude_deg, home_latitude_deg), 4326)
 FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS heard({", ".join(_COLUMNS)})
 WHERE link.uav_id = heard.uav_id AND link.holder = %s

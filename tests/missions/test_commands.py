@@ -306,6 +306,29 @@ def test_what_is_carried_is_left_to_its_carrier_beyond_its_time() -> None:
     assert note_applied(held.pk, **fence(held))
 
 
+@pytest.mark.parametrize("kind", [CommandKind.TAKE_OFF, CommandKind.START, CommandKind.ABORT])
+def test_what_was_claimed_in_time_is_not_first_sent_after_it(kind: CommandKind) -> None:
+    command = give(a_uav(), kind)
+    (held,) = claim(command.uav)
+    grow_old(command)
+    assert renew_claims(holder=held.holder, lease_s=LEASE_S) == {}
+    assert not note_sent(held.pk, **fence(held))
+    assert now(command).sent_at is None
+    lose(command)
+    assert renew_claims(holder=held.holder, lease_s=LEASE_S) == {}, "a lease that ran out is not given back to what is overdue"
+    assert expire_overdue() == 1
+    assert (now(command).state, command.outcome_code) == (CommandState.EXPIRED, "not-delivered")
+
+
+def test_what_was_sent_in_time_is_held_beyond_it() -> None:
+    command = give(a_uav(), CommandKind.RETURN)
+    (held,) = claim(command.uav)
+    assert note_sent(held.pk, **fence(held))
+    grow_old(command)
+    assert renew_claims(holder=held.holder, lease_s=LEASE_S) == {held.pk: held.attempts}
+    assert note_applied(held.pk, **fence(held))
+
+
 def test_what_was_sent_by_somebody_who_died_ends_unconfirmed() -> None:
     uav = a_uav()
     give(uav, CommandKind.ARM)

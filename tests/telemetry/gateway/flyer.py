@@ -49,6 +49,10 @@ class Flyer:
         with self._lock:
             self._link.socket.connect(("127.0.0.1", port))
 
+    def say(self, *messages: Any) -> None:
+        """Besides what it says by itself."""
+        self._send(list(messages))
+
     def _run(self) -> None:
         next_position_s = 0.0
         while not self._ends.wait(LOOP_S):

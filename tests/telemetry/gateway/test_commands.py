@@ -5,9 +5,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from missions.mavlink.content import FlightLoad, MissionType
-from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, Uav, UavCommand
+from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands import queue_command
 from missions.services.dispatch import dispatch_mission, load_of
+from telemetry.gateway import carriage
 from telemetry.ground_station.compare import differences
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.wire import held_list
@@ -21,6 +22,7 @@ from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
+WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT
 FLAVOURS = {Flavour.PX4: Px4, Flavour.ARDUPILOT: ArduPilot}
 
 
@@ -94,6 +96,31 @@ def test_a_mission_is_brought_started_and_taken_off(flavour, uav, mission, tmp_p
         assert ended(hold).state == CommandState.APPLIED, hold.outcome
 
 
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp_path):
+    vehicle, offset = FLAVOURS[flavour](), 1 if flavour is Flavour.ARDUPILOT else 0
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway) as flying:
+        upload = ended(dispatch(mission))
+        start = begin(uav, mission, upload.approval)
+        assert ended(start).state == CommandState.APPLIED, start.outcome
+        items = load_of(upload).load.mission
+        visits = set(mission.routes.get().waypoints.filter(target__isnull=False).values_list("sequence", flat=True))
+        at_target = next(place for place, item in enumerate(items) if item.waypoint in visits and item.command == WAYPOINT)
+        session = gateway.sessions[uav.mavlink_system_id]
+        wait_for(lambda: session.state.is_in_air, "that it is seen in the air")
+        flying.say(mavlink.MAVLink_mission_item_reached_message(at_target + offset))
+        wait_for(lambda: mission.targets.filter(state=TargetState.IN_PROGRESS).exists(), "a target in progress")
+
+        flying.say(mavlink.MAVLink_mission_current_message(len(items) - 1 + offset))
+        wait_for(lambda: session.state.mission_item == len(items) - 1 + offset)
+        assert mission.routes.get().flights_flown == 0
+        vehicle.is_in_air = vehicle.is_armed = False
+        wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end")
+    mission.refresh_from_db()
+    assert mission.state == MissionState.COMPLETED
+    assert set(mission.targets.values_list("state", flat=True)) == {TargetState.COMPLETE}
+
+
 def test_a_start_without_the_mission_on_the_vehicle_is_refused(uav, mission, tmp_path):
     with gateway_at_work(tmp_path) as gateway, flyer(ArduPilot(), gateway):
         start = begin(uav, mission, mission.approvals.get())
@@ -151,3 +178,42 @@ def test_a_stopped_gateway_gives_its_commands_back(uav, tmp_path):
     vehicle.denied.clear()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         assert ended(hold).state == CommandState.APPLIED
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_list_that_somebody_else_has_put_there_is_not_flown(flavour, uav, mission, tmp_path):
+    vehicle = FLAVOURS[flavour]()
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        upload = ended(dispatch(mission))
+        vehicle.lists[MissionType.MISSION] = vehicle.lists[MissionType.MISSION][:-1]
+        start = ended(begin(uav, mission, upload.approval))
+        assert (start.state, start.outcome_code) == (CommandState.FAILED, "other-list"), start.outcome
+        assert not vehicle.is_armed and UavLink.objects.get(uav=uav).loaded_sha256 == ""
+
+
+def test_a_list_that_nobody_approved_is_not_resumed(uav, mission, tmp_path):
+    vehicle = ArduPilot(is_armed=True, is_in_air=True, custom_mode=17)
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        alone = ended(queue_command(uav=uav, kind=CommandKind.RESUME, actor=None))
+        assert (alone.state, alone.outcome_code) == (CommandState.FAILED, "no-mission")
+        Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
+        own = queue_command(uav=uav, kind=CommandKind.RESUME, actor=None, mission=mission, approval=mission.approvals.get())
+        assert (ended(own).state, own.outcome_code) == (CommandState.FAILED, "not-loaded")
+    assert vehicle.custom_mode == 17
+
+
+def test_a_mission_is_taken_off_once_the_vehicle_may_be_written_to(uav, mission, tmp_path, monkeypatch):
+    monkeypatch.setattr(carriage, "CLEAR_AGAIN_IN_S", 0.2)
+    vehicle = ArduPilot()
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        upload = ended(dispatch(mission))
+        vehicle.is_armed = vehicle.is_in_air = True
+        vehicle.custom_mode = 3
+        session = gateway.sessions[uav.mavlink_system_id]
+        wait_for(lambda: session.state.is_armed)
+        clear = queue_command(uav=uav, kind=CommandKind.CLEAR_MISSION, actor=None, mission=mission, approval=upload.approval)
+        wait_for(lambda: clear.events.filter(state=CommandState.QUEUED, attempt__gte=2).exists(), "another try")
+        assert len(vehicle.lists[MissionType.MISSION]) > 1
+        vehicle.is_armed = vehicle.is_in_air = False
+        assert ended(clear).state == CommandState.APPLIED, clear.outcome
+    assert len(vehicle.lists[MissionType.MISSION]) == 1, "home alone"

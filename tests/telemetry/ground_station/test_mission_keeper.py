@@ -16,7 +16,7 @@ from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.ground_station.wire import held_list
 from tests.telemetry.vehicles.ardupilot import AUTO, BRAKE, ArduPilot
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon, rally
+from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, mission, polygon, rally
 from tests.telemetry.vehicles.px4 import HOLD, MISSION, Px4
 from tests.telemetry.vehicles.vehicle import Vehicle
 
@@ -366,3 +366,22 @@ def test_mission_that_is_there_though_the_link_was_away_while_it_was_read_is_kep
     vehicle.restart()
     assert channel.go_on().state is KeeperState.READY
     assert holds(vehicle, load(12, fence=OLD.fence))
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_fence_and_rally_points_of_somebody_else_are_left(flavour):
+    vehicle = holding(flavour, FlightLoad(mission(5), fence=polygon(50_000), rally=rally()))
+    outcome, _ = bring(vehicle, load(12))
+    assert outcome.state is KeeperState.READY and outcome.mixes == ()
+    assert (len(vehicle.lists[MissionType.FENCE]), len(vehicle.lists[MissionType.RALLY])) == (4, 2)
+    assert "own fence 4 items" in outcome.left_alone and "own rally points 2 items" in outcome.left_alone
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("wanted", [load(12), FlightLoad(())])
+def test_a_fence_and_rally_points_of_an_earlier_mission_are_taken_off(flavour, wanted):
+    earlier = FlightLoad(mission(5), fence=polygon(9_000), rally=rally())
+    vehicle = holding(flavour, earlier)
+    outcome = Channel(keeper_for(vehicle, wanted, known_loads=(earlier,)), vehicle).run()
+    assert outcome.state is KeeperState.READY and not outcome.left_alone
+    assert not vehicle.lists[MissionType.FENCE] and not vehicle.lists[MissionType.RALLY]

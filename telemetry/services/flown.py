@@ -1,0 +1,29 @@
+"""What was flown of an approved flight, told to the mission."""
+
+from missions.models import Approval
+from missions.services.dispatch import DamagedApproval, approved_load
+from missions.services.flying import FlightEnd, mark_flight_ended, mark_waypoint_reached
+from telemetry.ground_station.flown import Flown
+from telemetry.services.loads import loaded_on
+
+
+def note_flown(*, uav_id: int, flown: Flown) -> None:
+    """Of the flight that was last read back from the vehicle; of anything else it may have flown nothing is known.
+
+    Safe to call again. A flight that was broken off is neither flown nor failed: it can be started again.
+    """
+    loaded = loaded_on(uav_id)
+    approval = None if loaded is None else Approval.objects.filter(pk=loaded.approval, revoked_at=None).first()
+    if loaded is None or approval is None:
+        return
+    try:
+        approved = approved_load(approval, uav_id=uav_id, flight=loaded.flight)
+    except (DamagedApproval, LookupError, StopIteration):
+        return
+    if approved.load is None or flown.item >= len(approved.load.mission):
+        return
+    waypoint = approved.load.mission[flown.item].waypoint
+    if flown.is_reached and waypoint is not None:
+        mark_waypoint_reached(mission_id=approved.mission, uav_id=uav_id, waypoint=waypoint)
+    if flown.is_whole(approved.load):
+        mark_flight_ended(mission_id=approved.mission, uav_id=uav_id, flight=approved.flight, end=FlightEnd.FLOWN)

@@ -1,0 +1,145 @@
+"""What a gateway does not do: act on a lease that may be over, set in motion what is being loaded, or fly what stands elsewhere."""
+
+import asyncio
+import time
+from types import SimpleNamespace
+from uuid import uuid4
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
+from missions.mavlink.frozen import TakeOff
+from missions.models import CommandAxis, CommandKind
+from missions.services.commands import claim_commands
+from telemetry.gateway.carriage import Carriage
+from telemetry.gateway.database import DatabaseAway
+from telemetry.gateway.desk import MOST_UPLOADS, Desk
+from telemetry.gateway.preparation import EMPTY, Task, reason_not_to
+from telemetry.gateway.process import _link_id
+from telemetry.ground_station.orders import Order
+from telemetry.ground_station.rules import CommandRules
+from telemetry.ground_station.vehicle_state import VehicleState
+
+HERE = LonLat(10.0, 56.0)
+FAR = LonLat(10.02, 56.0)
+IN_AIR, ON_GROUND = mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_ON_GROUND
+
+
+class Database:
+    """Answers as told, or not at all."""
+
+    def __init__(self, **answers) -> None:
+        self.is_away, self.answers, self.asked = False, answers, []
+
+    async def run(self, do, *_values, **named):
+        self.asked.append((do, named))
+        if self.is_away:
+            raise DatabaseAway("away")
+        answer = self.answers.get(do.__name__, True)
+        return answer() if callable(answer) else answer
+
+
+def a_command(kind: CommandKind, uav_id: int = 1, *, priority: int = 2) -> SimpleNamespace:
+    axis = CommandAxis.MISSION if kind in (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION) else CommandAxis.FLIGHT
+    return SimpleNamespace(
+        pk=uuid4(), uav_id=uav_id, kind=kind, axis=axis, priority=priority, created_at=0, attempts=1, holder="one", sequence=1
+    )
+
+
+def a_desk(database: Database, *sessions, lease_s: float = 10.0) -> Desk:
+    desk = Desk("one", lease_s, lambda: list(sessions))
+    desk.database.close()
+    desk.database = database
+    return desk
+
+
+def heard(*messages) -> VehicleState:
+    state, frames = VehicleState(7), mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
+    for message in messages:
+        state.receive(mavlink.MAVLink(None).parse_char(message.pack(frames)), time.monotonic())
+    return state
+
+
+def test_nothing_is_sent_on_a_lease_that_may_be_over(settings):
+    settings.VEHICLE_COMMAND_RULES = CommandRules(timeout_s=0.05)
+    sent = []
+    state = heard(mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3))
+    session = SimpleNamespace(
+        state=state, listeners=[], is_held=True, commanded_s=None, uav=SimpleNamespace(system=7, name="Tern", uav_id=1),
+        send=lambda messages: sent.extend(time.monotonic() for _ in messages), unsettled_until_s=lambda _: None,
+    )  # fmt: skip
+    command = a_command(CommandKind.ARM)
+    database = Database(task_of=Task(order=Order.ARM), renew_claims=lambda: {command.pk: 1}, claim_commands=list)
+    desk = a_desk(database, lease_s=0.5)
+    began_s = time.monotonic()
+    carried = desk._carriages[command.pk] = Carriage(command, session, database, began_s + 0.4)
+
+    async def run() -> None:
+        desk._begin()
+        await asyncio.sleep(0.1)
+        database.is_away = True
+        await asyncio.sleep(0.7)
+        for task in desk._tasks.values():
+            task.cancel()
+
+    asyncio.run(run())
+    assert len(sent) > 1 and max(sent) < began_s + 0.4 + 0.02
+    assert not carried.is_ours and not carried.is_dropped, "nobody had to tell it"
+
+
+@pytest.mark.parametrize("kind", [CommandKind.RESUME, CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START])
+@pytest.mark.parametrize("loading", [CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION])
+def test_nothing_is_set_in_motion_while_it_is_loaded(kind, loading):
+    desk, upload, motion = a_desk(Database()), a_command(loading), a_command(kind, priority=1)
+    for under_way, waiting in ((upload, motion), (motion, upload)):
+        desk._carriages = {under_way.pk: Carriage(under_way, None, None)}
+        desk._tasks = {under_way.pk: object()}
+        assert not desk._may_begin(waiting)
+        assert desk._may_begin(a_command(kind, uav_id=2)), "another UAV"
+    desk._carriages, desk._tasks = {upload.pk: Carriage(upload, None, None)}, {upload.pk: object()}
+    assert desk._may_begin(a_command(CommandKind.HOLD, priority=0))
+
+
+def test_an_abort_is_claimed_however_many_uploads_there_are():
+    session = SimpleNamespace(uav=SimpleNamespace(uav_id=1), is_served=lambda *_: True)
+    uploads = [a_command(CommandKind.UPLOAD_MISSION, number) for number in range(MOST_UPLOADS)]
+    database = Database(renew_claims=lambda: {upload.pk: 1 for upload in uploads}, claim_commands=list)
+    desk = a_desk(database, session)
+    desk._carriages = {upload.pk: Carriage(upload, None, None) for upload in uploads}
+    desk._tasks = {upload.pk: SimpleNamespace(done=lambda: False) for upload in uploads}
+    asyncio.run(desk.look())
+    claims = [named for do, named in database.asked if do is claim_commands]
+    assert [claim["axes"] for claim in claims] == [(CommandAxis.FLIGHT, CommandAxis.SPEED)], "and no upload more than may begin"
+
+    del desk._carriages[uploads[0].pk], desk._tasks[uploads[0].pk]
+    database.asked.clear()
+    asyncio.run(desk.look())
+    claims = [named for do, named in database.asked if do is claim_commands]
+    assert [(claim["axes"], claim["limit"]) for claim in claims[1:]] == [((CommandAxis.MISSION,), 1)]
+
+
+@pytest.mark.parametrize(
+    ("landed", "position", "home", "home_m", "code"),
+    [
+        (ON_GROUND, HERE, HERE, 100.0, None),
+        (IN_AIR, FAR, HERE, 104.0, None),
+        (ON_GROUND, FAR, HERE, 100.0, "elsewhere"),
+        (IN_AIR, FAR, FAR, 100.0, "home-elsewhere"),
+        (ON_GROUND, HERE, FAR, 100.0, "home-elsewhere"),
+        (IN_AIR, HERE, HERE, 111.0, "home-height"),
+        (ON_GROUND, HERE, HERE, 89.0, "home-height"),
+        (IN_AIR, HERE, None, None, "no-home"),
+        (ON_GROUND, HERE, None, None, "no-home"),
+    ],
+)
+@pytest.mark.parametrize("order", [Order.START, Order.RESUME])
+def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, position, home, home_m, code):
+    state = VehicleState(7, landed_state=landed, position=position, altitude_amsl_m=100.0, home=home, home_amsl_m=home_m)
+    found = reason_not_to(Task(order=order, aboard=EMPTY, take_off=TakeOff(HERE, 100.0)), state)
+    assert (found and found.code) == code
+
+
+def test_gateways_sign_as_different_links():
+    assert _link_id("gateway-12") != _link_id("gateway-21")
+    assert len({_link_id(f"spanwise-gateway-{number}") for number in range(8)}) == 8
