@@ -87,6 +87,7 @@ test("a mission has the buttons of its stage", () => {
   assert.deepEqual(flying.stageActs(mission("dispatched"), all), { send: false, revoke: true, abort: true });
   assert.equal(flying.stageActs(mission("dispatched"), []).send, true);
   assert.deepEqual(flying.stageActs(mission("active"), all), { send: false, revoke: false, abort: true });
+  assert.deepEqual(flying.stageActs(mission("failed"), all), { send: false, revoke: false, abort: true });
   assert.deepEqual(flying.stageActs(mission("aborted"), all), { send: false, revoke: false, abort: false });
 });
 

@@ -134,6 +134,6 @@ export function stageActs(mission, commands) {
   return {
     send: send && (whyNot || true),
     revoke: ["approved", "dispatched"].includes(mission.state),
-    abort: isOnItsWay(mission),
+    abort: isOnItsWay(mission) || mission.state === "failed", // who said that its last flight failed may be wrong
   };
 }
