@@ -10,7 +10,19 @@ from django.utils.translation import gettext as _
 
 from missions.command_rules import SETS_IN_MOTION
 from missions.fleet_selectors import performance_of
-from missions.models import Approval, CommandAxis, CommandKind, CommandState, Mission, MissionState, MissionUav, Uav, UavCommand, UavState
+from missions.models import (
+    Approval,
+    CommandAxis,
+    CommandKind,
+    CommandState,
+    Mission,
+    MissionState,
+    MissionUav,
+    Route,
+    Uav,
+    UavCommand,
+    UavState,
+)
 from missions.selectors import approval_in_force, mission_of_organisation
 from missions.services.approval_checks import reasons_against
 from missions.services.flying import ON_ITS_WAY
@@ -86,7 +98,10 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
         raise refuse("no_mission", _("%(uav)s has no mission.") % values)
     if approval.revoke_requested_at is not None:
         raise refuse("being_revoked", _("The approval is being taken back."))
-    if kind == CommandKind.RESUME and mission.state != MissionState.ACTIVE:
+    if Route.objects.filter(mission=mission, mission_uav__uav=uav, has_failed=True).exists():
+        raise refuse("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values)
+    was_started = approval.commands.filter(uav=uav, kind=CommandKind.START, sent_at__isnull=False).exists()
+    if kind == CommandKind.RESUME and not (mission.state == MissionState.ACTIVE and was_started):
         raise refuse("not_started", _("%(uav)s has not started its mission: there is nothing to go on with.") % values)
     return mission, approval
 
@@ -99,8 +114,6 @@ def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, now: dateti
         raise refuse("not_loaded", _("%(uav)s does not have its mission yet.") % values)
     flight = int(last.parameters.get("flight", 1))
     route = MissionUav.objects.select_related("route__mission_uav").get(mission=mission, uav=uav).route
-    if route.has_failed:
-        raise refuse("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values)
     if flight <= route.flights_flown:
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
     if flight == 1 and mission.departs_at is not None:

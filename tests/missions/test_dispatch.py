@@ -325,13 +325,15 @@ def test_nothing_sets_a_uav_in_motion_while_its_approval_is_taken_back(here: Wor
 
 
 def test_only_a_mission_that_was_started_is_gone_on_with(here: World, person: User) -> None:
-    (tern,) = uavs = fleet()
-    dispatched(person, uavs, here.towers[1:2])
-    carry(tern)
+    """By this UAV: another one's start is none of its own."""
+    tern, kite = uavs = fleet("Tern", "Kite")
+    dispatched(person, uavs, here.towers[1:3])
+    carry(*uavs)
     assert commanded(tern, person, CommandKind.RESUME) == "not_started"
     command_uav(uav=tern, kind=CommandKind.START, actor=person)
     carry(tern)
     assert commanded(tern, person, CommandKind.RESUME) == ""
+    assert commanded(kite, person, CommandKind.RESUME) == "not_started"
 
 
 def test_how_a_uav_is_reached_does_not_change_while_its_mission_is_on_its_way(here: World, person: User) -> None:
@@ -352,7 +354,7 @@ def test_a_flight_that_failed_ends_its_route_alone(here: World, person: User) ->
     assert mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FAILED) == MissionState.ACTIVE
     assert mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FLOWN) == MissionState.ACTIVE
     assert list(mission.targets.order_by("sequence").values_list("state", flat=True)).count(TargetState.FAILED) == 1
-    assert commanded(tern, person, CommandKind.START) == "route_failed"
+    assert {commanded(tern, person, kind) for kind in MOTION} == {"route_failed"}
     assert "uav_busy" in refused(planned_again(person, [kite], here), person)
     assert mark_flight_ended(mission_id=mission.pk, uav_id=kite.pk, flight=1, end=FlightEnd.FLOWN) == MissionState.FAILED
 
