@@ -105,7 +105,7 @@ class Desk:
             if carriage.is_dropped:
                 carriage.has_ended = True
             elif self._may_begin(carriage.command):
-                command_id = carriage.command.pk
+                command_id, carriage.has_begun = carriage.command.pk, True
                 task = self._tasks[command_id] = asyncio.create_task(carriage.run(), name=f"command {command_id}")
                 task.add_done_callback(self._ended)
         self._forget_ended()
@@ -129,6 +129,7 @@ class Desk:
     def _forget_ended(self) -> None:
         for command_id in [key for key, task in self._tasks.items() if task.done()]:
             del self._tasks[command_id]
-            self._carriages.pop(command_id, None)
+            if command_id in self._carriages and self._carriages[command_id].has_begun:  # else it was given back, and taken anew
+                del self._carriages[command_id]
         for command_id in [key for key, carriage in self._carriages.items() if carriage.has_ended and key not in self._tasks]:
             del self._carriages[command_id]
