@@ -30,6 +30,8 @@ class Axis(StrEnum):
 
 
 AXES = {"upload-mission": Axis.MISSION, "clear-mission": Axis.MISSION, "change-speed": Axis.SPEED}
+SAFETY_RANKS = {"hold": 1, "return": 2, "land": 3, "abort": 4}
+SETS_IN_MOTION = frozenset({"arm", "take-off", "start", "resume"})
 
 
 def priority_of(kind: str) -> int:
@@ -43,6 +45,14 @@ def axis_of(kind: str) -> Axis:
 def axes_overtaken_by(kind: str) -> tuple[Axis, ...]:
     """About which an unfinished command no longer counts once one of this kind is given: an abort is about everything."""
     return tuple(Axis) if kind == "abort" else (axis_of(kind),)
+
+
+def may_overtake(kind: str, unfinished: str) -> bool:
+    """Whether one of this kind takes the place of an unfinished one: of what makes a UAV safe only what does so as firmly.
+
+    An abort that waits for its link is not called off by a hold that is given after it.
+    """
+    return SAFETY_RANKS.get(kind, 0) >= SAFETY_RANKS.get(unfinished, 0)
 
 
 @dataclass(frozen=True)
@@ -65,4 +75,4 @@ class CommandRules:
             return self.upload_s
         if kind == "change-speed":
             return self.speed_s
-        return self.motion_s if kind in {"arm", "take-off", "start", "resume"} else self.stop_s
+        return self.motion_s if kind in SETS_IN_MOTION else self.stop_s

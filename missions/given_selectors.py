@@ -22,7 +22,8 @@ class Given:
 _OPEN = """
     command.state IN ('queued', 'sent', 'acknowledged') AND (command.expires_at IS NULL OR command.expires_at > statement_timestamp()
         OR command.lease_expires_at > statement_timestamp())"""
-_OWN = f"command.uav_id = %s AND command.link = '{LinkKind.HTTP.value}'"
+_OWN = f"""command.uav_id = %s AND command.link = '{LinkKind.HTTP.value}'
+    AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = command.uav_id AND uav.link = '{LinkKind.HTTP.value}')"""
 # The last word about missions counts: an upload or a clearing that was neither refused nor came too late.
 _GIVEN = f"""
     SELECT

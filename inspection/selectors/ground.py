@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from django.contrib.gis.db.models import Extent
+from django.db import connection
 from django.db.models import Count, Exists, OuterRef, Q
 
 from inspection.graph.snapshot_file import LAYOUT
@@ -33,6 +34,14 @@ class GroundSummary:
 
 def ground_revision() -> int:
     return Ground.objects.values_list("revision", flat=True).first() or 0
+
+
+def held_ground_revision() -> int:
+    """It does not change before the caller's transaction has ended; nobody else's zones, assets or terrain are stored before."""
+    with connection.cursor() as cursor:
+        cursor.execute(f"SELECT revision FROM {Ground._meta.db_table} WHERE id = %s FOR SHARE", [Ground.SINGLE_ID])  # noqa: S608 - a table
+        row = cursor.fetchone()
+    return 0 if row is None else int(row[0])
 
 
 def ground_edition() -> tuple[int, datetime | None]:

@@ -51,12 +51,16 @@ class TakeOff:
 
 @dataclass(frozen=True)
 class Flight:
-    """From one take-off to the next landing. The waypoints' `altitude_relative_m` counts from this take-off."""
+    """From one take-off to the next landing. The waypoints' `altitude_relative_m` counts from this take-off.
+
+    `above_first_m` is how high this take-off lies above the route's first.
+    """
 
     number: int
     take_off: TakeOff
     waypoints: tuple[FrozenWaypoint, ...]
     end_action: str
+    above_first_m: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,7 @@ class FrozenRoute:
         if not waypoints:
             raise NotARoute("A route stands at its base with no flight before or after it.")
         above = tuple(replace(waypoint, altitude_relative_m=waypoint.altitude_relative_m - ground_m) for waypoint in waypoints)
-        return Flight(number, take_off, above, end_action)
+        return Flight(number, take_off, above, end_action, ground_m)
 
 
 def flight_to_json(flight: Flight, route: FrozenRoute) -> dict[str, Any]:

@@ -7,7 +7,7 @@ Items without a place have the frame MISSION, in which alone PX4 takes them.
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -49,6 +49,9 @@ def flight_loads(
 ) -> tuple[FlightLoad, ...]:
     """One for each of `route.flights`, in their order; fence and rally points are those of all of them.
 
+    Rally points' heights are given above the route's first take-off, and sent above the one of each flight: an autopilot counts from its
+    own home.
+
     Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. The way back is among the waypoints, so a flight that
     returns lands under the last of them: an autopilot's own return would climb to a height of its own and fly straight, over wires and
     through zones. A flight that ends in hovering has no item for it: both flavours hover after their last waypoint. Raises CannotBeFlown.
@@ -56,7 +59,18 @@ def flight_loads(
     if route.charging_stops:
         raise CannotBeFlown("charging", "The route charges at towers on its way, which a plain autopilot cannot do.")
     rules = rules or ItemRules()
-    return tuple(FlightLoad(tuple(_items(flight, route.cruise_speed_mps, rules)), fence=fence, rally=rally) for flight in route.flights)
+    return tuple(
+        FlightLoad(tuple(_items(flight, route.cruise_speed_mps, rules)), fence=fence, rally=_rally_of(flight, rally))
+        for flight in route.flights
+    )
+
+
+def _rally_of(flight: Flight, rally: tuple[MissionItem, ...]) -> tuple[MissionItem, ...]:
+    """In whole metres, as ArduPilot keeps them, and rather higher than lower."""
+    heights_m = [float(math.ceil(item.altitude_m - flight.above_first_m)) for item in rally]
+    if any(height_m <= 0 for height_m in heights_m):
+        raise CannotBeFlown("rally-height", "A rally point is not above the take-off of one of the flights.")
+    return tuple(replace(item, altitude_m=height_m) for item, height_m in zip(rally, heights_m, strict=True))
 
 
 def _items(flight: Flight, cruise_speed_mps: float, rules: ItemRules) -> Iterator[MissionItem]:

@@ -11,6 +11,7 @@ from inspection.geodesy import LonLat, path_length_m
 from missions.mavlink.content import FlightLoad, MissionItem
 
 FLOWN = frozenset({mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LAND})
+SPHERE_M = 6_371_000.0  # the radius of the earth that PX4 measures on
 SHORTEST_LEG_M = 1.0  # below which points, kept to a centimetre, would lie on each other
 
 
@@ -37,8 +38,17 @@ def with_points_between(load: FlightLoad, most_m: float) -> FlightLoad:
 
 
 def leg_length_m(left: MissionItem, right: MissionItem) -> float:
-    """Over the ground."""
-    return path_length_m(np.array([position_of(left), position_of(right)]))
+    """Over the ground; the longer of what it is on the ellipsoid and on the sphere, which are up to 0.6 % apart."""
+    start, end = position_of(left), position_of(right)
+    return max(path_length_m(np.array([start, end])), length_on_sphere_m(start, end))
+
+
+def length_on_sphere_m(start: LonLat, end: LonLat) -> float:
+    """As PX4 measures, whose limits are in these metres."""
+    one, other = math.radians(start.lat), math.radians(end.lat)
+    east = math.radians(end.lon - start.lon)
+    chord = math.sin((other - one) / 2) ** 2 + math.cos(one) * math.cos(other) * math.sin(east / 2) ** 2
+    return 2 * SPHERE_M * math.asin(math.sqrt(min(chord, 1.0)))
 
 
 def position_of(item: MissionItem) -> LonLat:

@@ -172,6 +172,7 @@ class Route(models.Model):
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
     flights_flown = models.PositiveSmallIntegerField(default=0, db_default=0, help_text="of its flights, since it was approved")
+    has_failed = models.BooleanField(default=False, db_default=False, help_text="a flight of it, since it was approved: it is not flown on")
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
     before_hand = models.JSONField(
         default=list,

@@ -12,6 +12,8 @@ from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from inspection.selectors.ground import held_ground_revision
+from missions.command_rules import SETS_IN_MOTION
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
@@ -32,7 +34,6 @@ from missions.services.refused import refuse, refuse_for
 from workspace.models import User
 
 REVOKED = "revoked"
-SETS_IN_MOTION = (CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START, CommandKind.RESUME)
 
 
 def approve_mission(*, mission: Mission, actor: User, expected_revision: int | None = None, longest_leg_m: float | None = None) -> Approval:
@@ -46,13 +47,16 @@ def approve_mission(*, mission: Mission, actor: User, expected_revision: int | N
             raise refuse("not_planned", _("A draft cannot be approved. Plan it first."))
         if held.state != MissionState.PLANNED:
             raise refuse("not_planned", _("Only a planned mission can be approved."))
+        checked_revision = held_ground_revision()
         loaded = mission_of_organisation(held.organisation, held.pk)
         refuse_for(reasons_against(loaded, now=timezone.now()))
         document = approval_document(loaded, longest_leg_m=longest_leg_m)
+        if document["ground"]["revision"] != checked_revision:
+            raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))
         approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
-        held.ground_revision = document["ground"]["revision"]  # which the routes have just been checked against
+        held.ground_revision = checked_revision  # which the routes have just been checked against
         held.targets.update(state=TargetState.PENDING)
-        held.routes.update(flights_flown=0)
+        held.routes.update(flights_flown=0, has_failed=False)
         facts = {"approval": str(approval.pk), "sha256": approval.content_sha256}
         facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}
         change_state(held, MissionState.APPROVED, actor, "approve", facts)

@@ -5,7 +5,7 @@ from typing import Any
 from uuid import UUID
 
 from django.db import transaction
-from django.db.models import Q
+from django.db.models import Q, QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
@@ -35,6 +35,8 @@ from missions.services.refused import Reason, refuse, refuse_for
 from workspace.models import User
 
 TO_SEND = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
+
+UNSUCCESSFUL = (MissionState.FAILED, MissionState.ABORTED)
 
 
 class DamagedApproval(Exception):
@@ -106,23 +108,37 @@ def dispatch_mission(
 def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision: int | None = None) -> list[UavCommand]:
     """End a mission that is on its way: every UAV that may hold it is told, before anything else. Raises MissionChanged or Refused.
 
-    One that was not started yet is also taken off the UAVs.
+    One that was not started yet is also taken off the UAVs. One that has ended is aborted again as long as a UAV may hold it that flies
+    nothing else: what was said of its flights, and whether an earlier abort was heard, may be wrong.
     """
     with transaction.atomic():
         held = held_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
-        if approval is None or held.state not in ON_ITS_WAY:
+        is_over = held.state in UNSUCCESSFUL
+        if approval is None or not (is_over or held.state in ON_ITS_WAY):
             raise refuse("not_on_its_way", _("Only a mission that was sent to UAVs can be aborted."))
-        commands = []
         in_use = {route["uav"] for route in approval.document["routes"]}
-        touched = Uav.objects.filter(Q(pk__in=uavs_that_may_hold(approval)) | Q(pk__in=in_use, commands__mission=held)).distinct()
-        for uav in touched.order_by("pk"):
+        touched = Uav.objects.filter(Q(pk__in=uavs_that_may_hold(approval)) | Q(pk__in=in_use, commands__mission=held))
+        if is_over:
+            touched = Uav.objects.filter(pk__in=uavs_that_may_hold(approval)).exclude(pk__in=_busy_elsewhere(held))
+        uavs = list(touched.distinct().order_by("pk"))
+        if is_over and not uavs:
+            raise refuse("not_on_its_way", _("No UAV holds this mission any more."))
+        commands = []
+        for uav in uavs:
             common: dict[str, Any] = {"uav": uav, "actor": actor, "why": why, "mission": held, "approval": approval}
             commands.append(queue_command(kind=CommandKind.ABORT, **common))
             if held.state == MissionState.DISPATCHED:
                 commands.append(queue_command(kind=CommandKind.CLEAR_MISSION, **common))
-        change_state(held, MissionState.ABORTED, actor, "abort", {"approval": str(approval.pk), "why": why})
+        state = MissionState(held.state) if is_over else MissionState.ABORTED
+        change_state(held, state, actor, "abort", {"approval": str(approval.pk), "why": why})
     return commands
+
+
+def _busy_elsewhere(mission: Mission) -> QuerySet[MissionUav, Any]:
+    """UAVs that fly a route of another mission."""
+    others = MissionUav.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
+    return others.exclude(mission=mission).filter(uav__isnull=False).values("uav")
 
 
 def load_of(command: UavCommand) -> ApprovedLoad:
@@ -208,9 +224,11 @@ def _is_on_its_way(approval: Approval, uav_id: int) -> bool:
 
 def _flight_reasons(mission: Mission, approval: Approval, route: dict[str, Any], flight: int) -> list[Reason]:
     """Flights follow each other, and nothing is sent to a UAV that is flying one: a refused upload in flight changes its route."""
-    flown = mission.routes.filter(mission_uav__sequence=route["place"]).values_list("flights_flown", flat=True).get()
+    flown, has_failed = mission.routes.filter(mission_uav__sequence=route["place"]).values_list("flights_flown", "has_failed").get()
     started = approval.commands.filter(uav=route["uav"], kind=CommandKind.START, state=CommandState.APPLIED)
     values, place = {"uav": route["name"]}, route["place"]
+    if has_failed:
+        return [Reason("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values, place)]
     if flight <= flown:
         return [Reason("flown_already", _("%(uav)s has flown this flight.") % values, place)]
     if started.filter(parameters__flight=flown + 1).exists():

@@ -12,6 +12,7 @@ from django.db import transaction
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
 from missions.selectors import approval_in_force
 from missions.services.approval import change_state, held_mission
+from missions.services.missions import note
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
@@ -58,29 +59,43 @@ def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
 
 
 def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:
-    """A UAV is down after its flight, from 1 on. The mission is completed with the last flight of its last UAV.
+    """A UAV is down after its flight, from 1 on. The mission has ended once its last UAV is down for good.
 
-    Targets on a flown route that nothing else was said of are complete, those on one that failed have failed. Returns the mission's state.
+    It is completed with the last flight of the last UAV. A flight that failed is the end of its route and of no other: others fly on, and
+    are paused and aborted as before; then the mission has failed. Targets on a flown route that nothing else was said of are complete,
+    those on one that failed have failed. Returns the mission's state.
     """
     with transaction.atomic():
         held = held_mission(mission_id, None)
         route = Route.objects.select_for_update().filter(mission=held, mission_uav__uav=uav_id, geometry__isnull=False).first()
-        if held.state not in ON_ITS_WAY or route is None:
+        if held.state not in ON_ITS_WAY or route is None or route.has_failed:
             return MissionState(held.state)
+        flights = _flights(held)
         if end is FlightEnd.FAILED:
+            route.has_failed = True
+            route.save(update_fields=["has_failed"])
             _settle(route, TargetState.FAILED)
-            change_state(held, MissionState.FAILED, None, "fail", {"uav": uav_id, "flight": flight})
-            return MissionState.FAILED
-        if flight > route.flights_flown:
+            note(held, None, "fail-route", before=None, after={"uav": uav_id, "flight": flight})
+        elif flight > route.flights_flown:
             route.flights_flown = flight
             route.save(update_fields=["flights_flown"])
-        flights = _flights(held)
-        if route.flights_flown >= flights.get(uav_id, 1):
+        if not route.has_failed and route.flights_flown >= flights.get(uav_id, 1):
             _settle(route, TargetState.COMPLETE)
-        flown = dict(Route.objects.filter(mission=held, geometry__isnull=False).values_list("mission_uav__uav", "flights_flown"))
-        if all(flown.get(uav, 0) >= number for uav, number in flights.items()):
-            change_state(held, MissionState.COMPLETED, None, "complete", {})
+        _end_with_the_last(held, flights)
         return MissionState(held.state)
+
+
+def _end_with_the_last(held: Mission, flights: dict[int, int]) -> None:
+    """flights: how many each UAV has to fly."""
+    routes = Route.objects.filter(mission=held, geometry__isnull=False)
+    ends = {uav: (flown, has_failed) for uav, flown, has_failed in routes.values_list("mission_uav__uav", "flights_flown", "has_failed")}
+    failed = sorted(uav for uav in flights if uav in ends and ends[uav][1])
+    if not all(uav in failed or ends.get(uav, (0, False))[0] >= number for uav, number in flights.items()):
+        return
+    if failed:
+        change_state(held, MissionState.FAILED, None, "fail", {"uavs": failed})
+    else:
+        change_state(held, MissionState.COMPLETED, None, "complete", {})
 
 
 def _settle(route: Route, state: TargetState) -> None:

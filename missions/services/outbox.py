@@ -13,8 +13,9 @@ from django.conf import settings
 from django.db import connection, transaction
 from django.db.models import Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Now
+from django.utils.translation import gettext as _
 
-from missions.command_rules import axes_overtaken_by, axis_of, priority_of
+from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
@@ -27,6 +28,7 @@ from missions.models import (
     UavCommand,
     UavCommandEvent,
 )
+from missions.services.refused import refuse
 from workspace.models import User
 from workspace.services import record_change
 
@@ -37,7 +39,8 @@ _CLAIM = """
     WITH wanted AS (
         SELECT id FROM missions_uavcommand
         WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
-            AND (%s::text IS NULL OR link = %s::text)
+            AND (%s::text IS NULL OR (link = %s::text
+                AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = uav_id AND uav.link = %s::text)))
             AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
             AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
             AND (expires_at IS NULL OR expires_at > statement_timestamp())
@@ -61,14 +64,17 @@ def queue_command(
 ) -> UavCommand:
     """Give a UAV a command; unfinished ones about the same thing no longer count.
 
-    Without `expires_in_s` it is wanted for as long as the settings say of its kind. Rows are taken in the order mission,
-    UAV, command: a caller that needs a mission's takes it before.
+    Raises Refused while one of them makes the UAV safer than this one would: that one is not called off. Without `expires_in_s` it is
+    wanted for as long as the settings say of its kind. Rows are taken in the order mission, UAV, command: a caller that needs a mission's
+    takes it before.
     """
     wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
     with transaction.atomic():
-        Uav.objects.select_for_update(no_key=True).values_list("pk").get(pk=uav.pk)
+        link = Uav.objects.select_for_update(no_key=True).values_list("link", flat=True).get(pk=uav.pk)
+        overtaken = UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind))
+        _refuse_to_overtake(uav, kind, overtaken)
         _end(
-            UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind)),
+            overtaken,
             SUPERSEDED,
             f"A later command took its place: {CommandKind(kind).label}.",
         )
@@ -83,7 +89,7 @@ def queue_command(
             axis=axis_of(kind),
             priority=priority_of(kind),
             parameters=parameters or {},
-            link=uav.link,
+            link=link,
             created_by=actor,
             why=why,
             expires_at=None if wanted_for_s is None else Now() + timedelta(seconds=wanted_for_s),
@@ -112,14 +118,14 @@ def claim_commands(
 ) -> list[UavCommand]:
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
 
-    With `link` only those that go by this door, with `axes` only those about these.
+    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these.
 
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
     about = None if axes is None else [str(axis) for axis in axes]
     with transaction.atomic():
-        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, about, about, limit, holder, lease_s]))
+        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, link, about, about, limit, holder, lease_s]))
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
 
 
@@ -192,6 +198,13 @@ def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> in
         for uav_id in set(ended):
             _tell(uav_id)
     return number
+
+
+def _refuse_to_overtake(uav: Uav, kind: CommandKind, commands: QuerySet[UavCommand]) -> None:
+    unfinished = commands.filter(state__in=OPEN_COMMANDS).values_list("kind", flat=True)
+    if not all(may_overtake(kind, other) for other in unfinished):
+        words = _("A safer command to %(uav)s is not done yet: this one cannot take its place.")
+        raise refuse("safety_first", words % {"uav": uav.name})
 
 
 def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:

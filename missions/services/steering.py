@@ -8,12 +8,14 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from missions.command_rules import SETS_IN_MOTION
 from missions.fleet_selectors import performance_of
-from missions.models import Approval, CommandAxis, CommandKind, CommandState, Mission, MissionUav, Uav, UavCommand, UavState
-from missions.selectors import approval_in_force
+from missions.models import Approval, CommandAxis, CommandKind, CommandState, Mission, MissionState, MissionUav, Uav, UavCommand, UavState
+from missions.selectors import approval_in_force, mission_of_organisation
+from missions.services.approval_checks import reasons_against
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
-from missions.services.refused import refuse
+from missions.services.refused import Reason, refuse, refuse_for
 from workspace.models import User
 
 SLOWEST_MPS = 0.5
@@ -37,8 +39,10 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
         if mission is not None:
             mission = Mission.objects.select_for_update().get(pk=mission.pk)
         approval = None if mission is None else approval_in_force(mission)
-        if kind == CommandKind.START:
-            checked["flight"] = _flight_to_start(uav, mission, approval, timezone.now())
+        if kind in SETS_IN_MOTION:
+            mission, approval = _to_move_for(uav, kind, mission, approval)
+            if kind == CommandKind.START:
+                checked["flight"] = _flight_to_start(uav, mission, approval, timezone.now())
         return queue_command(uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval)
 
 
@@ -75,23 +79,41 @@ def _within(name: str, given: dict[str, Any], low: float, high: float, unit: str
     return float(value)
 
 
-def _flight_to_start(uav: Uav, mission: Mission | None, approval: Approval | None, now: datetime) -> int:
-    """That is on the UAV, seen there, and due. Raises Refused."""
+def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval: Approval | None) -> tuple[Mission, Approval]:
+    """A UAV moves for a mission that is approved and on its way, and goes on with one that was started. Raises Refused."""
     values = {"uav": uav.name}
     if mission is None or approval is None:
         raise refuse("no_mission", _("%(uav)s has no mission.") % values)
     if approval.revoke_requested_at is not None:
         raise refuse("being_revoked", _("The approval is being taken back."))
+    if kind == CommandKind.RESUME and mission.state != MissionState.ACTIVE:
+        raise refuse("not_started", _("%(uav)s has not started its mission: there is nothing to go on with.") % values)
+    return mission, approval
+
+
+def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, now: datetime) -> int:
+    """That is on the UAV, seen there, and due. Raises Refused."""
+    values = {"uav": uav.name}
     last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
     if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION or last.state != CommandState.APPLIED:
         raise refuse("not_loaded", _("%(uav)s does not have its mission yet.") % values)
     flight = int(last.parameters.get("flight", 1))
-    route = MissionUav.objects.select_related("route").get(mission=mission, uav=uav).route
+    route = MissionUav.objects.select_related("route__mission_uav").get(mission=mission, uav=uav).route
+    if route.has_failed:
+        raise refuse("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values)
     if flight <= route.flights_flown:
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
     if flight == 1 and mission.departs_at is not None:
         _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
+    refuse_for(_reasons_against(mission, route.mission_uav.sequence, now))
     return flight
+
+
+def _reasons_against(mission: Mission, place: int, now: datetime) -> list[Reason]:
+    """As things are now, for this UAV: zones may have come since the mission was sent. Its own departure is looked at by itself."""
+    loaded = mission_of_organisation(mission.organisation, mission.pk)
+    found = reasons_against(loaded, now=now, is_under_way=mission.state == MissionState.ACTIVE)
+    return [reason for reason in found if reason.uav in (None, place) and reason.code != "departure_past"]
 
 
 def _refuse_untimely(departs_at: datetime, now: datetime, values: dict[str, str]) -> None:

@@ -10,6 +10,7 @@ from django.utils import timezone
 from inspection.geodesy import LonLat
 from missions.models import Base, Uav, UavType
 from missions.services.fleet_rows import deleted, facts_to_restore, locked, stored
+from missions.services.link_changes import refuse_to_cut_off
 from workspace.models import Organisation, User
 
 FIELDS = (
@@ -31,11 +32,12 @@ def create_uav(*, organisation: Organisation, actor: User, position: LonLat | No
 
 
 def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None) -> Uav:
-    """Raises FleetChanged, NameTaken or SystemIdTaken."""
+    """Raises FleetChanged, NameTaken, SystemIdTaken, or Refused for another link or system id while anything is on its way to it."""
     with transaction.atomic():
         held = locked(uav, expected_revision)
         before = _facts(held)
         _put(held, values)
+        refuse_to_cut_off(held, before)
         if position is not None:
             _place(held, position)
         held.revision += 1

@@ -15,6 +15,7 @@ from missions.models import Uav, UavState
 from missions.serializers.fleet import UavMissionPageSerializer
 from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSerializer, UavFlatSerializer, flat_uav, uav_feature
 from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
+from missions.views.problems import refusals
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
@@ -140,7 +141,7 @@ class UavDetail(APIView):
         uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
         values = _values(request, uav)
         position = values.pop("position", None)
-        with fleet_problems(lambda: _feature_now(request.user, uav_id)):
+        with fleet_problems(lambda: _feature_now(request.user, uav_id)), refusals():
             services.change_uav(uav=uav, actor=request.user, position=position, values=values, expected_revision=revision)
         return _answer(request.user, uav_id)
 

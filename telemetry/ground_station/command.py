@@ -30,13 +30,20 @@ class CommandOutcome:
 
 @dataclass(frozen=True)
 class CommandStep:
-    """`effect` tells whether the vehicle's state shows it; without one its yes is the end. What `is_slow` is waited for longer, once."""
+    """`effect` tells whether the vehicle's state shows it; without one its yes is the end. What `is_slow` is waited for longer, once.
+
+    The effect shows in what was told since, by `told_at_s`. `is_too_late` tells that the step can do nothing any more. `instead` is sent
+    to a vehicle that does not know the command.
+    """
 
     words: str
     command: int | None  # MAV_CMD; None: nothing is sent, its effect is waited for
     parameters: Seven = (0.0,) * 7
     effect: Effect | None = None
     is_slow: bool = False
+    told_at_s: Callable[[VehicleState], float | None] = lambda state: state.heartbeat_at_s
+    is_too_late: Effect | None = None
+    instead: Callable[[Ends], Message] | None = None
 
 
 class CommandMachine:
@@ -57,6 +64,7 @@ class CommandMachine:
         self._rules = rules
         self._begun_s = 0.0
         self._sent = 0
+        self._is_unknown = False  # to the vehicle: it is told by the message instead
         self._no: int | None = None
 
     def start(self, now_s: float) -> Messages:
@@ -74,6 +82,8 @@ class CommandMachine:
             self._answered(message.result, now_s)
         if self.outcome is None and self._shows_effect():
             self._end(CommandEnd.APPLIED)
+        if self.outcome is None and self._step.is_too_late is not None and self._step.is_too_late(self._state):
+            self._end(CommandEnd.FAILED, "too-late", "The vehicle is in another state by now.")
         return []
 
     def tick(self, now_s: float) -> Messages:
@@ -95,7 +105,7 @@ class CommandMachine:
 
     def _shows_effect(self) -> bool:
         """By what was heard since the beginning."""
-        heard_s = self._state.heartbeat_at_s
+        heard_s = self._step.told_at_s(self._state)
         return self._step.effect is not None and heard_s is not None and heard_s >= self._begun_s and bool(self._step.effect(self._state))
 
     def _answered(self, result: int, now_s: float) -> None:
@@ -108,6 +118,8 @@ class CommandMachine:
         elif result == mavlink.MAV_RESULT_IN_PROGRESS:
             self._no = None
             self.wake_at_s = now_s + self._rules.in_progress_s
+        elif result == mavlink.MAV_RESULT_UNSUPPORTED and self._step.instead is not None:
+            self._is_unknown, self.wake_at_s = True, now_s
         elif not self.is_acknowledged and self._no is None:
             self._no = result
             is_temporary = result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
@@ -118,6 +130,8 @@ class CommandMachine:
         self._sent += 1
         self._no, self.is_acknowledged = None, False
         self.wake_at_s = now_s + self._rules.timeout_s
+        if self._is_unknown and self._step.instead is not None:
+            return [self._step.instead(self._ends)]
         return [
             mavlink.MAVLink_command_long_message(
                 self._ends.system, self._ends.component, self._step.command, confirmation, *self._step.parameters

@@ -63,12 +63,21 @@ class CommandKeeper:
         return messages
 
     def _course(self) -> Course[CommandOutcome]:
-        try:
-            plan = plan_of(self.order, self._state, self._parameters)
-        except CannotOrder as refusal:
-            return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
-        if self._is_already(plan):
-            return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
+        done = 0
+        while True:
+            try:
+                plan = plan_of(self.order, self._state, self._parameters)
+            except CannotOrder as refusal:
+                return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
+            if self._is_already(plan):
+                return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
+            outcome = yield from self._tried(plan)
+            done += 1
+            if outcome.state is CommandEnd.APPLIED or outcome.code == "silent" or done >= plan.rounds:
+                return outcome
+
+    def _tried(self, plan: OrderPlan) -> Course[CommandOutcome]:
+        """All ways, one after the other."""
         failure = CommandOutcome(CommandEnd.FAILED)
         for way in plan.ways:
             for step in way:

@@ -4,11 +4,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
-import numpy as np
-
-from inspection.geodesy import LonLat, path_length_m
+from inspection.geodesy import LonLat
 from missions.mavlink.content import FlightLoad, MissionType
-from missions.mavlink.points_between import FLOWN, leg_length_m, position_of
+from missions.mavlink.points_between import FLOWN, length_on_sphere_m, position_of
 from telemetry.ground_station.flavour import Flavour
 
 # ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
@@ -54,15 +52,15 @@ def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: L
     flown = [(place, item) for place, item in enumerate(load.mission) if item.command in FLOWN]
     most_m = parameters.get(FIRST_LEG, 0.0)
     if most_m > 0 and flown and stands_at is not None:
-        length_m = path_length_m(np.array([stands_at, position_of(flown[0][1])]))
-        if length_m > most_m:
+        length_m = length_on_sphere_m(stands_at, position_of(flown[0][1]))
+        if length_m >= most_m:
             warnings.append(
                 LimitWarning("far-first-waypoint", f"The first waypoint is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
             )
     most_m = parameters.get(ANY_LEG, 0.0)
     if most_m > 0:
         for (_, left), (place, right) in pairwise(flown):
-            length_m = leg_length_m(left, right)
+            length_m = length_on_sphere_m(position_of(left), position_of(right))
             if length_m > most_m:
                 warnings.append(
                     LimitWarning("long-leg", f"The leg to item {place} is {length_m:.0f} m; {ANY_LEG} allows {most_m:.0f} m.", place)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -13,6 +13,7 @@ from telemetry.ground_station.vehicle_state import VehicleState
 
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan
+ABORT_ROUNDS = 3
 
 
 class Order(StrEnum):
@@ -41,10 +42,14 @@ class CannotOrder(ValueError):
 
 @dataclass(frozen=True)
 class OrderPlan:
-    """`goal` is what the vehicle's state shows once it is done. `ways` are tried one after the other, each step by step."""
+    """`goal` is what the vehicle's state shows once it is done. `ways` are tried one after the other, each step by step.
+
+    After so many `rounds` in which all of them failed it is given up; each is planned from the state as it is then.
+    """
 
     goal: Effect | None
     ways: tuple[tuple[CommandStep, ...], ...]
+    rounds: int = 1
 
 
 def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
@@ -83,6 +88,10 @@ def _is_disarmed(state: VehicleState) -> bool:
     return state.is_armed is False
 
 
+def _is_down(state: VehicleState) -> bool:
+    return state.is_armed is False and not state.is_in_air
+
+
 def _is_flying(state: VehicleState) -> bool:
     return bool(state.is_armed and state.is_in_air)
 
@@ -97,13 +106,14 @@ def _is_in(mode: Mode) -> Effect:
 
 def _or_on_ground(effect: Effect) -> Effect:
     """A UAV that stands disarmed holds, has returned, and has landed."""
-    return lambda state: effect(state) or (state.is_armed is False and not state.is_in_air)
+    return lambda state: effect(state) or _is_down(state)
 
 
 # steps
 
 _ARM = CommandStep("arm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_armed)
 _DISARM = CommandStep("disarm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_disarmed)
+_STAY_DOWN = replace(_DISARM, is_too_late=lambda state: state.is_in_air)
 _LEAVE_GROUND = CommandStep("leave the ground", None, effect=_is_flying, is_slow=True)
 _MISSION_START = CommandStep("start the mission", mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
 
@@ -125,16 +135,32 @@ def _armable(state: VehicleState) -> tuple[CommandStep, ...]:
 
 
 def _start(state: VehicleState) -> OrderPlan:
-    """PX4: the mission's mode, then arming. ArduCopter: GUIDED, arming, AUTO, and then it must be told to start.
+    """The first item; PX4: the mission's mode, then arming. ArduCopter: GUIDED, arming, AUTO, and then it must be told to start.
 
     ArduCopter agrees to start while it is disarmed, and does nothing: only flying is a start.
     """
+    if state.is_in_air is None:
+        raise CannotOrder("not-told", "The UAV does not tell whether it stands or flies.")
     if state.is_in_air:
         return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
+    first = _first_item(state)
     if state.flavour is Flavour.PX4:
-        return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION), _ARM, _LEAVE_GROUND),))
+        return OrderPlan(_flies_mission, ((first, _mode(state, Mode.MISSION), _ARM, _LEAVE_GROUND),))
     begin = () if state.is_armed else (_mode(state, Mode.GUIDED), _ARM)
-    return OrderPlan(_flies_mission, ((*begin, _mode(state, Mode.MISSION), _MISSION_START),))
+    return OrderPlan(_flies_mission, ((first, *begin, _mode(state, Mode.MISSION), _MISSION_START),))
+
+
+def _first_item(state: VehicleState) -> CommandStep:
+    """Else a list that was flown before goes on where it was left, by a leg from here that nobody checked. ArduPilot's item 0 is home."""
+    item = 0 if state.flavour is Flavour.PX4 else 1
+    return CommandStep(
+        "begin with the first item",
+        mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
+        (float(item), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        effect=lambda seen: seen.mission_item == item,
+        told_at_s=lambda seen: seen.mission_item_at_s,
+        instead=lambda ends: mavlink.MAVLink_mission_set_current_message(ends.system, ends.component, item),
+    )
 
 
 def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
@@ -153,14 +179,11 @@ def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan
 
 
 def _abort(state: VehicleState) -> OrderPlan:
-    """In the air: return, and land where that is refused. On the ground: disarm."""
+    """Return, and land where that is refused. On the ground: disarm; it may be about to leave it, so the others are left to try."""
+    down = ((_mode(state, Mode.RETURN),), (_mode(state, Mode.LAND),))
     if state.is_in_air is False:
-        return OrderPlan(_is_disarmed, ((_DISARM,),))
-
-    def is_ending(seen: VehicleState) -> bool:
-        return seen.is_in(Mode.RETURN) or seen.is_in(Mode.LAND) or (seen.is_armed is False and not seen.is_in_air)
-
-    return OrderPlan(is_ending, ((_mode(state, Mode.RETURN),), (_mode(state, Mode.LAND),)))
+        return OrderPlan(_is_down, ((_STAY_DOWN,), *down), ABORT_ROUNDS)
+    return OrderPlan(lambda seen: seen.is_in(Mode.RETURN) or seen.is_in(Mode.LAND) or _is_down(seen), down, ABORT_ROUNDS)
 
 
 def _speed(parameters: Mapping[str, float]) -> CommandStep:

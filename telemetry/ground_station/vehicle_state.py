@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from inspection.geodesy import LonLat
 from telemetry.ground_station.ends import AUTOPILOT, Message
 from telemetry.ground_station.flavour import COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
+from telemetry.ground_station.rules import CommandRules
 
 TEXTS_KEPT = 10
 WHOLE_TYPES = frozenset({
@@ -22,10 +23,12 @@ IN_AIR = frozenset({mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_TA
 class VehicleState:
     """Fed by `receive` with every message of one system; None is what it has not told. Times are those of `receive`.
 
-    `mission_item` counts as the vehicle does: on ArduPilot item 0 is home.
+    `mission_item` counts as the vehicle does: on ArduPilot item 0 is home. A landed state that was not told for `fresh_s` is not known
+    any more: one lost message at a take-off must not keep a UAV on the ground.
     """
 
     system: int
+    fresh_s: float = CommandRules.fresh_s
     flavour: Flavour | None = None
     vehicle_type: int | None = None
     custom_mode: int | None = None
@@ -38,6 +41,7 @@ class VehicleState:
     home: LonLat | None = None
     home_amsl_m: float | None = None
     mission_item: int | None = None
+    mission_item_at_s: float | None = None
     mission_total: int | None = None
     mission_state: int | None = None
     reached_item: int | None = None
@@ -69,11 +73,17 @@ class VehicleState:
     @property
     def is_in_air(self) -> bool | None:
         """As it says itself; ArduPilot, which must be asked to, at least tells in its heartbeat."""
-        if self.landed_state is not None and self.landed_state != mavlink.MAV_LANDED_STATE_UNDEFINED:
+        if self._knows_landed_state:
             return self.landed_state in IN_AIR
         if self.flavour is Flavour.ARDUPILOT and self.system_status is not None:
             return bool(self.is_armed) and self.system_status in (mavlink.MAV_STATE_ACTIVE, mavlink.MAV_STATE_CRITICAL)
         return None
+
+    @property
+    def _knows_landed_state(self) -> bool:
+        if self.landed_at_s is None or self.heard_at_s is None or self.landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
+            return False
+        return self.heard_at_s - self.landed_at_s <= self.fresh_s
 
     @property
     def is_held(self) -> bool:
@@ -118,7 +128,7 @@ def _home(state: VehicleState, message: Message, now_s: float) -> None:
 
 
 def _mission_current(state: VehicleState, message: Message, now_s: float) -> None:
-    state.mission_item = message.seq
+    state.mission_item, state.mission_item_at_s = message.seq, now_s
     total, mission_state = getattr(message, "total", 0), getattr(message, "mission_state", 0)
     state.mission_total = None if total in (0, 65535) and mission_state == 0 else total
     state.mission_state = mission_state or None

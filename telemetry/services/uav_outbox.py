@@ -60,7 +60,7 @@ def note_acknowledgements(*, uav_id: int, acknowledgements: Sequence[Acknowledge
 def _note(uav_id: int, told: Acknowledgement) -> Noted:
     command = (
         UavCommand.objects.select_related("approval", "uav", "mission")
-        .filter(pk=told.command_id, uav_id=uav_id, link=LinkKind.HTTP)
+        .filter(pk=told.command_id, uav_id=uav_id, link=LinkKind.HTTP, uav__link=LinkKind.HTTP)
         .first()
     )
     if command is None:

@@ -35,7 +35,7 @@ class NewUav:
 def adopt_vehicle(*, vehicle: UnknownVehicle, actor: User, uav: Uav | NewUav) -> Uav:
     """The UAV gets the vehicle's system id, and is told what to do by MAVLink from now on.
 
-    Raises AlreadySettled, NoPlace, NameTaken or SystemIdTaken.
+    Raises AlreadySettled, NoPlace, NameTaken, SystemIdTaken, or Refused where something is on its way to a UAV that is reached otherwise.
     """
     held = _held(vehicle, UnknownVehicleState.NEW, UnknownVehicleState.IGNORED)
     system_id: dict[str, Any] = {"mavlink_system_id": held.mavlink_system_id, "link": LinkKind.MAVLINK}  # a gateway serves no others

@@ -10,6 +10,7 @@ from rest_framework.views import APIView
 from missions.fleet_selectors import types_of_organisation
 from missions.serializers.uavs import UavFeatureSerializer, uav_feature
 from missions.views.fleet_problems import TAKEN, fleet_problems
+from missions.views.problems import refusals
 from missions.views.uavs import uav_or_404
 from telemetry.models import UnknownVehicle, UnknownVehicleState
 from telemetry.selectors.vehicles import unknown_vehicles
@@ -100,7 +101,8 @@ class UnknownVehicleIgnoring(APIView):
 
 def _adopted(vehicle: UnknownVehicle, request: Request, uav: object) -> int:
     try:
-        return adopt_vehicle(vehicle=vehicle, actor=request.user, uav=uav).pk
+        with refusals():
+            return adopt_vehicle(vehicle=vehicle, actor=request.user, uav=uav).pk
     except AlreadySettled as error:
         raise _settled() from error
     except NoPlace as error:

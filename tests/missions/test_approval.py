@@ -2,6 +2,7 @@
 
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 from django.utils import timezone
@@ -28,7 +29,7 @@ from missions.services import (
     take_back_change,
 )
 from missions.services.approval import approve_mission, revoke_approval
-from missions.services.approval_document import content_sha256
+from missions.services.approval_document import approval_document, content_sha256
 from missions.services.commands import note_applied, note_failed
 from missions.services.refused import Refused
 from missions.services.requests import LostLinkRequest
@@ -105,6 +106,19 @@ def test_an_autopilot_keeps_out_of_zones_beside_its_route_and_knows_where_to_lan
     }  # fmt: skip
     assert [(item.longitude_e7, item.latitude_e7) for item in load.rally] == [(100_020_000, 559_960_000)]
     assert route["fence_left_out"] == []
+
+
+def test_a_zone_saved_between_the_checks_and_the_document_is_not_approved(
+    here: World, person: User, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission = planned(person, fleet(), here.towers[1:2])
+
+    def late(loaded: Mission, **more: Any) -> dict[str, Any]:
+        worlds.zone_around((10.0025, 55.9975), 0.002, name="Saved meanwhile")
+        return approval_document(loaded, **more)
+
+    monkeypatch.setattr("missions.services.approval.approval_document", late)
+    assert refused(mission, person) == ["ground_changed"]
 
 
 @pytest.mark.parametrize("change", ["patch", "plan", "delete", "by-hand", "undo"])

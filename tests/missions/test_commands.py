@@ -9,7 +9,9 @@ from django.conf import settings
 from django.db import IntegrityError, connection, transaction
 
 from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
-from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, UavCommand
+from missions.given_selectors import given_to
+from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, Uav, UavCommand
+from missions.services import change_uav
 from missions.services.commands import (
     CHANNEL,
     claim_commands,
@@ -22,6 +24,7 @@ from missions.services.commands import (
     note_sent,
     renew_claims,
 )
+from missions.services.refused import Refused
 from missions.tasks import expire_commands
 from tests.missions.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
 from tests.workspace.people import somebody
@@ -87,6 +90,34 @@ def test_an_abort_takes_the_place_of_everything() -> None:
     assert claim(uav) == [abort]
 
 
+SAFETY_UPWARDS = (CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
+
+
+@pytest.mark.parametrize("waiting", SAFETY_UPWARDS)
+@pytest.mark.parametrize("later", [kind for kind in CommandKind if axis_of(kind) == Axis.FLIGHT])
+def test_what_makes_a_uav_safe_is_called_off_by_nothing_less(waiting: CommandKind, later: CommandKind) -> None:
+    uav = a_uav()
+    first = give(uav, waiting)
+    if later in SAFETY_UPWARDS and SAFETY_UPWARDS.index(later) >= SAFETY_UPWARDS.index(waiting):
+        second = give(uav, later)
+        assert claim(uav) == [second]
+        assert now(first).outcome_code == "superseded"
+        return
+    with pytest.raises(Refused) as error:
+        give(uav, later)
+    assert error.value.reasons[0].code == "safety_first"
+    assert claim(uav) == [first]
+
+
+def test_once_it_is_done_the_uav_goes_on() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.HOLD)
+    (hold,) = claim(uav)
+    assert note_applied(hold.pk, **fence(hold))
+    resume = give(uav, CommandKind.RESUME)
+    assert claim(uav) == [resume]
+
+
 def test_other_uavs_keep_their_commands() -> None:
     kite, tern = a_uav("Kite"), a_uav("Tern")
     start = give(kite, CommandKind.START)
@@ -140,6 +171,31 @@ def test_each_door_has_its_own_commands() -> None:
     asked = {"uav_ids": [kite.pk, tern.pk], "holder": "gateway-1", "lease_s": LEASE_S, "limit": 10}
     assert claim_commands(**asked, link=LinkKind.MAVLINK) == [by_mavlink]
     assert claim_commands(**asked) == [by_http]
+
+
+def test_a_uav_that_is_reached_otherwise_now_is_given_nothing_by_its_former_door() -> None:
+    kite = a_uav("Kite", link=LinkKind.HTTP)
+    give(kite, CommandKind.CHANGE_SPEED)
+    Uav.objects.update(link=LinkKind.MAVLINK)  # as nobody may while something waits
+    land = give(kite, CommandKind.LAND)
+    assert land.link == LinkKind.MAVLINK, "by the link of now, not of when the caller looked"
+    asked = {"uav_ids": [kite.pk], "holder": "gateway-1", "lease_s": LEASE_S, "limit": 10}
+    assert claim_commands(**asked, link=LinkKind.HTTP) == []
+    assert not given_to(kite.pk).waiting
+    assert claim_commands(**asked, link=LinkKind.MAVLINK) == [land]
+
+
+@pytest.mark.parametrize("change", [{"link": LinkKind.HTTP}, {"mavlink_system_id": 9}, {"allows_unsigned": True}])
+def test_how_a_uav_is_reached_does_not_change_while_a_command_waits(change: dict) -> None:
+    person, uav = somebody(), a_uav()
+    abort = give(uav, CommandKind.ABORT)
+    with pytest.raises(Refused) as error:
+        change_uav(uav=uav, actor=person, position=None, values=change)
+    assert error.value.reasons[0].code == "commands_waiting"
+    change_uav(uav=uav, actor=person, position=None, values={"name": "Owl"})
+    assert claim_commands(uav_ids=[uav.pk], holder="gateway-1", lease_s=LEASE_S, limit=1, link=LinkKind.MAVLINK) == [abort]
+    assert note_applied(abort.pk, attempt=1, holder="gateway-1")
+    change_uav(uav=uav, actor=person, position=None, values=change)
 
 
 def test_what_is_held_is_taken_by_nobody_else_until_the_lease_runs_out() -> None:
@@ -308,7 +364,7 @@ def test_whoever_listens_hears_of_a_committed_command_and_of_no_other() -> None:
 
 @pytest.mark.django_db(transaction=True)
 def test_many_at_once_give_one_uav_its_commands_in_an_order_without_gaps() -> None:
-    uav, kinds = a_uav(), [CommandKind.HOLD, CommandKind.CHANGE_SPEED, CommandKind.CLEAR_MISSION, CommandKind.ABORT]
+    uav, kinds = a_uav(), [CommandKind.ABORT, CommandKind.CHANGE_SPEED, CommandKind.CLEAR_MISSION, CommandKind.ABORT]
 
     def give_some() -> None:
         try:

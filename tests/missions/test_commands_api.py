@@ -212,6 +212,14 @@ def test_what_became_of_a_command_is_said_in_words(client: Client) -> None:
     assert german[1]["outcome"] == "Ein späterer Befehl trat an seine Stelle."
 
 
+def test_another_link_is_refused_in_words_while_a_command_waits(client: Client) -> None:
+    tern = a_uav("Tern")
+    post(client, f"uavs/{tern.pk}/commands", {"kind": "hold"})
+    problem = error(patch(client, f"uavs/{tern.pk}", {"link": "http"}, **{"If-Match": "*"}), 409)
+    assert problem["code"] == "commands_waiting"
+    assert "Tern" in problem["message"]
+
+
 def test_only_administrators_say_that_a_uav_is_simulated_or_needs_no_signature(client: Client) -> None:
     tern = a_uav("Tern")
     for name in ("is_simulated", "allows_unsigned"):

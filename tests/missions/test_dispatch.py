@@ -7,7 +7,7 @@ from django.utils import timezone
 
 from missions.mavlink.content import load_to_json
 from missions.models import Approval, CommandKind, CommandState, LinkKind, Mission, MissionState, TargetState, Uav, UavState
-from missions.services import change_mission, plan_mission
+from missions.services import change_mission, change_uav, plan_mission
 from missions.services.approval import approve_mission, revoke_approval
 from missions.services.approval_document import approval_document, content_sha256
 from missions.services.commands import note_failed
@@ -290,6 +290,109 @@ def test_a_mission_that_was_not_started_is_taken_off_its_uavs_by_an_abort(here: 
     carry(tern)
     abort_mission(mission=mission, actor=person, why="Storm")
     assert [command.kind for command in claim(tern)] == ["abort", "clear-mission"]
+
+
+def commanded(uav: Uav, person: User, kind: CommandKind) -> str:
+    """The code of the refusal, empty where it is taken."""
+    parameters = {"altitude_relative_m": 10.0} if kind == CommandKind.TAKE_OFF else None
+    try:
+        command_uav(uav=uav, kind=kind, actor=person, parameters=parameters)
+    except Refused as refusal:
+        return refusal.reasons[0].code
+    return ""
+
+
+MOTION = (CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START, CommandKind.RESUME)
+
+
+@pytest.mark.parametrize("kind", MOTION)
+def test_nothing_sets_a_uav_in_motion_without_a_mission_in_force(here: World, person: User, kind: CommandKind) -> None:
+    (tern,) = uavs = fleet()
+    assert commanded(tern, person, kind) == "no_mission"
+    mission = active(person, uavs, here)
+    abort_mission(mission=mission, actor=person, why="Crane")
+    assert commanded(tern, person, kind) == "no_mission"
+    assert [command.kind for command in claim(tern)] == ["abort"]
+
+
+@pytest.mark.parametrize("kind", MOTION)
+def test_nothing_sets_a_uav_in_motion_while_its_approval_is_taken_back(here: World, person: User, kind: CommandKind) -> None:
+    (tern,) = uavs = fleet()
+    mission = dispatched(person, uavs, here.towers[1:2])
+    carry(tern)
+    revoke_approval(mission=mission, actor=person, reason="Crane")
+    assert commanded(tern, person, kind) == "being_revoked"
+
+
+def test_only_a_mission_that_was_started_is_gone_on_with(here: World, person: User) -> None:
+    (tern,) = uavs = fleet()
+    dispatched(person, uavs, here.towers[1:2])
+    carry(tern)
+    assert commanded(tern, person, CommandKind.RESUME) == "not_started"
+    command_uav(uav=tern, kind=CommandKind.START, actor=person)
+    carry(tern)
+    assert commanded(tern, person, CommandKind.RESUME) == ""
+
+
+def test_how_a_uav_is_reached_does_not_change_while_its_mission_is_on_its_way(here: World, person: User) -> None:
+    (tern,) = uavs = fleet()
+    mission = dispatched(person, uavs, here.towers[1:2])
+    carry(tern)
+    with pytest.raises(Refused) as error:
+        change_uav(uav=tern, actor=person, position=None, values={"link": LinkKind.HTTP})
+    assert codes(error) == ["mission_on_its_way"]
+    abort_mission(mission=mission, actor=person, why="Storm")
+    carry(tern)
+    change_uav(uav=tern, actor=person, position=None, values={"link": LinkKind.HTTP})
+
+
+def test_a_flight_that_failed_ends_its_route_alone(here: World, person: User) -> None:
+    tern, kite = uavs = fleet("Tern", "Kite")
+    mission = active(person, uavs, here)
+    assert mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FAILED) == MissionState.ACTIVE
+    assert mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FLOWN) == MissionState.ACTIVE
+    assert list(mission.targets.order_by("sequence").values_list("state", flat=True)).count(TargetState.FAILED) == 1
+    assert commanded(tern, person, CommandKind.START) == "route_failed"
+    assert "uav_busy" in refused(planned_again(person, [kite], here), person)
+    assert mark_flight_ended(mission_id=mission.pk, uav_id=kite.pk, flight=1, end=FlightEnd.FLOWN) == MissionState.FAILED
+
+
+def planned_again(person: User, uavs: list[Uav], here: World) -> Mission:
+    return approved(person, uavs, here.towers[3:5], name="Second")[0]
+
+
+def test_one_failed_flight_leaves_the_others_to_be_aborted(here: World, person: User) -> None:
+    tern, kite = uavs = fleet("Tern", "Kite")
+    mission = active(person, uavs, here)
+    mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FAILED)
+    abort_mission(mission=mission, actor=person, why="Storm")
+    assert state(mission) == MissionState.ABORTED
+    assert [(command.kind, command.uav) for command in claim(*uavs)] == [("abort", tern), ("abort", kite)]
+
+
+def test_a_failed_or_aborted_mission_is_aborted_again_while_a_uav_may_hold_it(here: World, person: User) -> None:
+    """Who said that the last flight failed may be wrong, and an abort may not have been heard."""
+    (tern,) = uavs = fleet()
+    mission = active(person, uavs, here)
+    mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FAILED)
+    for _again in range(2):
+        abort_mission(mission=mission, actor=person, why="It flies on")
+        assert state(mission) == MissionState.FAILED
+        assert [command.kind for command in claim(tern)] == ["abort"]
+    dispatched(person, uavs, here.towers[3:5], name="Second")
+    with pytest.raises(Refused):
+        abort_mission(mission=mission, actor=person, why="Storm")
+
+
+def test_a_zone_that_came_after_the_mission_was_sent_bars_the_start(here: World, person: User) -> None:
+    (tern,) = uavs = fleet()
+    mission = dispatched(person, uavs, here.towers[1:2])
+    carry(tern)
+    first, second = mission.routes.get().waypoints.order_by("sequence")[:2]
+    middle = ((first.position.x + second.position.x) / 2, (first.position.y + second.position.y) / 2)
+    worlds.zone_around(middle, 0.0005, name="Crane")
+    assert commanded(tern, person, CommandKind.START) == "zone"
+    assert not tern.commands.filter(kind=CommandKind.START).exists()
 
 
 def test_what_is_not_on_its_way_cannot_be_aborted(here: World, person: User) -> None:

@@ -7,7 +7,7 @@ import threading
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import timedelta
 
 import numpy as np
@@ -16,6 +16,7 @@ from django.contrib.gis.geos import Point
 
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
 from missions.services.commands import queue_command
+from missions.services.refused import Refused
 from tests.telemetry.command_carriers import Link, nursery
 from tests.workspace.people import somebody
 
@@ -101,7 +102,11 @@ def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(co
     slots = [[uav.pk for uav in uavs[slot::SLOTS]] for slot in range(SLOTS)]
 
     def give(kind: CommandKind) -> None:
-        queue_command(uav=chance.choice(uavs), kind=kind, actor=person, expires_in_s=WANTED_S)
+        """To any UAV that nothing safer waits for."""
+        while True:
+            with suppress(Refused):
+                queue_command(uav=chance.choice(uavs), kind=kind, actor=person, expires_in_s=WANTED_S)
+                return
 
     for kind in backlog:
         give(kind)

@@ -14,6 +14,8 @@ from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.content import MissionItem
 from missions.mavlink.fence import Fence, FenceRules, FenceZone, fence_of, rally_items
+from missions.mavlink.frozen import FrozenRoute
+from missions.mavlink.items import CannotBeFlown, flight_loads
 from tests.missions.mavlink.routes import START, route, start_and_end, waypoint
 
 FRAME = LocalFrame.around(*START)
@@ -126,3 +128,24 @@ def test_route_without_waypoints_has_no_fence():
 def test_rally_points_are_whole_metres_up():
     (item,) = rally_items([(START, 40.2)])
     assert (item.command, item.longitude_e7, item.latitude_e7, item.altitude_m) == (5100, 98000000, 554000000, 41.0)
+
+
+def two_bases(second_ground_m: float) -> FrozenRoute:
+    """Its second flight takes off from a base that is so much higher than the first."""
+    base = waypoint(2, WaypointKind.BASE, relative_m=second_ground_m, agl_m=0.0)
+    end = waypoint(4, WaypointKind.END, relative_m=second_ground_m + 60.0)
+    return route([waypoint(0, WaypointKind.START), waypoint(1, WaypointKind.PASS), base,
+                  waypoint(3, WaypointKind.PASS, relative_m=second_ground_m + 60.0), end])  # fmt: skip
+
+
+@pytest.mark.parametrize("second_ground_m", [60.0, -60.0, 0.4])
+def test_rally_points_lie_as_high_above_the_sea_on_each_flight(second_ground_m: float):
+    first, second = flight_loads(two_bases(second_ground_m), rally=rally_items([(START, 80.0)]))
+    assert first.rally[0].altitude_m == 80.0
+    assert 0.0 <= second.rally[0].altitude_m + second_ground_m - 80.0 < 1.0
+
+
+def test_a_rally_point_below_a_take_off_is_refused():
+    with pytest.raises(CannotBeFlown) as refusal:
+        flight_loads(two_bases(60.0), rally=rally_items([(START, 50.0)]))
+    assert refusal.value.code == "rally-height"

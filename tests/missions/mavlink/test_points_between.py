@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.content import FlightLoad, MissionItem
-from missions.mavlink.points_between import FLOWN, with_points_between
+from missions.mavlink.points_between import FLOWN, leg_length_m, with_points_between
 
 E7_M = 111_320.0 / 1e7
 ROUNDING_M = 0.012  # half of 1e-7 degrees in both directions and half a centimetre in height
@@ -111,3 +111,12 @@ def test_points_are_on_the_way_before_a_landing_that_is_elsewhere():
 def test_legs_of_nothing_are_refused(most_m: float):
     with pytest.raises(ValueError, match="most_m"):
         with_points_between(FlightLoad(()), most_m)
+
+
+def test_equal_parts_of_a_leg_on_the_chart_are_not_equal_on_the_ground():
+    left = item(mavlink.MAV_CMD_NAV_TAKEOFF, 0, 690_000_000, 60.0)
+    right = item(mavlink.MAV_CMD_NAV_WAYPOINT, 2_000_000, 690_360_000, 60.0)
+    most_m = leg_length_m(left, right) / 10
+    divided = flown(with_points_between(FlightLoad((left, right)), most_m))
+    assert len(divided) == 12, "one part more than ten"
+    assert all(leg_length_m(one, other) <= most_m for one, other in pairwise(divided))

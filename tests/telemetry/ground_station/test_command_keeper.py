@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -23,6 +24,8 @@ from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
 RULES = CommandRules()
 ARM, SET_MODE, TAKEOFF = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_CMD_NAV_TAKEOFF
 START, SPEED = mavlink.MAV_CMD_MISSION_START, mavlink.MAV_CMD_DO_CHANGE_SPEED
+SET_ITEM = mavlink.MAV_CMD_DO_SET_MISSION_CURRENT
+FIRST_ITEM = {"px4": 0, "ardupilot": 1}
 MODES = {"px4": {"mission": 4, "hold": 3, "return": 5, "land": 6}, "ardupilot": {"mission": 3, "hold": 17, "return": 6, "land": 9}}
 PARAMETERS = {"altitude_relative_m": 12.0, "speed_mps": 4.5}
 
@@ -78,16 +81,55 @@ def test_copter_that_cannot_be_armed_in_auto_is_put_into_guided_first():
 def test_px4_starts_by_its_mode_and_arming():
     vehicle = vehicle_of("px4")
     outcome, channel = told(vehicle, Order.START)
-    assert (outcome, commands(channel)) == (APPLIED, [SET_MODE, ARM])
+    assert (outcome, commands(channel)) == (APPLIED, [SET_ITEM, SET_MODE, ARM])
     assert (vehicle.is_in_air, mode_of(vehicle)) == (True, px4.MISSION)
 
 
 def test_copter_starts_by_guided_arming_auto_and_the_start():
     vehicle = vehicle_of("ardupilot")
     outcome, channel = told(vehicle, Order.START)
-    assert (outcome, commands(channel)) == (APPLIED, [SET_MODE, ARM, SET_MODE, START])
+    assert (outcome, commands(channel)) == (APPLIED, [SET_ITEM, SET_MODE, ARM, SET_MODE, START])
     assert [message.param2 for message in channel.to_vehicle if message.command == SET_MODE] == [ardupilot.GUIDED, ardupilot.AUTO]
     assert (vehicle.is_in_air, mode_of(vehicle)) == (True, ardupilot.AUTO)
+
+
+@pytest.mark.parametrize("knows_command", [True, False])
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_start_on_the_ground_begins_with_the_first_item(flavour: str, knows_command: bool):
+    """Not where the last flight was broken off."""
+    vehicle = vehicle_of(flavour)
+    vehicle.current_item, vehicle.knows_set_current = 5, knows_command
+    outcome, channel = told(vehicle, Order.START)
+    assert (outcome, vehicle.is_in_air, vehicle.current_item) == (APPLIED, True, FIRST_ITEM[flavour])
+    assert channel.to_vehicle[0].command == SET_ITEM
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_start_does_not_begin_before_the_first_item_is_seen(flavour: str):
+    vehicle = vehicle_of(flavour)
+    vehicle.current_item = 5
+    vehicle._set_current = lambda item: 0  # type: ignore[method-assign]
+    outcome, channel = told(vehicle, Order.START)
+    assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "no-effect")
+    assert set(commands(channel)) == {SET_ITEM}
+    assert not vehicle.is_armed
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_start_in_the_air_goes_on_where_it_was_held(flavour: str):
+    vehicle = vehicle_of(flavour, mode="hold", in_air=True)
+    vehicle.current_item = 5
+    told(vehicle, Order.START)
+    assert vehicle.current_item == 5
+
+
+def test_start_of_a_uav_that_does_not_tell_whether_it_flies_is_refused():
+    keeper, state = fresh()
+    state.receive(heard(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)), 0.0)
+    state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), RULES.fresh_s + 0.1)
+    keeper = CommandKeeper(Order.START, state, ENDS, RULES)
+    assert keeper.start(RULES.fresh_s + 0.2) == []
+    assert keeper.outcome is not None and keeper.outcome.code == "not-told"
 
 
 def test_yes_to_a_start_without_leaving_the_ground_is_no_start():
@@ -181,6 +223,65 @@ def test_abort_lands_where_the_return_is_refused(flavour: str):
     vehicle.carry_out = lambda command, values: 2 if back in values[1:3] else carried_out(command, values)  # type: ignore[method-assign]
     assert told(vehicle, Order.ABORT)[0] == APPLIED
     assert mode_of(vehicle) == MODES[flavour]["land"]
+
+
+@dataclass
+class LeavesGround:
+    """A mission that was started before: the vehicle leaves the ground so many seconds after it was told to disarm, and says no to it."""
+
+    vehicle: Vehicle
+    after_s: float
+    answers: bool = True
+
+    def __post_init__(self) -> None:
+        self.vehicle.is_armed, self._told_s = True, math.inf
+        self._tick, self._receive = self.vehicle.tick, self.vehicle.receive
+        self.vehicle.tick, self.vehicle.receive = self.tick, self.receive  # type: ignore[method-assign]
+
+    def receive(self, message: Any, now_s: float) -> list[Any]:
+        if message.get_type() == "COMMAND_LONG" and message.command == ARM:
+            self._told_s = min(self._told_s, now_s)
+            return [mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *GROUND)] if self.answers else []
+        return self._receive(message, now_s)
+
+    def tick(self, now_s: float) -> list[Any]:
+        self.vehicle.is_in_air = self.vehicle.is_in_air or now_s >= self._told_s + self.after_s
+        return self._tick(now_s)
+
+
+@pytest.mark.parametrize("answers", [True, False])
+@pytest.mark.parametrize("after_s", [0.1, 0.9, 2.0])
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_abort_during_the_take_off_calls_the_uav_back(flavour: str, after_s: float, answers: bool):
+    vehicle = vehicle_of(flavour, mode="mission")
+    LeavesGround(vehicle, after_s, answers)
+    outcome, channel = told(vehicle, Order.ABORT)
+    assert (outcome.state, mode_of(vehicle)) == (CommandEnd.APPLIED, MODES[flavour]["return"])
+    assert channel.now_s < after_s + 3.0
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(flavour: str):
+    vehicle = vehicle_of(flavour, mode="mission")
+    state = VehicleState(vehicle.system)
+    vehicle.is_armed = True
+    for message in vehicle.reports():
+        state.receive(heard(message), 0.0)
+    vehicle.is_in_air = True
+    beat = heard(vehicle.reports()[0])  # EXTENDED_SYS_STATE is lost from now on
+    state.receive(beat, RULES.fresh_s + 0.5)
+    keeper = CommandKeeper(Order.ABORT, state, ENDS, RULES)
+    assert [message.command for message in keeper.start(RULES.fresh_s + 0.6)] == [SET_MODE]
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_abort_that_is_refused_every_way_is_tried_again(flavour: str):
+    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
+    carried_out, noes = vehicle.carry_out, iter([2, 2])  # return and land are refused once
+
+    vehicle.carry_out = lambda command, values: next(noes, None) or carried_out(command, values)  # type: ignore[method-assign]
+    assert told(vehicle, Order.ABORT)[0] == APPLIED
+    assert mode_of(vehicle) == MODES[flavour]["return"]
 
 
 @pytest.mark.parametrize(

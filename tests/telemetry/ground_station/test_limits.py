@@ -8,6 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.mavlink.content import FlightLoad, MissionItem
+from missions.mavlink.points_between import with_points_between
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.limits import count_warnings, leg_warnings, too_many
 from tests.telemetry.vehicles.loads import load, mission, polygon
@@ -33,7 +34,20 @@ def legs(*east_m: float) -> FlightLoad:
 def test_legs_and_a_start_beyond_px4s_limits_are_told():
     warnings = leg_warnings(legs(0, 500, 3_500), {"MIS_DIST_1WP": 900.0, "MIS_DIST_WPS": 900.0}, LonLat(9.82, 55.4))
     assert [(warning.code, warning.item) for warning in warnings] == [("far-first-waypoint", 0), ("long-leg", 3)]
-    assert "3000 m" in warnings[1].words
+    assert "2990 m" in warnings[1].words
+
+
+def test_legs_are_measured_on_px4s_sphere():
+    """Of one degree northwards at the equator it makes 111,195 m; on the ellipsoid it is 110,574 m."""
+    items = [
+        MissionItem(command, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, (0.0, 0.0, 0.0, math.nan), 0, latitude_e7, 60.0)
+        for command, latitude_e7 in ((mavlink.MAV_CMD_NAV_TAKEOFF, 0), (mavlink.MAV_CMD_NAV_WAYPOINT, 10_000_000))
+    ]
+    load = FlightLoad(tuple(items))
+    assert leg_warnings(load, {"MIS_DIST_WPS": 111_196.0}, None) == ()
+    (told,) = leg_warnings(load, {"MIS_DIST_WPS": 110_700.0}, None)
+    assert "111195 m" in told.words
+    assert leg_warnings(with_points_between(load, 900.0), {"MIS_DIST_WPS": 900.0}, None) == ()
 
 
 @pytest.mark.parametrize("parameters", [{}, {"MIS_DIST_1WP": 0.0, "MIS_DIST_WPS": -1.0}])

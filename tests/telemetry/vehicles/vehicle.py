@@ -23,6 +23,8 @@ class Vehicle:
     custom_mode: int = 0
     is_armed: bool = False
     is_in_air: bool = False
+    current_item: int = 0  # on ArduPilot item 0 is home
+    knows_set_current: bool = True  # the command; else only the older message
     heartbeats: bool = False
     deaf_commands: int = 0  # so many commands are answered by yes, and nothing is done
     is_mute: bool = False  # commands are carried out and never answered
@@ -68,6 +70,7 @@ class Vehicle:
         return [
             mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, self.autopilot, base_mode, self.custom_mode, status, 3),
             mavlink.MAVLink_extended_sys_state_message(0, landed),
+            mavlink.MAVLink_mission_current_message(self.current_item),
         ]
 
     def _plan_wake(self) -> None:
@@ -92,10 +95,23 @@ class Vehicle:
             self.deaf_commands -= 1
             return [ack(mavlink.MAV_RESULT_ACCEPTED)]
         values = tuple(getattr(message, f"param{number}") for number in range(1, 8))
-        result = self.carry_out(message.command, values)
+        if message.command == mavlink.MAV_CMD_DO_SET_MISSION_CURRENT:
+            result = self._set_current(int(values[0])) if self.knows_set_current else int(mavlink.MAV_RESULT_UNSUPPORTED)
+        else:
+            result = self.carry_out(message.command, values)
         if result == mavlink.MAV_RESULT_ACCEPTED:
             self.taken.append((message.command, values))
         return [*([] if self.is_mute else [ack(result)]), *(self.reports() if self.heartbeats else [])]
+
+    def _mission_set_current(self, message: Any, now_s: float) -> list[Any]:
+        self._set_current(message.seq)
+        return self.reports()
+
+    def _set_current(self, item: int) -> int:
+        if item >= len(self.lists[MissionType.MISSION]):
+            return int(mavlink.MAV_RESULT_DENIED)
+        self.current_item = item
+        return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def carry_out(self, command: int, values: tuple[float, ...]) -> int:
         return int(mavlink.MAV_RESULT_UNSUPPORTED)

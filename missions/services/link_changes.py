@@ -1,0 +1,27 @@
+"""By which door, and under which number, a UAV is reached: this stays as it is while anything is on its way to it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from django.utils.translation import gettext as _
+
+from missions.models import OPEN_COMMANDS, MissionState, MissionUav, Uav
+from missions.services.refused import refuse
+
+REACHED_BY = ("link", "mavlink_system_id", "allows_unsigned")
+ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
+
+
+def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
+    """Raises Refused for a change after which a command that waits, be it an abort, would reach nobody or somebody else.
+
+    The caller holds the UAV's row, so that no command is given meanwhile. before: its facts.
+    """
+    if all(getattr(uav, name) == before[name] for name in REACHED_BY):
+        return
+    values = {"uav": uav.name}
+    if uav.commands.filter(state__in=OPEN_COMMANDS).exists():
+        raise refuse("commands_waiting", _("A command to %(uav)s is not done yet: how it is reached cannot be changed now.") % values)
+    flown = MissionUav.objects.filter(uav=uav, mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
+    if flown.exists():
+        raise refuse("mission_on_its_way", _("%(uav)s has a mission on its way: how it is reached cannot be changed now.") % values)
