@@ -94,6 +94,8 @@ def give(uav: Uav, chance: random.Random) -> UavCommand:
     share = chance.random()
     if share < 0.05:
         kind, parameters = chance.choice([CommandKind.HOLD, CommandKind.RETURN]), {}
+        if is_open().filter(uav=uav, kind=CommandKind.RETURN).exists():
+            kind = CommandKind.RETURN  # nothing less takes its place
     elif share < 0.3:
         kind, parameters = CommandKind.CLEAR_MISSION, {}
     else:
