@@ -52,6 +52,7 @@ class Carriage:
     held_until_s: float = 0.0  # monotonic: past it another gateway may carry the command
     is_dropped: bool = False
     is_closing: bool = False
+    has_begun: bool = False
     has_ended: bool = False
     _notes: set[asyncio.Task[Any]] = field(default_factory=set)
 

@@ -11,20 +11,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.leases import held_until_s
-from telemetry.gateway.preparation import LOADING, SETS_IN_MOTION
+from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import Session
 
 logger = logging.getLogger(__name__)
 
 LOOK_EVERY_S = 1.0
 HEARD_WITHIN_S = 5.0  # else its commands wait for it, or for another gateway
-MOST_AT_ONCE = 200  # claims of a look
-FLYING_AXES = (CommandAxis.FLIGHT, CommandAxis.SPEED)
+MOST_AT_ONCE = 200  # above which speeds wait
 MOST_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
@@ -70,18 +70,18 @@ class Desk:
         served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, HEARD_WITHIN_S)}
         await self.database.run(expire_overdue)
         if served:
-            await self._claim(served, FLYING_AXES, MOST_AT_ONCE)
-            loading = sum(carriage.command.kind in LOADING for carriage in self._carriages.values())
-            await self._claim(served, (CommandAxis.MISSION,), MOST_UPLOADS - loading)
+            await self._claim(served, CommandAxis.FLIGHT, len(served))
+            await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
+            await self._claim(served, CommandAxis.SPEED, MOST_AT_ONCE - len(self._carriages))
         self._begin()
 
-    async def _claim(self, served: dict[int, Session], axes: tuple[CommandAxis, ...], room: int) -> None:
+    async def _claim(self, served: dict[int, Session], axis: CommandAxis, room: int) -> None:
         """Uploads no more than may begin; what stops a UAV never waits for room."""
         if room <= 0:
             return
         asked_s = time.monotonic()
         claimed = await self.database.run(
-            claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK, axes=axes
+            claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK, axes=[axis]
         )
         for command in claimed:
             session = served[command.uav_id]
@@ -99,13 +99,16 @@ class Desk:
         for task in self._tasks.values():
             task.cancel()
 
+    def _commands(self) -> list[UavCommand]:
+        return [carriage.command for carriage in self._carriages.values()]
+
     def _begin(self) -> None:
         waiting = [carriage for command_id, carriage in self._carriages.items() if command_id not in self._tasks]
         for carriage in sorted(waiting, key=lambda carriage: (carriage.command.priority, carriage.command.created_at)):
             if carriage.is_dropped:
                 carriage.has_ended = True
             elif self._may_begin(carriage.command):
-                command_id = carriage.command.pk
+                command_id, carriage.has_begun = carriage.command.pk, True
                 task = self._tasks[command_id] = asyncio.create_task(carriage.run(), name=f"command {command_id}")
                 task.add_done_callback(self._ended)
         self._forget_ended()
@@ -129,6 +132,7 @@ class Desk:
     def _forget_ended(self) -> None:
         for command_id in [key for key, task in self._tasks.items() if task.done()]:
             del self._tasks[command_id]
-            self._carriages.pop(command_id, None)
+            if command_id in self._carriages and self._carriages[command_id].has_begun:  # else it was given back, and taken anew
+                del self._carriages[command_id]
         for command_id in [key for key, carriage in self._carriages.items() if carriage.has_ended and key not in self._tasks]:
             del self._carriages[command_id]

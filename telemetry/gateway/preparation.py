@@ -17,7 +17,6 @@ from telemetry.services.loads import Loaded, loaded_on
 
 LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
 FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
-SETS_IN_MOTION = (*FLIES_LIST, CommandKind.ARM, CommandKind.TAKE_OFF)
 EMPTY = FlightLoad(())
 KNOWN_LOADS = 5
 

@@ -152,9 +152,10 @@ class Session:
 
     def send(self, messages: list[Message], now_s: float | None = None) -> None:
         """Nothing while it is not surely ours."""
-        if not self.is_held:
-            return
-        now_s = time.time() if now_s is None else now_s
+        if self.is_held:
+            self._send(messages, time.time() if now_s is None else now_s)
+
+    def _send(self, messages: list[Message], now_s: float) -> None:
         for message in messages:
             raw = self._writer.frame_of(message, now_s)
             if self.log is not None:
@@ -168,7 +169,7 @@ class Session:
         self.texts += self._collector.tick(now_s)
         if self.lease is None or self.peer is None:
             return
-        self.send([greeting.heartbeat()], now_s)
+        self._send([greeting.heartbeat()], now_s)  # tells it to do nothing, and without it a vehicle may think that it is left alone
         flavour = self.state.flavour
         is_here = now_s - self.heard_s < SENDER_SILENT_S
         if flavour is None or not is_here:

@@ -93,11 +93,15 @@ class MissionKeeper:
     def is_endangered(self) -> bool:
         """Whether the vehicle has left its hold, so that this is to be cancelled.
 
-        Not where it flies the list that is being replaced: half a list would be worse than the rest of it.
+        One that flies its list while that is replaced gets the rest: half a list would be worse, and ArduPilot lets none be taken off
+        then. PX4 keeps the old list until the new one is whole.
         """
         state = self._state
-        has_left = bool(state.is_armed) and not state.is_held
-        return has_left and not (state.is_in(Mode.MISSION) and MissionType.MISSION in self._touched)
+        if not state.is_armed or state.is_held:
+            return False
+        if not state.is_in(Mode.MISSION) or MissionType.MISSION not in self._touched:
+            return True
+        return state.flavour is Flavour.PX4 and isinstance(self._steps.step, Upload) and self._kind is MissionType.MISSION
 
     def cancel(self, now_s: float) -> Messages:
         """Ends by a failure like others: what was begun is put back."""

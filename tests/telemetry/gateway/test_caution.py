@@ -2,10 +2,13 @@
 
 import asyncio
 import time
+from collections import deque
 from types import SimpleNamespace
 from uuid import uuid4
 
 import pytest
+from django.db.models import F
+from django.db.models.functions import Now
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
@@ -15,11 +18,16 @@ from missions.services.commands import claim_commands
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway
 from telemetry.gateway.desk import MOST_UPLOADS, Desk
+from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.preparation import EMPTY, Task, reason_not_to
 from telemetry.gateway.process import _link_id
+from telemetry.gateway.session import Session
 from telemetry.ground_station.orders import Order
 from telemetry.ground_station.rules import CommandRules
 from telemetry.ground_station.vehicle_state import VehicleState
+from telemetry.models import UavLink
+from telemetry.services.links import save_links, take_leases
+from tests.telemetry.gateway.station import unsigned_uav
 
 HERE = LonLat(10.0, 56.0)
 FAR = LonLat(10.02, 56.0)
@@ -110,13 +118,21 @@ def test_an_abort_is_claimed_however_many_uploads_there_are():
     desk._tasks = {upload.pk: SimpleNamespace(done=lambda: False) for upload in uploads}
     asyncio.run(desk.look())
     claims = [named for do, named in database.asked if do is claim_commands]
-    assert [claim["axes"] for claim in claims] == [(CommandAxis.FLIGHT, CommandAxis.SPEED)], "and no upload more than may begin"
+    assert [claim["axes"] for claim in claims] == [[CommandAxis.FLIGHT], [CommandAxis.SPEED]], "and no upload more than may begin"
 
     del desk._carriages[uploads[0].pk], desk._tasks[uploads[0].pk]
     database.asked.clear()
     asyncio.run(desk.look())
     claims = [named for do, named in database.asked if do is claim_commands]
-    assert [(claim["axes"], claim["limit"]) for claim in claims[1:]] == [((CommandAxis.MISSION,), 1)]
+    assert [claim["limit"] for claim in claims if claim["axes"] == [CommandAxis.MISSION]] == [1]
+
+
+def test_what_was_given_back_and_claimed_anew_is_carried_on():
+    desk, command = a_desk(Database()), a_command(CommandKind.ABORT)
+    desk._carriages = {command.pk: Carriage(command, None, None)}
+    desk._tasks = {command.pk: SimpleNamespace(done=lambda: True)}  # of the attempt before
+    desk._forget_ended()
+    assert list(desk._carriages) == [command.pk] and not desk._tasks
 
 
 @pytest.mark.parametrize(
@@ -143,3 +159,19 @@ def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, po
 def test_gateways_sign_as_different_links():
     assert _link_id("gateway-12") != _link_id("gateway-21")
     assert len({_link_id(f"spanwise-gateway-{number}") for number in range(8)}) == 8
+
+
+@pytest.mark.django_db
+def test_when_a_vehicle_was_heard_is_told_by_the_databases_clock(monkeypatch, tmp_path):
+    """A gateway whose clock is an hour behind has heard it just now all the same, so that no other takes it away."""
+    uav = unsigned_uav(7)
+    hour_ago_s = time.time() - 3_600.0
+    monkeypatch.setattr(time, "time", lambda: hour_ago_s)
+    session = Session(KnownUav(uav.pk, uav.organisation_id, uav.name, 7, True, None, None), deque(), link_id=1)
+    (lease,) = take_leases(uav_ids=[uav.pk], holder="one/1", lease_s=10.0)
+    session.serve(lease, time.monotonic() + 8.0)
+    session.heard_s = hour_ago_s - 1.0
+    save_links(states=[session.link_state()], holder="one/1")
+    (ago_s,) = UavLink.objects.annotate(ago=Now() - F("heard_at")).values_list("ago", flat=True)
+    assert 1.0 <= ago_s.total_seconds() < 4.0
+    assert take_leases(uav_ids=[uav.pk], holder="two/1", lease_s=10.0) == []

@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.content import FlightLoad, MissionItem, MissionType
 from telemetry.ground_station.compare import differences
-from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flavour import PX4_AUTO, Flavour
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
 from telemetry.ground_station.mission_keeper import MissionKeeper
 from telemetry.ground_station.mix import Found
@@ -231,6 +231,27 @@ def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
     channel.send(keeper.cancel(channel.now_s))
     assert channel.go_on().state is KeeperState.CLEARED
     assert sent(channel).count("MISSION_ITEM_INT") == items > 0
+
+
+@pytest.mark.parametrize(("flavour", "mode"), [("px4", PX4_AUTO << 16 | MISSION << 24), ("ardupilot", AUTO)])
+@pytest.mark.parametrize("is_sending", [False, True])
+def test_a_vehicle_that_begins_to_fly_its_list_gets_none_or_a_whole_one(flavour: str, mode: int, is_sending: bool):
+    vehicle = holding(flavour, OLD)
+    state = known(vehicle)
+    keeper = MissionKeeper(load(12, fence=OLD.fence), state, ENDS, TransferRules(), known=[OLD])
+    channel = Channel(keeper, vehicle, ground_dies_after=26 if is_sending else 4)
+    channel.run()
+    assert (keeper.progress.stage == "sending") == is_sending and not keeper.is_endangered
+    state.is_armed, state.custom_mode = True, mode
+    vehicle.is_armed, vehicle.custom_mode = True, mode
+    assert keeper.is_endangered != (is_sending and flavour == "ardupilot")
+    channel.ground_dies_after = None
+    if keeper.is_endangered:
+        channel.send(keeper.cancel(channel.now_s))
+        outcome = channel.go_on()
+        assert (outcome.state, outcome.code) == (KeeperState.INTACT, "left-hold") and holds(vehicle, OLD)
+    else:
+        assert channel.go_on().state is KeeperState.READY
 
 
 def test_cancelling_after_the_end_changes_nothing():
