@@ -151,7 +151,9 @@ def test_what_was_given_back_and_claimed_anew_is_carried_on():
 )
 @pytest.mark.parametrize("order", [Order.START, Order.RESUME])
 def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, position, home, home_m, code):
-    state = VehicleState(7, landed_state=landed, position=position, altitude_amsl_m=100.0, home=home, home_amsl_m=home_m)
+    state = VehicleState(
+        7, landed_state=landed, landed_at_s=0.0, heard_at_s=0.0, position=position, altitude_amsl_m=100.0, home=home, home_amsl_m=home_m
+    )
     found = reason_not_to(Task(order=order, aboard=EMPTY, take_off=TakeOff(HERE, 100.0)), state)
     assert (found and found.code) == code
 
