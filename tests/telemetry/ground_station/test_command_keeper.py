@@ -1,68 +1,38 @@
 """Orders to vehicles of both flavours, and their effect."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from telemetry.ground_station.command import CommandEnd, CommandOutcome
+from telemetry.ground_station.command import CommandEnd
 from telemetry.ground_station.command_keeper import CommandKeeper
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.orders import Order
-from telemetry.ground_station.rules import CommandRules
 from telemetry.ground_station.vehicle_state import VehicleState
+from tests.telemetry.ground_station.orders_given import (
+    APPLIED,
+    ARM,
+    FIRST_ITEM,
+    MODES,
+    PARAMETERS,
+    RULES,
+    SET_ITEM,
+    SET_MODE,
+    SPEED,
+    START,
+    TAKEOFF,
+    commands,
+    mode_of,
+    told,
+    vehicle_of,
+)
 from tests.telemetry.ground_station.test_upload import heard
 from tests.telemetry.ground_station.test_vehicle_state import heartbeat
 from tests.telemetry.vehicles import ardupilot, px4
-from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, mission
-from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
-
-RULES = CommandRules()
-ARM, SET_MODE, TAKEOFF = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_CMD_NAV_TAKEOFF
-START, SPEED = mavlink.MAV_CMD_MISSION_START, mavlink.MAV_CMD_DO_CHANGE_SPEED
-SET_ITEM = mavlink.MAV_CMD_DO_SET_MISSION_CURRENT
-FIRST_ITEM = {"px4": 0, "ardupilot": 1}
-MODES = {"px4": {"mission": 4, "hold": 3, "return": 5, "land": 6}, "ardupilot": {"mission": 3, "hold": 17, "return": 6, "land": 9}}
-PARAMETERS = {"altitude_relative_m": 12.0, "speed_mps": 4.5}
-
-
-def vehicle_of(flavour: str, *, mode: str = "", in_air: bool = False) -> Vehicle:
-    vehicle = FLAVOURS[flavour]()
-    vehicle.heartbeats = True
-    vehicle.lists[0] += mission(7)  # type: ignore[index]
-    vehicle.is_armed = vehicle.is_in_air = in_air
-    number = MODES[flavour].get(mode, 0)
-    vehicle.custom_mode = (4 << 16 | number << 24) if flavour == "px4" and mode else number
-    return vehicle
-
-
-def mode_of(vehicle: Vehicle) -> int:
-    return vehicle.custom_mode >> 24 if isinstance(vehicle, px4.Px4) else vehicle.custom_mode
-
-
-def told(
-    vehicle: Vehicle, order: Order, *, link: Link | None = None, seed: int = 0, parameters: Mapping[str, float] = PARAMETERS, **more: Any
-) -> tuple[CommandOutcome, Channel]:
-    """With a home that is 20 m above the sea, and one report of the vehicle heard before."""
-    state = VehicleState(vehicle.system)
-    frames = mavlink.MAVLink(None, srcSystem=vehicle.system, srcComponent=1)
-    home = mavlink.MAVLink_home_position_message(554000000, 98000000, 20000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
-    for message in [*vehicle.reports(), home]:
-        state.receive(mavlink.MAVLink(None).parse_char(message.pack(frames)), 0.0)
-    keeper = CommandKeeper(order, state, ENDS, RULES, parameters=parameters, **more)
-    channel = Channel(keeper, vehicle, link or Link(), seed, listeners=[state])
-    return channel.run(), channel
-
-
-def commands(channel: Channel) -> list[int]:
-    return [message.command for message in channel.to_vehicle]
-
-
-APPLIED = CommandOutcome(CommandEnd.APPLIED)
+from tests.telemetry.vehicles.channel import Link
+from tests.telemetry.vehicles.loads import ENDS, FLAVOURS
+from tests.telemetry.vehicles.vehicle import GROUND
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -206,83 +176,6 @@ def test_state_of_before_the_last_command_is_not_taken_for_the_present_one():
     vehicle = vehicle_of("px4", mode="mission", in_air=True)
     outcome, channel = told(vehicle, Order.RESUME, unsettled_until_s=1.0)
     assert (outcome, commands(channel)) == (APPLIED, [SET_MODE])
-
-
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_on_the_ground_disarms(flavour: str):
-    vehicle = vehicle_of(flavour)
-    vehicle.is_armed = True
-    assert told(vehicle, Order.ABORT)[0] == APPLIED
-    assert not vehicle.is_armed
-
-
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_lands_where_the_return_is_refused(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
-    carried_out = vehicle.carry_out
-    back = float(MODES[flavour]["return"])
-    vehicle.carry_out = lambda command, values: 2 if back in values[1:3] else carried_out(command, values)  # type: ignore[method-assign]
-    assert told(vehicle, Order.ABORT)[0] == APPLIED
-    assert mode_of(vehicle) == MODES[flavour]["land"]
-
-
-@dataclass
-class LeavesGround:
-    """A mission that was started before: the vehicle leaves the ground so many seconds after it was told to disarm, and says no to it."""
-
-    vehicle: Vehicle
-    after_s: float
-    answers: bool = True
-
-    def __post_init__(self) -> None:
-        self.vehicle.is_armed, self._told_s = True, math.inf
-        self._tick, self._receive = self.vehicle.tick, self.vehicle.receive
-        self.vehicle.tick, self.vehicle.receive = self.tick, self.receive  # type: ignore[method-assign]
-
-    def receive(self, message: Any, now_s: float) -> list[Any]:
-        if message.get_type() == "COMMAND_LONG" and message.command == ARM:
-            self._told_s = min(self._told_s, now_s)
-            return [mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *GROUND)] if self.answers else []
-        return self._receive(message, now_s)
-
-    def tick(self, now_s: float) -> list[Any]:
-        self.vehicle.is_in_air = self.vehicle.is_in_air or now_s >= self._told_s + self.after_s
-        return self._tick(now_s)
-
-
-@pytest.mark.parametrize("answers", [True, False])
-@pytest.mark.parametrize("after_s", [0.1, 0.9, 2.0])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_during_the_take_off_calls_the_uav_back(flavour: str, after_s: float, answers: bool):
-    vehicle = vehicle_of(flavour, mode="mission")
-    LeavesGround(vehicle, after_s, answers)
-    outcome, channel = told(vehicle, Order.ABORT)
-    assert (outcome.state, mode_of(vehicle)) == (CommandEnd.APPLIED, MODES[flavour]["return"])
-    assert channel.now_s < after_s + 3.0
-
-
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission")
-    state = VehicleState(vehicle.system)
-    vehicle.is_armed = True
-    for message in vehicle.reports():
-        state.receive(heard(message), 0.0)
-    vehicle.is_in_air = True
-    beat = heard(vehicle.reports()[0])  # EXTENDED_SYS_STATE is lost from now on
-    state.receive(beat, RULES.fresh_s + 0.5)
-    keeper = CommandKeeper(Order.ABORT, state, ENDS, RULES)
-    assert [message.command for message in keeper.start(RULES.fresh_s + 0.6)] == [SET_MODE]
-
-
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_that_is_refused_every_way_is_tried_again(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
-    carried_out, noes = vehicle.carry_out, iter([2, 2])  # return and land are refused once
-
-    vehicle.carry_out = lambda command, values: next(noes, None) or carried_out(command, values)  # type: ignore[method-assign]
-    assert told(vehicle, Order.ABORT)[0] == APPLIED
-    assert mode_of(vehicle) == MODES[flavour]["return"]
 
 
 @pytest.mark.parametrize(
