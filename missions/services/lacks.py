@@ -75,6 +75,6 @@ def _message(lack: Lack, request: PlanRequest) -> str:
     uav = request.uavs[lack.uav]
     more = f"{lack.missing:,.1f} Wh more than the battery of {uav.name} may give."
     if lack.route.lacks_wh > 0.0:
-        return f"However {uav.name} charges on the way, it alone takes {more}"
+        return f"However {uav.name} charges on the way, it alone takes up to {more}"  # fewer may do by ways that were not drawn
     needed, there = f"{lack.missing + (uav.performance.usable_wh or 0.0):,.1f} Wh", _THERE[route_end(request, lack.uav)]
     return f"Over the ground and what stands tall it takes {needed} {there}, {more}"

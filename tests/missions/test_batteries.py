@@ -197,7 +197,7 @@ def test_who_has_the_range_lacks_the_battery_though_others_lack_the_range() -> N
     uavs = (iris(battery_wh=8.0, end_action=EndAction.RETURN), uav(name="Gull", max_range_m=1_000.0, end_action=EndAction.RETURN))
     (item,) = make_plan(request=request(there, uavs=uavs, charging_w=300.0))["unassigned"]
     assert item["reason"] == "beyond_energy"
-    assert item["message"].startswith("However Tern charges on the way, it alone takes ")
+    assert item["message"].startswith("However Tern charges on the way, it alone takes up to ")
 
 
 def test_a_target_that_is_in_reach_alone_is_told_so_and_flown_when_it_comes_first() -> None:

@@ -121,7 +121,7 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
     half = make_plan(request=first_of_all(asked, target, lacks[0] * ALMOST, lacks[1] * ALMOST - LEAST_WH))
     whole = make_plan(request=first_of_all(asked, target, lacks[0] * 1.001 + 60.0, lacks[1] * MORE + LEAST_WH))
     faults = []
-    if target not in _left_out(half):
+    if target not in _left_out(half) and "up to" not in said:
         faults.append(f"target {target} is flown with less than what is missing: {said}")
     if target in _left_out(whole) and _left_out(whole)[target]["reason"] == item["reason"]:  # who has the range may lack the battery
         faults.append(f"target {target} is not flown with all that is missing: {said}")

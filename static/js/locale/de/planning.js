@@ -2,7 +2,7 @@
 
 export default {
   "Each UAV that can do it has as many targets as it may have.": "Jedes UAV, das es könnte, hat so viele Ziele, wie es haben darf.",
-  "However {name} charges on the way, it alone takes {missing} Wh more than its battery may give.": "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es {missing} Wh mehr, als sein Akku geben darf.",
+  "However {name} charges on the way, it alone takes up to {missing} Wh more than its battery may give.": "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es bis zu {missing} Wh mehr, als sein Akku geben darf.",
   "However {name} charges on the way, the battery does not last for it.": "Wie auch immer {name} unterwegs lädt: Der Akku reicht dafür nicht.",
   "It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it.": "Es sind {needed} {there}, {missing} mehr als die Reichweite des UAV, das ihm am nächsten kommt.",
   "It is within range alone, but not after the other targets.": "Allein liegt es in Reichweite, nach den anderen Zielen nicht mehr.",
