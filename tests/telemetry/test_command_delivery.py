@@ -74,7 +74,7 @@ def wait_until(is_so: Callable[[], bool], deadline_s: float) -> None:
     ends_s = time.monotonic() + deadline_s
     while not is_so():
         assert time.monotonic() < ends_s, "not in time"
-        time.sleep(0.05)
+        time.sleep(0.005)
 
 
 def all_have_ended() -> bool:
@@ -115,6 +115,7 @@ def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(co
         for slot in range(SLOTS):
             carriers.start(slot)
         for number, kind in enumerate(later):
+            wait_until(lambda number=number: len(heard.applied) >= number or all_have_ended(), DEADLINE_S)  # as fast as they are carried
             give(kind)
             if kill_at and len(heard.applied) >= kill_at[0]:
                 carriers.kill(number % SLOTS)
