@@ -112,7 +112,8 @@ def percentile(values: list[float], share: float) -> float:
     return sorted(values)[min(int(len(values) * share), len(values) - 1)]
 
 
-@pytest.mark.parametrize("number", [pytest.param(1_000, marks=pytest.mark.long), 300])
+@pytest.mark.long
+@pytest.mark.parametrize("number", [1_000, 300])
 def test_commands_over_bad_links_and_killed_gateways(number, tmp_path):
     uavs = [unsigned_uav(system) for system in range(1, UAVS + 1)]
     chance, port = random.Random(number), free_port()
@@ -141,6 +142,7 @@ def test_commands_over_bad_links_and_killed_gateways(number, tmp_path):
     in_order(uavs, taken)
 
 
+@pytest.mark.long
 def test_what_is_urgent_hardly_waits_under_overload(tmp_path, monkeypatch):
     """Of a gateway that can do four things at once forty speeds are wanted; now and then a UAV must hold."""
     monkeypatch.setattr(desk, "MOST_AT_ONCE", 4)

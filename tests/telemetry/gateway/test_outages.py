@@ -175,7 +175,7 @@ RATE = 120.0  # the vehicle's seconds a second
 REPORTS_HZ = 5.0
 
 
-@pytest.mark.parametrize("order", ["kept first", "mixed"])
+@pytest.mark.parametrize("order", ["kept first", pytest.param("mixed", marks=pytest.mark.long)])
 @pytest.mark.parametrize("lost_s", [5, 60, 600])
 def test_a_buffering_vehicle_loses_and_doubles_nothing(lost_s, order, tmp_path):
     """Its time runs 120 times as fast. While the link is lost it flies on and keeps its reports; then it sends them, some twice."""
