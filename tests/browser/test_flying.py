@@ -144,12 +144,12 @@ def test_a_mission_on_its_way_fits_every_window(
     key = mission.split("/")[-1]
     assert posts(page, f"/missions/{key}/approve", {}).ok
     sent = posts(page, f"/missions/{key}/dispatch", {}).json()
-    posts(page, f"/uavs/{sent['commands'][0]['uav']['id']}/commands", {"kind": "return"})
+    posts(page, f"/uavs/{sent['commands'][0]['uav']['id']}/commands", {"kind": "abort"})  # the one that an earlier abort of it does not hold back
     opened(page, mission)
     if size[0] < 721:
         page.get_by_role("button", name="Panel height").click()
     expect(page.get_by_text("Waiting for the UAV").first).to_be_visible()
-    expect(page.locator(".flyer-board").filter(has_text="Return: waiting")).to_be_visible()
+    expect(page.locator(".flyer-board").filter(has_text="Abort: waiting")).to_be_visible()
     assert page.evaluate(TOO_WIDE) == []
     picture(page, name)
     assert posts(page, f"/missions/{key}/abort", {"why": "Over"}).ok

@@ -72,7 +72,7 @@ def test_filters_by_author_state_and_changed_ground_leave_what_they_say(visitor:
     page.get_by_role("combobox", name="Author", exact=True).select_option("rory")
     expect(row(page, "Made by Opal")).to_have_count(0)
     expect(row(page, "Made by Rory")).to_be_visible()
-    page.get_by_role("checkbox", name="Ground changed since planning").check()
+    page.get_by_role("checkbox", name="Ground or a UAV changed since planning").check()
     expect(page.get_by_text("No mission is like that")).to_be_visible()
     page.locator("#clear-filters").click()
     page.get_by_role("radio", name="Planned").check()
