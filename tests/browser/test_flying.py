@@ -144,7 +144,7 @@ def test_a_mission_on_its_way_fits_every_window(
     key = mission.split("/")[-1]
     assert posts(page, f"/missions/{key}/approve", {}).ok
     sent = posts(page, f"/missions/{key}/dispatch", {}).json()
-    posts(page, f"/uavs/{sent['commands'][0]['uav']['id']}/commands", {"kind": "abort"})  # the one that an earlier abort of it does not hold back
+    posts(page, f"/uavs/{sent['commands'][0]['uav']['id']}/commands", {"kind": "abort"})  # an earlier abort holds back all else
     opened(page, mission)
     if size[0] < 721:
         page.get_by_role("button", name="Panel height").click()
