@@ -91,7 +91,7 @@ def finish_revocation(*, approval_id: UUID) -> bool:
     """After a UAV was seen without the mission: end the approval if it was to be revoked and no UAV holds it any more."""
     with transaction.atomic():
         mission_id = Approval.objects.values_list("mission", flat=True).get(pk=approval_id)
-        held = Mission.objects.select_for_update().get(pk=mission_id)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         approval = approval_in_force(held)
         if approval is None or approval.pk != approval_id or approval.revoke_requested_at is None:
             return False
@@ -123,7 +123,7 @@ def _is_being_cleared(uav: Uav, approval: Approval) -> bool:
 
 def held_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
     """The row, held until the caller's transaction ends. Raises MissionChanged."""
-    held = Mission.objects.select_for_update().get(pk=mission_id)
+    held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
     if held.deleted_at is not None or (expected_revision is not None and held.revision != expected_revision):
         raise MissionChanged
     return held

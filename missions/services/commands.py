@@ -44,7 +44,7 @@ def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "",
     with transaction.atomic():
         command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id").filter(pk=command_id).first()
         if command is not None and command.mission_id is not None:
-            Mission.objects.select_for_update().values_list("pk").get(pk=command.mission_id)  # missions are held before commands
+            Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=command.mission_id)  # missions are held before commands
         if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note, warnings=warnings):
             return False
         assert command is not None  # noqa: S101 - it has just been written to

@@ -54,7 +54,7 @@ class NotDeleted(Exception):
 
 def locked(row: Row, expected_revision: int | None) -> Row:
     """The row as it is now, held until the caller's transaction ends. Raises FleetChanged."""
-    held = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
+    held = type(row)._default_manager.select_for_update(no_key=True).filter(pk=row.pk).first()
     if held is None or (expected_revision is not None and held.revision != expected_revision):
         raise FleetChanged(SUBJECTS[type(row)], row.pk)
     return held

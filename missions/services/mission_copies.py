@@ -26,7 +26,9 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Miss
     It is compared with what is approved by now, the mission itself among it.
     """
     with transaction.atomic():
-        mission = Mission.objects.select_for_update().get(pk=mission.pk)  # as it is now: never half of one plan and half of the next
+        mission = Mission.objects.select_for_update(no_key=True).get(
+            pk=mission.pk
+        )  # as it is now: never half of one plan and half of the next
         values = {field: getattr(mission, field) for field in COPIED}
         if values["state"] != MissionState.DRAFT:
             values["state"] = MissionState.PLANNED

@@ -186,7 +186,7 @@ def delete_mission(*, mission: Mission, actor: User, expected_revision: int | No
 
 def restore_mission(*, mission: Mission, actor: User) -> Mission:
     with transaction.atomic():
-        locked = Mission.objects.select_for_update().get(pk=mission.pk)
+        locked = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if locked.deleted_at is not None:
             locked.deleted_at = None
             _save(locked)
@@ -196,7 +196,7 @@ def restore_mission(*, mission: Mission, actor: User) -> Mission:
 
 def lock_mission(*, mission_id: UUID, expected_revision: int | None) -> Mission:
     """The mission's row, held until the caller's transaction ends. Raises MissionChanged or MissionFrozen."""
-    mission = Mission.objects.select_for_update().get(pk=mission_id)
+    mission = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
     if mission.deleted_at is not None or (expected_revision is not None and mission.revision != expected_revision):
         raise MissionChanged
     if mission.state not in EDITABLE:

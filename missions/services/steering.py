@@ -49,7 +49,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
     with transaction.atomic():
         mission = mission_in_hand(uav)
         if mission is not None:
-            mission = Mission.objects.select_for_update().get(pk=mission.pk)
+            mission = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         approval = None if mission is None else approval_in_force(mission)
         if kind in SETS_IN_MOTION:
             mission, approval = _to_move_for(uav, kind, mission, approval)

@@ -70,7 +70,7 @@ def take_results(
 
 def _store(uav_id: int, stream: str, results: Sequence[NewResult], given: dict[UUID, Approval], received_at: datetime) -> int:
     run, _ = TelemetryStream.objects.get_or_create(uav_id=uav_id, link=LinkKind.HTTP, key=stream)
-    run = TelemetryStream.objects.select_for_update().get(pk=run.pk)  # two batches of one counter: one after the other
+    run = TelemetryStream.objects.select_for_update(no_key=True).get(pk=run.pk)  # two batches of one counter: one after the other
     known = set(
         InspectionResult.objects.filter(stream=run, sequence__in=[result.sequence for result in results]).values_list("sequence", flat=True)
     )
