@@ -1,0 +1,37 @@
+"""The log of a flight is stored while somebody holds its mission to give a command: neither waits for the other."""
+
+import threading
+
+import pytest
+from django.contrib.gis.geos import Point
+from django.db import connections, transaction
+from django.utils import timezone
+
+from missions.models import Mission, MissionState, MissionUav, Uav
+from missions.services.approval import held_mission
+from telemetry.models import TelemetryRecord
+from telemetry.services import store_records
+from tests.telemetry.records import record
+
+PATIENCE_S = 10.0
+
+
+@pytest.mark.django_db(transaction=True)
+def test_a_report_is_stored_while_its_mission_is_held():
+    uav = Uav.objects.create(name="One", location=Point(0, 0))
+    mission = Mission.objects.create(name="Held", state=MissionState.DISPATCHED, planned_at=timezone.now(), graph_version=1)
+    MissionUav.objects.create(mission=mission, uav=uav, sequence=0, name="One", start=uav.location, cruise_speed_mps=12.0)
+
+    def report() -> None:
+        store_records([record(uav, 1)])
+        connections.close_all()
+
+    with transaction.atomic():
+        held_mission(mission.pk, None)
+        thread = threading.Thread(target=report)
+        thread.start()
+        thread.join(PATIENCE_S)
+        is_stored = not thread.is_alive()
+    thread.join(PATIENCE_S)
+    assert is_stored
+    assert TelemetryRecord.objects.get().mission == mission
