@@ -48,9 +48,6 @@ class Journal:
     def add_flight(self, flight: dict[str, Any]) -> int:
         return self._add("flights", flight)
 
-    def add_acknowledgement(self, acknowledgement: dict[str, Any]) -> int:
-        return self._add("acknowledgements", acknowledgement)
-
     def waiting(self, table: str, most: int) -> list[tuple[int, dict[str, Any]]]:
         """The oldest first, each with its number."""
         own = "sequence" if table in COUNTED else "number"
