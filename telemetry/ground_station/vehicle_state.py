@@ -37,10 +37,12 @@ class VehicleState:
     is_armed: bool | None = None
     landed_state: int | None = None
     position: LonLat | None = None
+    position_at_s: float | None = None
     altitude_amsl_m: float | None = None
     altitude_relative_m: float | None = None
     home: LonLat | None = None
     home_amsl_m: float | None = None
+    home_at_s: float | None = None
     mission_item: int | None = None
     mission_item_at_s: float | None = None
     mission_total: int | None = None
@@ -121,11 +123,13 @@ def _position(state: VehicleState, message: Message, now_s: float) -> None:
     state.position = LonLat(message.lon / 1e7, message.lat / 1e7)
     state.altitude_amsl_m = message.alt / 1000.0
     state.altitude_relative_m = message.relative_alt / 1000.0
+    state.position_at_s = now_s
 
 
 def _home(state: VehicleState, message: Message, now_s: float) -> None:
     state.home = LonLat(message.longitude / 1e7, message.latitude / 1e7)
     state.home_amsl_m = message.altitude / 1000.0
+    state.home_at_s = now_s
 
 
 def _mission_current(state: VehicleState, message: Message, now_s: float) -> None:
