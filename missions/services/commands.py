@@ -21,6 +21,7 @@ from missions.services.outbox import (
     note_released,
     note_sent,
     queue_command,
+    release_claims_of_others,
     renew_claims,
 )
 
@@ -35,6 +36,7 @@ __all__ = [
     "note_released",
     "note_sent",
     "queue_command",
+    "release_claims_of_others",
     "renew_claims",
 ]
 

@@ -133,3 +133,11 @@ def test_a_mission_is_complete_when_its_last_flight_is_flown(mission: Mission, k
     assert kite.get("route").status_code == 204
     tell(kite, flights=[flight])
     assert Mission.objects.get().state == MissionState.COMPLETED
+
+
+def test_a_flight_that_was_never_approved_ends_no_mission(mission: Mission, kite: UavClient) -> None:
+    kite.get("route")
+    flight = {"approval": str(Approval.objects.get().pk), "flight": 2, "outcome": "flown"}
+    assert tell(kite, flights=[flight])["refused_flights"] == [0]
+    mission.refresh_from_db()
+    assert (mission.state, mission.routes.get().flights_flown) == (MissionState.DISPATCHED, 0)
