@@ -21,7 +21,10 @@ UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not 
 
 @dataclass(frozen=True)
 class Lease:
-    """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink."""
+    """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink.
+
+    `mode_in_air` is the one in which it saw the vehicle last, armed and in the air; empty: it did not.
+    """
 
     uav_id: int
     signing: dict[str, Any]
@@ -29,6 +32,7 @@ class Lease:
     losses: dict[str, int]
     loaded_sha256: str
     limits: dict[str, float] = field(default_factory=dict)
+    mode_in_air: str = ""
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,7 @@ WHERE telemetry_uavlink.holder IN ('', excluded.holder)
         AND telemetry_uavlink.lease_expires_at < now() + make_interval(secs => %(lease_s)s - %(namesake_s)s))
     OR telemetry_uavlink.lease_expires_at IS NULL OR telemetry_uavlink.lease_expires_at < now()
     OR telemetry_uavlink.heard_at < now() - make_interval(secs => %(unheard_s)s)
-RETURNING uav_id, signing, boots, losses, loaded_sha256, limits
+RETURNING uav_id, signing, boots, losses, loaded_sha256, limits, CASE WHEN is_armed AND is_in_air THEN mode ELSE '' END
 """
 
 
@@ -82,8 +86,8 @@ def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> lis
         rows = cursor.fetchall()
     release_claims_of_others(uav_ids=[uav_id for uav_id, *_ in rows], holder=holder)
     return [
-        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits))
-        for uav_id, signing, boots, losses, sha256, limits in rows
+        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits), mode)
+        for uav_id, signing, boots, losses, sha256, limits, mode in rows
     ]
 
 

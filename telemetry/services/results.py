@@ -10,7 +10,7 @@ from django.db import transaction
 from django.db.models.functions import Least
 
 from missions.given_selectors import approvals_given_to, number_of_flights, places_of_targets
-from missions.models import Approval, InspectionTarget, LinkKind, TargetState
+from missions.models import Approval, InspectionTarget, LinkKind, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
 from telemetry.models import InspectionResult, TelemetryStream
 
@@ -58,6 +58,8 @@ def take_results(
     own = [result for result in results if result.place in places.get(result.approval_id, ())]
     stored = _store(uav_id, stream, own, given, received_at) if own else 0
     numbers = {key: number_of_flights(uav_id, approval) for key, approval in given.items()}
+    if not Uav.objects.filter(pk=uav_id, link=LinkKind.HTTP).exists():
+        numbers = {}  # how its flights end is seen by the gateway
     for flight in flights:
         if flight.flight > numbers.get(flight.approval_id, 0):
             continue

@@ -28,6 +28,7 @@ from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session
 from telemetry.gateway.store import Store
 from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flown import Flown
 from telemetry.ground_station.orders import Order
 from telemetry.ground_station.rules import CommandRules
 from telemetry.ground_station.vehicle_state import MOST_PARAMETERS, VehicleState
@@ -274,3 +275,37 @@ def test_one_that_sends_far_too_much_takes_no_room_from_the_others():
     kept = {uav_id: [record.number for record in store.records if record.uav_id == uav_id] for uav_id in (1, 2)}
     assert kept == {1: [number for number in range(100) if number % 10][-40:], 2: list(range(0, 100, 10))}
     assert store.lost == 50
+
+
+def test_a_clock_that_was_set_back_makes_nobody_wait_for_it():
+    session = Session(KnownUav(1, 1, "Tern", 7, True, None, None), deque(), link_id=1)
+    session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 60.0)
+    first, other = (SimpleNamespace(name=name, send=lambda _: None) for name in ("first", "other"))
+    writer, now_s = FrameWriter(7, 1), time.time()
+
+    def hear(peer, at_s: float) -> None:
+        for frame in frames_of_datagram(writer.frame_of(mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3), 0.0), Counter()):
+            session.receive(frame, peer, at_s)
+
+    hear(first, now_s)
+    assert session.is_served(now_s, 5.0)
+    hour_ago_s = now_s - 3_600.0
+    assert not session.is_served(hour_ago_s, 5.0), "nobody knows how long ago it was heard"
+    hear(other, hour_ago_s)
+    assert session.peer is other and not session.losses, "the first one may have been silent for long"
+
+
+@pytest.mark.django_db
+@pytest.mark.parametrize(("facts", "told"), [({"is_in_air": True}, [Flown(6, is_reached=False, is_down=True)]), ({"is_in_air": False}, [])])
+def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, told):
+    uav = unsigned_uav(7)
+    UavLink.objects.create(uav=uav, mode="AUTO", is_armed=True, **facts)
+    (lease,) = take_leases(uav_ids=[uav.pk], holder="one/2", lease_s=10.0)
+    session = Session(KnownUav(uav.pk, uav.organisation_id, uav.name, 7, True, None, None), deque(), link_id=1)
+    session.serve(lease, time.monotonic() + 60.0)
+    writer, peer = FrameWriter(7, 1), SimpleNamespace(name="udp", send=lambda _: None)
+    landed = mavlink.MAVLink_extended_sys_state_message(0, ON_GROUND)
+    for message in (mavlink.MAVLink_mission_current_message(7), landed, mavlink.MAVLink_heartbeat_message(2, 3, 1, 3, 3, 3), landed):
+        for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
+            session.receive(frame, peer, time.time())
+    assert session.flown == told
