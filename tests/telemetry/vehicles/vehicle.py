@@ -31,6 +31,7 @@ class Vehicle:
     says: str = ""  # with every refusal
     denied: dict[int, int] = field(default_factory=dict)  # MAV_CMD: the result that is answered
     taken: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)  # commands that were carried out
+    parameters: dict[str, float] = field(default_factory=dict)  # of others it says nothing
     _next_heartbeat_s: float = 0.0
 
     autopilot = mavlink.MAV_AUTOPILOT_GENERIC
@@ -72,6 +73,12 @@ class Vehicle:
             mavlink.MAVLink_extended_sys_state_message(0, landed),
             mavlink.MAVLink_mission_current_message(self.current_item),
         ]
+
+    def _param_request_read(self, message: Any, now_s: float) -> list[Any]:
+        if message.param_id not in self.parameters:
+            return []
+        value = self.parameters[message.param_id]
+        return [mavlink.MAVLink_param_value_message(message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, 2, 0)]
 
     def _plan_wake(self) -> None:
         times = [self._next_heartbeat_s] if self.heartbeats else []
