@@ -6,7 +6,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('missions', '0020_routes_that_failed'),
+        ('missions', '0021_live_monitoring'),
     ]
 
     operations = [
