@@ -237,7 +237,7 @@ export default {
   "There is no asset to inspect.": "Es gibt kein Objekt zu inspizieren.",
   "Tick one in the list: what can be inspected is worked out from where it starts.": "In der Liste eines anhaken: Ermittelt wird von seinem Start aus.",
   "Two rows have the same height.": "Zwei Zeilen haben dieselbe Höhe.",
-  "UAVs may stop on a tower to charge": "UAVs dürfen zum Laden auf einem Mast landen",
+  "UAVs that fly once may stop on a tower to charge": "UAVs, die einmal fliegen, dürfen zum Laden auf einem Mast landen",
   "UAVs that cannot take off": "UAVs, die nicht starten können",
   "until {time}": "bis {time}",
   "Use these": "Übernehmen",
