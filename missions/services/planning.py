@@ -10,8 +10,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from inspection.graph.walls import at_all_heights, with_walls
 from inspection.graph.zone_index import ZoneIndex
-from inspection.selectors import ground_heights_m
-from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
+from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation
 from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
@@ -152,8 +151,7 @@ class _Planner:
         self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float, walls: ZoneIndex | None, *, is_by_length: bool
     ) -> Finished:
         """Attempts on preferred or on shortest ways, until one can be flown as it is drawn."""
-        has_terrain = has_terrain_at(ground.edition)
-        terrain = ground_heights_m if has_terrain else None
+        terrain = heights_at(ground.edition)
 
         def scene_with(more: ZoneIndex | None) -> Scene:
             both = walls if more is None else more if walls is None else with_walls(walls, more)
@@ -173,7 +171,7 @@ class _Planner:
         is_clear = None if on_all else lambda route: not keys_of_zones_met([route], self.request.departs_at, choice.table)
         found = replace(drawn.found, left_out=with_lacks(self.request, drawn.found, terrain, is_clear))
         routes, separation, others, met = self._kept_apart(drawn.routes, choice)
-        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), drawn.is_first)
+        return Finished(found, routes, separation, others, terrain is not None, met, worth_of(self.request, found, routes), drawn.is_first)
 
     def _kept_apart(
         self, alone: Sequence[PlannedRoute], choice: ZoneChoice
@@ -239,7 +237,7 @@ def make_plan(
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
         separation=separation_json(plan.separation, plan.others.untimed),
-        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, has_terrain=plan.has_terrain),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, heights_at(ground.edition)),
         quality=_quality(request, plan, freest),
         as_text=as_text,
     )
