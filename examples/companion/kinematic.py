@@ -97,7 +97,7 @@ class KinematicAutopilot:
             "mode": self.mode,
             "is_armed": self.is_armed,
             "is_in_air": self.is_in_air,
-            "mission_item": self._flies_to,
+            "waypoint_sequence": self._flies_to,
         }
 
     def events(self, now_s: float) -> Events:

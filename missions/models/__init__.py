@@ -24,6 +24,7 @@ from missions.models.missions import (
     Waypoint,
     WaypointKind,
 )
+from missions.models.offers import OfferState, ReplanOffer
 
 __all__ = [
     "OPEN_COMMANDS",
@@ -41,6 +42,8 @@ __all__ = [
     "MissionState",
     "MissionUav",
     "Objective",
+    "OfferState",
+    "ReplanOffer",
     "Route",
     "SavedSelection",
     "TargetPriority",

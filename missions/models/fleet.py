@@ -30,6 +30,12 @@ class UavType(models.Model):
     rotor_disk_m2 = models.FloatField(null=True, blank=True, help_text="area swept by all rotors; empty = 0.206, the Iris's")
     hover_power_w = models.FloatField(null=True, blank=True, help_text="watts in a calm hover, if measured; empty = worked out")
     sensors = ArrayField(models.CharField(max_length=50), default=list, blank=True)
+    alert_limits = models.JSONField(
+        default=dict,
+        db_default={},
+        blank=True,
+        help_text="limits of alerts that differ from the usual ones; see telemetry/alerting/limits.py",
+    )
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)

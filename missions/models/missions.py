@@ -64,6 +64,22 @@ class Mission(models.Model):
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)
     deleted_at = models.DateTimeField(null=True, blank=True, help_text="deleted missions can be brought back")
+    started_at = models.DateTimeField(null=True, blank=True, help_text="when its first UAV began to fly")
+    ended_at = models.DateTimeField(null=True, blank=True, help_text="when it was completed, aborted, or had failed")
+    continues = models.ForeignKey(
+        "self",
+        on_delete=models.SET_NULL,
+        null=True,
+        blank=True,
+        related_name="continued_by",
+        help_text="the mission whose rest this one flies",
+    )
+    alert_limits = models.JSONField(
+        default=dict,
+        db_default={},
+        blank=True,
+        help_text="limits of alerts that differ from the UAVs' types; see telemetry/alerting/limits.py",
+    )
 
     class Meta:
         ordering = ["-updated_at"]
@@ -142,6 +158,8 @@ class InspectionTarget(models.Model):
     uav_name = models.CharField(max_length=100, blank=True, help_text="the only UAV that may do it; empty = any")
     sensor = models.CharField(max_length=LONGEST_SENSOR, blank=True, help_text="that its UAV must have; empty = any")
     state = models.CharField(max_length=20, choices=TargetState.choices, default=TargetState.PENDING)
+    state_at = models.DateTimeField(null=True, blank=True, help_text="since when, while the mission flies")
+    state_reason = models.CharField(max_length=300, blank=True, default="", db_default="", help_text="why it was skipped or failed")
     unassigned_reason = models.CharField(max_length=40, blank=True)
     unassigned_message = models.CharField(max_length=500, blank=True)
 

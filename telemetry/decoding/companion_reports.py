@@ -32,7 +32,7 @@ NUMBERS: Mapping[str, tuple[float, float]] = {  # inclusive
     "wind_north_mps": (-100, 100),
     "wind_east_mps": (-100, 100),
 }
-INTEGERS: Mapping[str, tuple[int, int]] = {"gps_fix": (0, 8), "satellites": (0, 255), "mission_item": (0, 65_535)}
+INTEGERS: Mapping[str, tuple[int, int]] = {"gps_fix": (0, 8), "satellites": (0, 255), "waypoint_sequence": (0, 65_535)}
 FLAGS = ("is_armed", "is_in_air")
 KNOWN = frozenset({"sequence", "measured_at", "mission", "position", "mode", *NUMBERS, *INTEGERS, *FLAGS})
 IDENTIFIER = re.compile(r"[0-9a-fA-F]{8}(-[0-9a-fA-F]{4}){3}-[0-9a-fA-F]{12}")
@@ -176,4 +176,6 @@ def _distance_km(a: tuple[float, float], b: tuple[float, float]) -> float:
 def _unknown(name: str) -> str:
     if name in BARE_HEIGHTS:
         return "A height names its reference: altitude_amsl_m, altitude_relative_m or altitude_agl_m."
+    if name == "mission_item":
+        return "Only an autopilot's own list has items: send waypoint_sequence, the sequence of the waypoint in its route."
     return "There is no such field."

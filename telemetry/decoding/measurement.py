@@ -5,11 +5,15 @@ from dataclasses import dataclass, fields, replace
 
 LONGEST_MODE = 30
 _SMALLEST, _LARGEST_SMALL, _LARGEST_INT = 0, 32_767, 2_147_483_647
+_COUNTED = (("mission_item", _LARGEST_INT), ("waypoint_sequence", _LARGEST_INT))
 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """Values of one moment; None is not known. Speeds go north, east and down, the wind where the air moves to."""
+    """Values of one moment; None is not known. Speeds go north, east and down, the wind where the air moves to.
+
+    `mission_item` is the autopilot's own count, which only MAVLink has; `waypoint_sequence` the waypoint of the approved route.
+    """
 
     longitude_deg: float | None = None
     latitude_deg: float | None = None
@@ -36,6 +40,7 @@ class Measurement:
     wind_north_mps: float | None = None
     wind_east_mps: float | None = None
     mission_item: int | None = None
+    waypoint_sequence: int | None = None
 
 
 _FLOATS = tuple(field.name for field in fields(Measurement) if field.name.endswith(("_deg", "_m", "_mps", "_percent", "_v", "_a", "hdop")))
@@ -51,7 +56,7 @@ def believable(measurement: Measurement) -> Measurement:
     for name in ("battery_percent", "link_quality_percent"):
         if (value := getattr(measurement, name)) is not None and not 0 <= value <= 100:
             wrong[name] = None
-    for name, largest in (("gps_fix", _LARGEST_SMALL), ("satellites", _LARGEST_SMALL), ("mission_item", _LARGEST_INT)):
+    for name, largest in (("gps_fix", _LARGEST_SMALL), ("satellites", _LARGEST_SMALL), *_COUNTED):
         if (value := getattr(measurement, name)) is not None and not _SMALLEST <= value <= largest:
             wrong[name] = None
     heading_deg = measurement.heading_deg

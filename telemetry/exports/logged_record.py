@@ -7,7 +7,7 @@ REPORTED = (
     "altitude_amsl_m", "altitude_relative_m", "altitude_agl_m",
     "velocity_north_mps", "velocity_east_mps", "velocity_down_mps", "airspeed_mps",
     "roll_deg", "pitch_deg", "heading_deg", "battery_percent", "battery_v", "battery_a", "mode", "is_armed", "is_in_air",
-    "link_quality_percent", "gps_fix", "satellites", "hdop", "wind_north_mps", "wind_east_mps", "mission_item",
+    "link_quality_percent", "gps_fix", "satellites", "hdop", "wind_north_mps", "wind_east_mps", "mission_item", "waypoint_sequence",
 )  # fmt: skip
 FLAGS = ("is_from_future", "is_late")
 

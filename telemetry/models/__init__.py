@@ -1,17 +1,21 @@
 """What happens in the air."""
 
-from telemetry.models.alerts import Alert, AlertLevel
+from telemetry.models.alerts import Alert, AlertLevel, AlertNote
 from telemetry.models.links import FlightLog, UavLink, UnknownVehicle, UnknownVehicleState, VehicleText
 from telemetry.models.records import InspectionResult, TelemetryRecord, TelemetryStream
+from telemetry.models.watching import PositionEstimate, UavWatch
 
 __all__ = [
     "Alert",
     "AlertLevel",
+    "AlertNote",
     "FlightLog",
     "InspectionResult",
+    "PositionEstimate",
     "TelemetryRecord",
     "TelemetryStream",
     "UavLink",
+    "UavWatch",
     "UnknownVehicle",
     "UnknownVehicleState",
     "VehicleText",

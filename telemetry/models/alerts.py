@@ -3,6 +3,7 @@
 from django.conf import settings
 from django.contrib.gis.db import models
 from django.db.models import Q
+from django.db.models.functions import Now
 
 from missions.models import Mission, Uav
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
@@ -22,19 +23,36 @@ class Alert(models.Model):
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, null=True, blank=True, related_name="alerts")
     level = models.CharField(max_length=10, choices=AlertLevel.choices)
     code = models.CharField(max_length=50, help_text="the cause: mission-mixed, …")
+    subject = models.CharField(max_length=100, blank=True, default="", db_default="", help_text="which of a kind: a zone, another UAV")
     message = models.CharField(max_length=500)
     details = models.JSONField(default=dict, blank=True)
     opened_at = models.DateTimeField()
     closed_at = models.DateTimeField(null=True, blank=True)
     acknowledged_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     acknowledged_at = models.DateTimeField(null=True, blank=True)
+    revision = models.PositiveIntegerField(default=1, db_default=1, help_text="counts the changes")
 
     class Meta:
         ordering = ["-opened_at"]
         constraints = [
-            models.UniqueConstraint(fields=["uav", "code"], condition=Q(closed_at=None), name="alert_one_open_of_a_cause"),
+            models.UniqueConstraint(fields=["uav", "code", "subject"], condition=Q(closed_at=None), name="alert_one_open_of_a_cause"),
             models.CheckConstraint(condition=Q(level__in=AlertLevel.values), name="alert_level_known"),
         ]
 
     def __str__(self) -> str:
         return f"{self.level} {self.message}"
+
+
+class AlertNote(models.Model):
+    """What somebody wrote to an alert. Never changed."""
+
+    alert = models.ForeignKey(Alert, on_delete=models.CASCADE, related_name="notes")
+    author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")
+    text = models.CharField(max_length=1_000)
+    written_at = models.DateTimeField(db_default=Now(), editable=False)
+
+    class Meta:
+        ordering = ["written_at", "pk"]
+
+    def __str__(self) -> str:
+        return self.text

@@ -24,12 +24,20 @@ class UavLink(models.Model):
     is_in_air = models.BooleanField(null=True, blank=True)
     home = models.PointField(srid=4326, null=True, blank=True)
     home_amsl_m = models.FloatField(null=True, blank=True)
-    mission_item = models.IntegerField(null=True, blank=True, help_text="that is being flown, as the vehicle counts")
+    mission_item = models.IntegerField(null=True, blank=True, help_text="that its list is at, as the autopilot counts; by MAVLink only")
+    waypoint_sequence = models.IntegerField(null=True, blank=True, help_text="of its approved route that it flies to, or is at")
     loaded_sha256 = models.CharField(
         max_length=64, blank=True, help_text="of the approved mission found on it by reading back; empty = none"
     )
     loaded_approval = models.UUIDField(null=True, blank=True)
     loaded_flight = models.PositiveSmallIntegerField(null=True, blank=True)
+    loaded_read_at = models.DateTimeField(null=True, blank=True, help_text="when it was last read back, by the server's clock")
+    loaded_doubt = models.CharField(
+        max_length=20,
+        db_default="",
+        blank=True,
+        help_text="why it may hold something else by now; empty = nothing says so",
+    )
     clock_offset_s = models.FloatField(null=True, blank=True, help_text="server's time at the vehicle's time since boot of 0")
     clock_rate = models.FloatField(null=True, blank=True, help_text="vehicle's seconds a second; a simulation may run faster")
     boots = models.JSONField(

@@ -57,7 +57,12 @@ class TelemetryRecord(models.Model):
     hdop = models.FloatField(null=True, blank=True)
     wind_north_mps = models.FloatField(null=True, blank=True, help_text="towards which the air moves")
     wind_east_mps = models.FloatField(null=True, blank=True)
-    mission_item = models.IntegerField(null=True, blank=True)
+    mission_item = models.IntegerField(
+        null=True, blank=True, help_text="that its list is at, as the autopilot counts (ArduPilot: 0 is home); by MAVLink only"
+    )
+    waypoint_sequence = models.IntegerField(
+        null=True, blank=True, help_text="of its approved route that it flies to, or is at; see services/waypoints.py"
+    )
     is_from_future = models.BooleanField(default=False, db_default=False, help_text="measured more than a minute after it was received")
     is_late = models.BooleanField(default=False, db_default=False, help_text="measured before a record that was stored earlier")
 

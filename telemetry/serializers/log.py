@@ -28,6 +28,9 @@ class RecordPropertiesSerializer(serializers.Serializer):
         fields: dict[str, serializers.Field] = super().get_fields()
         fields |= {name: serializers.FloatField(allow_null=True) for name in NUMBERS}
         fields |= {name: serializers.IntegerField(allow_null=True) for name in INTEGERS}
+        fields["mission_item"] = serializers.IntegerField(
+            allow_null=True, help_text="that the autopilot's list is at, as it counts (ArduPilot: 0 is home); by MAVLink only"
+        )
         flags = {name: fields.pop(name) for name in FLAGS}
         return fields | flags
 

@@ -78,6 +78,7 @@ class UavConnectionSerializer(serializers.Serializer):
     is_armed = serializers.BooleanField(allow_null=True)
     is_in_air = serializers.BooleanField(allow_null=True)
     battery_percent = serializers.FloatField(allow_null=True)
+    waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route that it flies to, or is at")
     loaded_approval = serializers.UUIDField(allow_null=True, help_text="of the mission that is on it, as it was seen")
     loaded_flight = serializers.IntegerField(allow_null=True)
     server_time = serializers.DateTimeField(help_text="to tell an age by, whatever the reader's clock says")
@@ -96,6 +97,7 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "is_armed": link.is_armed,
         "is_in_air": link.is_in_air,
         "battery_percent": uav.battery_percent,
+        "waypoint_sequence": link.waypoint_sequence,
         "loaded_approval": link.loaded_approval,
         "loaded_flight": link.loaded_flight,
         "server_time": now,

@@ -26,9 +26,10 @@ def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:
     newest = newest_of(uav_id)
     if newest is None or newest.received_at != received_at:
         return
-    before = UavLink.objects.filter(uav_id=uav_id).values_list("mission_item", flat=True).first()
+    waypoint = newest.waypoint_sequence
+    before = UavLink.objects.filter(uav_id=uav_id).values_list("waypoint_sequence", flat=True).first()
     UavLink.objects.filter(uav_id=uav_id).update(
-        mode=newest.mode, is_armed=newest.is_armed, is_in_air=newest.is_in_air, mission_item=newest.mission_item
+        mode=newest.mode, is_armed=newest.is_armed, is_in_air=newest.is_in_air, waypoint_sequence=waypoint
     )
-    if newest.mission_id is not None and newest.mission_item is not None and newest.mission_item != before:
-        mark_waypoint_reached(mission_id=newest.mission_id, uav_id=uav_id, waypoint=newest.mission_item)
+    if newest.mission_id is not None and waypoint is not None and waypoint != before:
+        mark_waypoint_reached(mission_id=newest.mission_id, uav_id=uav_id, waypoint=waypoint)

@@ -12,6 +12,7 @@ from inspection.selectors import ground_heights_m
 from missions.models import MissionState
 from missions.services.reports import ReportedPosition, note_reported_positions
 from telemetry.decoding.measurement import Measurement, believable
+from telemetry.services.waypoints import LoadedList, lists_on
 
 FUTURE_S = 60.0  # findings: stored, but never shown as the latest
 FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
@@ -57,7 +58,8 @@ class _Row:
 def store_records(records: Sequence[NewRecord]) -> StoredCount:
     """Stores what is new, in the order given, and moves the UAVs' reported positions forward. Safe to call again with the same records."""
     known = _missions_of_known({record.uav_id for record in records})
-    kept = [_attributed(record, known[record.uav_id]) for record in records if record.uav_id in known]
+    lists = lists_on({record.uav_id for record in records if record.measurement.mission_item is not None})
+    kept = [_attributed(record, known[record.uav_id], lists.get(record.uav_id)) for record in records if record.uav_id in known]
     if not kept:
         return StoredCount(of_unknown_uavs=len(records))
     rows = _flagged(kept, _newest_measured(kept))
@@ -90,11 +92,15 @@ def _missions_of_known(uav_ids: set[int]) -> dict[int, UUID | None]:
     return known
 
 
-def _attributed(record: NewRecord, mission_id: UUID | None) -> NewRecord:
+def _attributed(record: NewRecord, flies_mission: UUID | None, loaded: LoadedList | None) -> NewRecord:
     measurement = believable(record.measurement)
-    if measurement is record.measurement and (record.mission_id is not None or mission_id is None):
+    mission_id = record.mission_id or flies_mission
+    if loaded is not None and measurement.waypoint_sequence is None:
+        waypoint = loaded.waypoint_at(measurement.mission_item, record.measured_at, mission_id)
+        measurement = measurement if waypoint is None else replace(measurement, waypoint_sequence=waypoint)
+    if measurement is record.measurement and mission_id == record.mission_id:
         return record
-    return replace(record, measurement=measurement, mission_id=record.mission_id or mission_id)
+    return replace(record, measurement=measurement, mission_id=mission_id)
 
 
 def _newest_measured(records: Sequence[NewRecord]) -> dict[int, datetime]:
@@ -157,7 +163,10 @@ def _agl_m(records: Sequence[NewRecord]) -> list[float | None]:
     ]
 
 
-_TYPES = {"mode": "text", "is_armed": "bool", "is_in_air": "bool", "gps_fix": "int2", "satellites": "int2", "mission_item": "int4"}
+_TYPES = {
+    "mode": "text", "is_armed": "bool", "is_in_air": "bool", "gps_fix": "int2", "satellites": "int2",
+    "mission_item": "int4", "waypoint_sequence": "int4",
+}  # fmt: skip
 _MEASURED = tuple(field.name for field in fields(Measurement))
 _STORED_AS_THEY_ARE = tuple(name for name in _MEASURED if name not in {"longitude_deg", "latitude_deg"})
 _COLUMNS: dict[str, str] = {

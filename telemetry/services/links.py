@@ -6,10 +6,12 @@ it bears the same name: it is the same gateway, started again.
 
 import json
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from django.db import connection
+
+from telemetry.services.waypoints import lists_on
 
 UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
 
@@ -28,7 +30,10 @@ class Lease:
 
 @dataclass(frozen=True)
 class LinkState:
-    """What a gateway knows of a vehicle; the fields are UavLink's, but for `heard_ago_s`: clocks of gateways do not matter."""
+    """What a gateway knows of a vehicle; the fields are UavLink's, but for `heard_ago_s`: clocks of gateways do not matter.
+
+    `waypoint_sequence` is worked out when it is saved.
+    """
 
     uav_id: int
     heard_ago_s: float
@@ -48,12 +53,13 @@ class LinkState:
     signing: dict[str, Any] = field(default_factory=dict)
     losses: dict[str, int] = field(default_factory=dict)
     limits: dict[str, float] = field(default_factory=dict)
+    waypoint_sequence: int | None = None
 
 
 TAKE = """
 INSERT INTO telemetry_uavlink
-    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses, limits)
-SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}', '{}'
+    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, loaded_doubt, boots, signing, losses, limits)
+SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '', '[]', '{}', '{}', '{}'
 FROM missions_uav uav WHERE uav.id = ANY(%(uav_ids)s) ORDER BY uav.id
 ON CONFLICT (uav_id) DO UPDATE SET holder = excluded.holder, lease_expires_at = excluded.lease_expires_at
 WHERE telemetry_uavlink.holder IN ('', excluded.holder)
@@ -93,7 +99,7 @@ def release_leases(*, holder: str) -> None:
 
 
 _TYPES = {
-    "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4",
+    "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4", "waypoint_sequence": "int4",
     "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb",
     "address": "text", "autopilot": "text", "firmware": "text", "mode": "text",
 }  # fmt: skip
@@ -113,6 +119,11 @@ def save_links(*, states: Sequence[LinkState], holder: str) -> None:
     """Only of UAVs that the gateway still holds."""
     if not states:
         return
+    lists = lists_on({state.uav_id for state in states if state.mission_item is not None})
+    states = [
+        replace(state, waypoint_sequence=lists[state.uav_id].waypoint_of(state.mission_item)) if state.uav_id in lists else state
+        for state in states
+    ]
     columns = [[_stored(getattr(state, name), kind) for state in states] for name, kind in _COLUMNS.items()]
     with connection.cursor() as cursor:
         cursor.execute(_SAVE, [*columns, holder])

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from uuid import UUID
 
 from django.db import transaction
+from django.db.models.functions import Now
 
 from missions.models import UavCommand
 from missions.services.commands import note_applied, note_failed, note_sent
@@ -68,7 +69,9 @@ def fail_loading(carried: Carried, before: Loaded | None, code: str, words: str)
 
 
 def _write(uav_id: int, loaded: Loaded | None) -> None:
-    values = {"loaded_sha256": "", "loaded_approval": None, "loaded_flight": None}
-    if loaded is not None:
-        values = {"loaded_sha256": loaded.sha256, "loaded_approval": loaded.approval, "loaded_flight": loaded.flight}
-    UavLink.objects.filter(uav=uav_id).update(**values)
+    link = UavLink.objects.filter(uav=uav_id)
+    if loaded is None:
+        link.update(loaded_sha256="", loaded_approval=None, loaded_flight=None, loaded_read_at=None, loaded_doubt="")
+    else:
+        named = {"loaded_sha256": loaded.sha256, "loaded_approval": loaded.approval, "loaded_flight": loaded.flight}
+        link.update(**named, loaded_read_at=Now(), loaded_doubt="")

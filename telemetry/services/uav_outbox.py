@@ -6,6 +6,7 @@ from typing import Any
 from uuid import UUID
 
 from django.db import transaction
+from django.utils import timezone
 
 from missions.given_selectors import Given, given_to
 from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
@@ -114,5 +115,7 @@ def _hold(command: UavCommand, load: ApprovedLoad | None) -> None:
             "loaded_sha256": load.content_sha256 if load else "",
             "loaded_approval": load.approval if load else None,
             "loaded_flight": load.flight if load else None,
+            "loaded_read_at": timezone.now() if load else None,
+            "loaded_doubt": "",
         },
     )

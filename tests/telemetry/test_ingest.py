@@ -30,7 +30,7 @@ def test_every_value_is_stored(uav):
         "velocity_north_mps": 1.5, "velocity_east_mps": -2.5, "velocity_down_mps": 0.5, "airspeed_mps": 4.5, "roll_deg": -5.5,
         "pitch_deg": 6.5, "heading_deg": 7.5, "battery_percent": 80.5, "battery_v": 12.5, "battery_a": 9.5, "mode": "Mission",
         "is_armed": True, "is_in_air": False, "link_quality_percent": 99.5, "gps_fix": 3, "satellites": 14, "hdop": 0.75,
-        "wind_north_mps": 1.25, "wind_east_mps": -3.25, "mission_item": 4,
+        "wind_north_mps": 1.25, "wind_east_mps": -3.25, "mission_item": 4, "waypoint_sequence": 3,
     }  # fmt: skip
     assert store_records([record(uav, 1, **told)]) == StoredCount(stored=1)
     row = TelemetryRecord.objects.get()
@@ -122,13 +122,14 @@ def test_a_record_is_of_the_mission_that_is_flown(uav):
 def test_what_cannot_be_is_not_believed(uav):
     wild = {
         "longitude_deg": 10.0, "latitude_deg": nan, "altitude_amsl_m": inf, "velocity_down_mps": -inf, "battery_percent": 101.0,
-        "link_quality_percent": -1.0, "satellites": 70_000, "mission_item": -5, "gps_fix": -1, "hdop": nan, "heading_deg": 361.0,
-        "mode": "a\0b" + "c" * 40,
+        "link_quality_percent": -1.0, "satellites": 70_000, "mission_item": -5, "waypoint_sequence": -1, "gps_fix": -1, "hdop": nan,
+        "heading_deg": 361.0, "mode": "a\0b" + "c" * 40,
     }  # fmt: skip
     store_records([record(uav, 1, **wild)])
     row = TelemetryRecord.objects.get()
-    unknown = ["position", "altitude_amsl_m", "velocity_down_mps", "battery_percent", "link_quality_percent", "satellites", "mission_item"]
-    assert [getattr(row, name) for name in [*unknown, "gps_fix", "hdop"]] == [None] * 9
+    unknown = ["position", "altitude_amsl_m", "velocity_down_mps", "battery_percent", "link_quality_percent", "satellites"]
+    counted = ["mission_item", "waypoint_sequence", "gps_fix", "hdop"]
+    assert [getattr(row, name) for name in [*unknown, *counted]] == [None] * 10
     assert (row.heading_deg, row.mode) == (1.0, "ab" + "c" * 28)
     uav.refresh_from_db()
     assert uav.located_at == at(-100)

@@ -29,7 +29,7 @@ def test_every_value_is_stored_as_it_was_sent(kite: UavClient) -> None:
         "altitude_amsl_m": 100.5, "altitude_relative_m": 30.5, "altitude_agl_m": 29.5, "velocity_north_mps": 1.5, "velocity_east_mps": -2.5,
         "velocity_down_mps": 0.5, "airspeed_mps": 4.5, "roll_deg": -5.5, "pitch_deg": 6.5, "heading_deg": 7.5, "battery_percent": 80.5,
         "battery_v": 12.5, "battery_a": 9.5, "mode": "Mission", "is_armed": True, "is_in_air": False, "link_quality_percent": 99.5,
-        "gps_fix": 3, "satellites": 14, "hdop": 0.75, "wind_north_mps": 1.25, "wind_east_mps": -3.25, "mission_item": 4,
+        "gps_fix": 3, "satellites": 14, "hdop": 0.75, "wind_north_mps": 1.25, "wind_east_mps": -3.25, "waypoint_sequence": 4,
     }  # fmt: skip
     measured_at = timezone.now() - timedelta(seconds=3)
     answer = kite.report(report(7, measured_at=measured_at.isoformat(), **told))
@@ -88,6 +88,11 @@ def test_a_uav_that_was_moved_far_away_is_believed(kite: UavClient) -> None:
 def test_a_height_without_a_reference_is_told(kite: UavClient) -> None:
     for name in ("altitude_m", "altitude"):
         assert faults(kite, **{name: 40.0}) == [name]
+
+
+def test_an_item_of_an_autopilots_list_is_no_waypoint(kite: UavClient) -> None:
+    answer = kite.report(report(1, mission_item=3)).json()
+    assert "waypoint_sequence" in answer["refused"][0]["faults"]["mission_item"]
 
 
 @pytest.mark.parametrize(

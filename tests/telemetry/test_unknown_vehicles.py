@@ -136,12 +136,12 @@ def test_a_uav_that_was_never_heard_says_so(client: Client) -> None:
 
 def test_a_companions_newest_report_says_how_the_uav_does(client: Client) -> None:
     kite = linked_uav()
-    kite.report(report(2, mode="Mission", is_armed=True, is_in_air=True, battery_percent=64.0, mission_item=3))
+    kite.report(report(2, mode="Mission", is_armed=True, is_in_air=True, battery_percent=64.0, waypoint_sequence=3))
     kite.report(report(1, mode="Standby", is_in_air=False, measured_at=seconds_ago(600)))
     kite.report(report(3, mode="Nonsense", measured_at=seconds_ago(-86_400)))
     told = client.get(f"/api/v1/uavs/{kite.uav.pk}/connection").json()
     assert (told["link"], told["heard_by"], told["mode"], told["is_in_air"]) == ("http", "http", "Mission", True)
-    assert told["battery_percent"] == 64.0
+    assert (told["battery_percent"], told["waypoint_sequence"]) == (64.0, 3)
     assert told["heard_at"] <= told["server_time"]
 
 
@@ -157,6 +157,6 @@ def test_what_a_companion_flies_to_is_in_progress() -> None:
     visits = list(
         mission.routes.get().waypoints.filter(target__isnull=False).order_by("sequence").values_list("sequence", "target__sequence")
     )
-    kite.report(report(1, mission_item=visits[0][0]))
+    kite.report(report(1, waypoint_sequence=visits[0][0]))
     state = dict(mission.targets.values_list("sequence", "state"))
     assert (state[visits[0][1]], state[visits[-1][1]]) == (TargetState.IN_PROGRESS, TargetState.PENDING)

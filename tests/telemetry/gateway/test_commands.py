@@ -113,6 +113,9 @@ def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp
 
         flying.say(mavlink.MAVLink_mission_current_message(len(items) - 1 + offset))
         wait_for(lambda: session.state.mission_item == len(items) - 1 + offset)
+        last = {"mission_item": len(items) - 1 + offset, "waypoint_sequence": items[-1].waypoint}
+        wait_for(lambda: mission.records.filter(**last).exists(), "a record at the last waypoint")
+        wait_for(lambda: UavLink.objects.filter(uav=uav, **last).exists(), "the link at the last waypoint")
         assert mission.routes.get().flights_flown == 0
         vehicle.is_in_air = vehicle.is_armed = False
         wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end")

@@ -1,0 +1,1 @@
+"""Where a UAV is between two reports, and how sure we are."""

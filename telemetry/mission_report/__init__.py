@@ -1,0 +1,1 @@
+"""Flown against planned, and what came of it."""
