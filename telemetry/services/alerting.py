@@ -9,7 +9,8 @@ from telemetry.alerting.book import Closed, Opened, changes
 from telemetry.alerting.limits import InvalidLimits, Limits, limits_of
 from telemetry.alerting.memory import Memory
 from telemetry.alerting.order import CODES, DETECTORS
-from telemetry.alerting.situation import LinkFacts, Situation
+from telemetry.alerting.situation import Situation
+from telemetry.alerting.surroundings import LinkFacts
 from telemetry.alerting.watched import WatchedUav
 from telemetry.models import UavLink
 from telemetry.selectors.alerts import open_alerts_of, stated_limits
