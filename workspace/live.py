@@ -29,8 +29,8 @@ def job_group(job_id: UUID | str) -> str:
     return f"job.{job_id}"
 
 
-def live_channel(organisation_id: int) -> str:
-    """Redis' own channel: hints of telemetry are too many for a group of sockets each."""
+def live_channel(organisation_id: int | str) -> str:
+    """Redis' own channel: one a process listens to all of them, where a group of Channels would be one a socket. "*" stands for any."""
     return f"spanwise-live.organisation.{organisation_id}"
 
 
