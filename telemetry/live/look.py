@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from hashlib import sha256
 from uuid import UUID
 
 from telemetry.live.objects import SAME_IN_ALL, language_of, texts_of
@@ -35,6 +36,20 @@ def look(organisation_id: int, missions: Collection[UUID], languages: Collection
     shown = shown_live(organisation_id, missions)
     texts = {language: _texts(shown, language, before.texts.get(language, {})) for language in {SAME_IN_ALL, *languages}}
     return Look(shown, texts)
+
+
+def look_once(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> Look:
+    """Of one page alone; without texts where it is what has the ETag `known`."""
+    shown = shown_live(organisation_id, [] if mission is None else [mission])
+    seen = Look({key: entry for key, entry in shown.items() if entry.is_for(mission)})
+    if known and known == etag_of(seen, language):
+        return seen
+    return Look(seen.shown, {each: _texts(seen.shown, each, {}) for each in {SAME_IN_ALL, language}})
+
+
+def etag_of(seen: Look, language: str) -> str:
+    versions = sorted((*key, entry.version) for key, entry in seen.shown.items())
+    return f'"{sha256(repr((language, versions)).encode()).hexdigest()[:32]}"'
 
 
 def changed_between(before: Look, now: Look, mission: UUID | None) -> set[Key]:
