@@ -20,6 +20,7 @@ from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
+from telemetry.gateway.own_return import OwnReturn
 from telemetry.gateway.peers import Peer
 from telemetry.ground_station.ends import AUTOPILOT
 from telemetry.ground_station.flavour import MISSION_MODES, Flavour
@@ -67,6 +68,7 @@ class Session:
     is_unsaved: bool = False
     has_signed: bool = False  # since somebody asked last
     limit_questions_left: int = LIMIT_QUESTIONS
+    own_return: OwnReturn = field(default_factory=OwnReturn)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
@@ -179,6 +181,7 @@ class Session:
         if not _is_within(self._position_s, now_s, POSITIONS_MISSING_S) and not _is_within(self._asked_s, now_s, ASK_AGAIN_S):
             self._asked_s = now_s
             self.send(greeting.requests(self.uav.system, flavour), now_s)
+        self.send(self.own_return.questions(self.state, time.monotonic()), now_s)
         questions = self._questions()
         if questions and not _is_within(self._questioned_s, now_s, self._question_again_s):
             self._questioned_s = now_s
