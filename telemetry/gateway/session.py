@@ -145,8 +145,9 @@ class Session:
         return self.lease is not None and time.monotonic() < self.held_until_s
 
     def is_served(self, now_s: float, within_s: float) -> bool:
-        """Whether it is ours and there, and has said what it is."""
-        return self.is_held and _is_within(self.heard_s, now_s, within_s) and self.state.flavour is not None
+        """Whether it is ours and there, and says how it is: after an outage it may have been armed, or be another one."""
+        is_here = _is_within(self.heard_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
+        return self.is_held and is_here and self.state.flavour is not None
 
     def unsettled_until_s(self, settling_s: float) -> float | None:
         """Until when what was sent before may still arrive; monotonic."""

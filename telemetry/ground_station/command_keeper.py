@@ -75,6 +75,8 @@ class CommandKeeper:
                 return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
             if self._is_already(plan):
                 return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
+            if plan.goal is None and self._unsettled_until_s is not None:
+                yield Pause(self._unsettled_until_s)  # else a late yes to an earlier one would be taken for the answer
             outcome = yield from self._tried(plan)
             done += 1
             if outcome.state is CommandEnd.APPLIED and self.order in STOPS and self._unsettled_until_s is not None:

@@ -309,3 +309,17 @@ def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, t
         for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
             session.receive(frame, peer, time.time())
     assert session.flown == told
+
+
+def test_a_vehicle_that_comes_back_must_say_how_it_is_before_anything_is_sent(monkeypatch):
+    """It may have been armed meanwhile: a new list would change where it flies."""
+    session = Session(KnownUav(1, 1, "Tern", 7, True, None, None), deque(), link_id=1)
+    session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 3_600.0)
+    writer, peer, began_s = FrameWriter(7, 1), SimpleNamespace(name="udp", send=lambda _: None), time.monotonic()
+    heartbeat = mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3)
+    attitude = mavlink.MAVLink_attitude_message(1_000, 0, 0, 0, 0, 0, 0)
+    for at_s, message, is_served in ((0.0, heartbeat, True), (600.0, attitude, False), (600.5, heartbeat, True)):
+        monkeypatch.setattr(time, "monotonic", lambda at_s=at_s: began_s + at_s)
+        for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
+            session.receive(frame, peer, 1.7e9 + at_s)
+        assert session.is_served(1.7e9 + at_s, 5.0) is is_served
