@@ -11,8 +11,8 @@ from uuid import UUID
 
 from django.conf import settings
 from django.db import connection, transaction
-from django.db.models import Max, Q, QuerySet
-from django.db.models.functions import Coalesce, Now
+from django.db.models import F, Max, Q, QuerySet
+from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
 
 from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
@@ -160,6 +160,18 @@ def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
 def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
     """So many items of an upload are over."""
     return bool(_held(command_id, attempt, holder).update(progress={"done": done, "total": total}))
+
+
+def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
+    """So many items of what is on board were read, before it is sent: from now on it is wanted as long as it was when it was given.
+
+    That is put off by `read_back_s` at most. False once nobody wants it any more.
+    """
+    rules = settings.COMMAND_RULES
+    latest = F("created_at") + timedelta(seconds=rules.motion_s + rules.read_back_s)
+    put_off = Greatest(F("expires_at"), Least(Now() + timedelta(seconds=rules.motion_s), latest))
+    held = _held(command_id, attempt, holder).filter(sent_at=None, expires_at__gt=Now())
+    return bool(held.update(progress={"done": done, "total": total}, expires_at=put_off))
 
 
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
