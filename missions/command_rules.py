@@ -50,8 +50,11 @@ def axes_overtaken_by(kind: str) -> tuple[Axis, ...]:
 def may_overtake(kind: str, unfinished: str) -> bool:
     """Whether one of this kind takes the place of an unfinished one: of what makes a UAV safe only what does so as firmly.
 
-    An abort that waits for its link is not called off by a hold that is given after it.
+    An abort that waits for its link is not called off by a hold that is given after it. A pause is called off by going on, and by nothing
+    else that moves a UAV.
     """
+    if unfinished == "pause" and kind in SETS_IN_MOTION:
+        return kind == "resume"
     return SAFETY_RANKS.get(kind, 0) >= SAFETY_RANKS.get(unfinished, 0)
 
 

@@ -22,6 +22,7 @@ from missions.services.outbox import (
     note_released,
     note_sent,
     queue_command,
+    release_claims_of_others,
     renew_claims,
 )
 
@@ -37,6 +38,7 @@ __all__ = [
     "note_released",
     "note_sent",
     "queue_command",
+    "release_claims_of_others",
     "renew_claims",
 ]
 

@@ -11,7 +11,7 @@ from django.db import transaction
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
 from missions.selectors import approval_in_force
-from missions.services.approval import change_state, held_mission
+from missions.services.approval import change_state
 from missions.services.missions import note
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
@@ -26,7 +26,7 @@ class FlightEnd(StrEnum):
 def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
     """A UAV flies its part. Returns whether the mission became active by it."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state != MissionState.DISPATCHED:
             return False
         change_state(held, MissionState.ACTIVE, None, "start", {"uav": uav_id})
@@ -36,7 +36,7 @@ def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
 def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> None:
     """A UAV is at a waypoint of its route, by its place in it: the target there is in progress, those before it are done."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state not in ON_ITS_WAY:
             return
         rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, waypoints__kind=WaypointKind.TARGET)
@@ -52,7 +52,7 @@ def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> No
 def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
     """What a UAV reports of a target, by its place in the mission, is the last word on it: complete, skipped or failed."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state in {MissionState.DRAFT, MissionState.PLANNED, MissionState.APPROVED}:
             return False
         return bool(InspectionTarget.objects.filter(mission=held, sequence=target).update(state=state))
@@ -66,7 +66,7 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
     those on one that failed have failed. Returns the mission's state.
     """
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         route = Route.objects.select_for_update().filter(mission=held, mission_uav__uav=uav_id, geometry__isnull=False).first()
         if held.state not in ON_ITS_WAY or route is None or route.has_failed:
             return MissionState(held.state)

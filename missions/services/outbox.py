@@ -142,6 +142,14 @@ def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
     return attempts
 
 
+def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
+    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many."""
+    if not uav_ids:
+        return 0
+    held = UavCommand.objects.filter(uav__in=uav_ids, link=LinkKind.MAVLINK, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+    return held.exclude(holder__in=["", holder]).update(lease_expires_at=None)
+
+
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
     still_wanted = Q(expires_at=None) | Q(expires_at__gt=Now())
