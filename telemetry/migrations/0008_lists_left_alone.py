@@ -6,7 +6,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('telemetry', '0006_live_monitoring'),
+        ('telemetry', '0007_alert_words'),
     ]
 
     operations = [
