@@ -116,6 +116,9 @@ class MissionUav(models.Model):
         blank=True,
         help_text="names of the figures that are said for this mission; the others were the UAV's when it was made",
     )
+    fleet_figures = models.JSONField(
+        default=dict, db_default={}, blank=True, help_text="of the own figures: what the UAV had for them when they were said"
+    )
 
     class Meta:
         ordering = ["sequence"]

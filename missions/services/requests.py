@@ -1,5 +1,6 @@
 """What is asked of the planner, as plain values; stored as JSON while a job waits."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -28,6 +29,7 @@ class UavRequest:
     performance: Performance = NO_BATTERY
     sorties: int = 1  # flights that it makes at most; several only where it returns
     own_figures: tuple[str, ...] = field(default=(), compare=False)  # of a stored UAV: those that are said for this mission
+    fleet_figures: Mapping[str, Any] = field(default_factory=dict, compare=False)  # of the own figures: what the stored UAV has instead
 
 
 @dataclass(frozen=True)
