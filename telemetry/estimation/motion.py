@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from telemetry.estimation.belief import CHI2_95, Belief, reach2_of, round_covariance
 from telemetry.estimation.pace import Pace, ahead, velocity
 from telemetry.estimation.phases import Phase
-from telemetry.estimation.profile import Profile
+from telemetry.estimation.profile import LANDING_MPS, SLOW_BELOW_M, Profile
 
 FloatArray = NDArray[np.float64]
 
@@ -18,7 +18,8 @@ ASIDE_S = 8.0  # how long it stays beside its route
 TURNS_S = 1.6  # how long it keeps a velocity that is not its route's
 OFF_ROUTE_M = 1.3  # standard deviation across the route, each way
 OFF_ROUTE_S = 4.0  # until it is as far as that
-OFF_HEIGHT_M, CLIMB_SHARE = 0.5, 0.25
+OFF_HEIGHT_M = 0.5
+BESIDE_SHARE = 0.3  # of what a velocity beside the route's makes, that may be otherwise
 SPEED_SD_MPS, SPEED_SHARE, SPEED_S = 0.35, 0.05, 4.0
 BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
@@ -89,17 +90,13 @@ def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking
     gone = -math.expm1(-after_s / keeps_s) if keeps_s else 0.0
     left = 1.0 - gone if keeps_s else 0.0
     variance_m2 = SHARED_M**2 + state.variance_m2 + drift_m**2 + (braking_m * gone) ** 2
-    is_landing = state.phase is Phase.LAND
-    height_m = state.height_m
-    if height_m is not None:
-        height_m += state.up_mps * (after_s if is_landing else keeps_s * gone)
-        height_m = max(height_m, min(state.height_m or 0.0, 0.0)) if is_landing else height_m
-    height_sd_m = math.sqrt(
-        SHARED_HEIGHT_M**2
-        + state.height_variance_m2
-        + OFF_HEIGHT_M**2 * gone
-        + (up_sd_mps * (after_s if is_landing else keeps_s * gone)) ** 2
-    )
+    height_m, up_mps, kept_s = state.height_m, state.up_mps * left, keeps_s * gone
+    if height_m is not None and state.phase is Phase.LAND:
+        height_m, up_mps = _sunk(height_m, -state.up_mps, after_s)
+        kept_s = after_s if height_m > 0 else 0.0
+    elif height_m is not None:
+        height_m += state.up_mps * kept_s
+    height_sd_m = math.sqrt(SHARED_HEIGHT_M**2 + state.height_variance_m2 + OFF_HEIGHT_M**2 * gone + (up_sd_mps * kept_s) ** 2)
     speed_sd_mps = math.hypot(SPEED_SD_MPS, drift_m / max(after_s, 1.0) + 0.3 * state_speed(state) * gone * left)
     return Belief(
         state.east_m + state.east_mps * keeps_s * gone,
@@ -107,7 +104,7 @@ def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking
         height_m,
         state.east_mps * left,
         state.north_mps * left,
-        state.up_mps if is_landing else state.up_mps * left,
+        up_mps,
         round_covariance(variance_m2),
         CHI2_95,
         height_sd_m,
@@ -115,61 +112,60 @@ def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking
     )
 
 
+def _sunk(height_m: float, sinks_mps: float, after_s: float) -> tuple[float, float]:
+    """Height and speed upwards of one that lands: at its speed, slowly near the ground, and not below it."""
+    fast_mps = max(sinks_mps, LANDING_MPS)
+    fast_s = min(max(height_m - SLOW_BELOW_M, 0.0) / fast_mps, after_s)
+    below_m = height_m - fast_mps * fast_s - LANDING_MPS * (after_s - fast_s)
+    if below_m <= 0.0:
+        return min(height_m, 0.0), 0.0
+    return below_m, -fast_mps if fast_s == after_s else -LANDING_MPS
+
+
 def _along(state: State, track: Track, after_s: float) -> Belief:
-    """On its profile, with what it was beside it dying away."""
+    """On its profile, with what it was beside it dying away: from each place on it, it is at the place where it was seen."""
     profile, now = track.profile, ahead(track.profile, track.pace, 0.0)
     later = ahead(profile, track.pace, after_s) if after_s > 0 else now
-    here = _mean_place(profile, now.clock, now.reading_s, now.weight)
-    east, north, height = (
-        np.interp(later.reading_s, later.clock, column) for column in (profile.east_m, profile.north_m, profile.height_m)
-    )
-    velocity_now = _mean_velocity(profile, now.clock, now.reading_s, now.weight)
-    each_east_mps, each_north_mps, each_up_mps = velocity(profile, later.clock, later.reading_s)
     weight = later.weight
     aside, turning = math.exp(-after_s / ASIDE_S), math.exp(-after_s / TURNS_S)
     turned_s = TURNS_S * (1.0 - turning)
-    east_mps, north_mps, up_mps = (float(weight @ each) for each in (each_east_mps, each_north_mps, each_up_mps))
-    middle = (float(weight @ east), float(weight @ north), float(weight @ height))
-    beside_mps = (state.east_mps - velocity_now[0], state.north_mps - velocity_now[1], state.up_mps - velocity_now[2])
-    beside = (
-        (state.east_m - here[0]) * aside + beside_mps[0] * turned_s,
-        (state.north_m - here[1]) * aside + beside_mps[1] * turned_s,
-    )
+    at_report = np.interp(track.pace.nominal_s, profile.nominal_s, now.clock)
+    seen = (state.east_m, state.north_m, state.height_m)
+    columns = (profile.east_m, profile.north_m, profile.height_m)
+    velocity_now = velocity(profile, now.clock, at_report)
+    each_mps = velocity(profile, later.clock, later.reading_s)
+    places, speeds, beside_mps = [], [], []
+    for place, column, told_mps, then, now_mps in zip(
+        seen, columns, (state.east_mps, state.north_mps, state.up_mps), each_mps, velocity_now, strict=True
+    ):
+        besides_mps = told_mps - float(now_mps.mean())
+        each = np.interp(later.reading_s, later.clock, column) + besides_mps * turned_s
+        if place is not None:
+            each += np.repeat(place - np.interp(at_report, now.clock, column), len(weight) // len(at_report)) * aside
+        places.append(each)
+        speeds.append(float(weight @ then) + besides_mps * turning)
+        beside_mps.append(besides_mps)
+    middle = [float(weight @ each) for each in places]
     wandered = -math.expm1(-after_s / OFF_ROUTE_S)
-    round_m2 = SHARED_M**2 + state.variance_m2 + OFF_ROUTE_M**2 * wandered + (0.3 * math.hypot(*beside_mps[:2]) * turned_s) ** 2
-    off_east, off_north = east - middle[0], north - middle[1]
-    spread = np.array([[weight @ off_east**2, weight @ (off_east * off_north)], [0.0, weight @ off_north**2]])
-    spread[1, 0] = spread[0, 1]
-    covariance = spread + round_covariance(round_m2)
-    each_mps = np.hypot(each_east_mps, each_north_mps)
-    speed_spread = float(weight @ (each_mps - float(weight @ each_mps)) ** 2)
+    turning_m = BESIDE_SHARE * math.hypot(*beside_mps[:2]) * turned_s
+    round_m2 = SHARED_M**2 + state.variance_m2 + OFF_ROUTE_M**2 * wandered + turning_m**2
+    off_east, off_north = places[0] - middle[0], places[1] - middle[1]
+    across = float(weight @ (off_east * off_north))
+    covariance = np.array([[weight @ off_east**2, across], [across, weight @ off_north**2]]) + round_covariance(round_m2)
+    level_mps = np.hypot(each_mps[0], each_mps[1])
+    mean_mps = float(weight @ level_mps)
     settled = -math.expm1(-after_s / SPEED_S)
-    height_m = None
-    if state.height_m is not None:
-        height_m = middle[2] + (state.height_m - here[2]) * aside + beside_mps[2] * turned_s
-    height_m2 = SHARED_HEIGHT_M**2 + state.height_variance_m2 + OFF_HEIGHT_M**2 * wandered + (CLIMB_SHARE * beside_mps[2] * turned_s) ** 2
+    height_m2 = SHARED_HEIGHT_M**2 + state.height_variance_m2 + OFF_HEIGHT_M**2 * wandered + (BESIDE_SHARE * beside_mps[2] * turned_s) ** 2
     return Belief(
-        middle[0] + beside[0],
-        middle[1] + beside[1],
-        height_m,
-        east_mps + beside_mps[0] * turning,
-        north_mps + beside_mps[1] * turning,
-        up_mps + beside_mps[2] * turning,
+        middle[0],
+        middle[1],
+        None if state.height_m is None else middle[2],
+        speeds[0],
+        speeds[1],
+        speeds[2],
         covariance,
         reach2_of(off_east, off_north, weight, round_m2, covariance),
-        math.sqrt(height_m2 + float(weight @ (height - middle[2]) ** 2)),
-        math.sqrt(SPEED_SD_MPS**2 + speed_spread + (SPEED_SHARE * float(weight @ each_mps) * settled) ** 2),
+        math.sqrt(height_m2 + float(weight @ (places[2] - middle[2]) ** 2)),
+        math.sqrt(SPEED_SD_MPS**2 + float(weight @ (level_mps - mean_mps) ** 2) + (SPEED_SHARE * mean_mps * settled) ** 2),
         float(np.interp(float(weight @ later.reading_s), later.clock, profile.nominal_s)),
     )
-
-
-def _mean_place(profile: Profile, clock: FloatArray, reading_s: FloatArray, weight: FloatArray) -> tuple[float, float, float]:
-    east, north, height = (
-        float(weight @ np.interp(reading_s, clock, column)) for column in (profile.east_m, profile.north_m, profile.height_m)
-    )
-    return east, north, height
-
-
-def _mean_velocity(profile: Profile, clock: FloatArray, reading_s: FloatArray, weight: FloatArray) -> tuple[float, float, float]:
-    east, north, up = (float(weight @ each) for each in velocity(profile, clock, reading_s))
-    return east, north, up

@@ -27,7 +27,10 @@ GUST_SD, GUST_S = 0.05, 12.0  # of speed, and for how long one lasts
 SMALLEST_S = 0.06
 NOW_S = 25.0  # for how long the speed of this moment tells of what comes
 NOW_SHARE = 0.8
-OFF_M = 6.0  # a standard deviation of the distance from the profile, corners cut among it
+EVEN_S = (-4.0, -2.0, 2.0)  # from now: where it must fly as it does now
+LEAST_EVEN_MPS = 1.0
+ALONG_M, OFF_M = 1.5, 6.0  # standard deviations of a report from the profile, along it and across; corners are cut
+NOT_EVEN = 0.03  # how often it is off along it as well
 FAR_M = 40.0
 OFF_MPS = 2.0
 NOT_SAID = 0.02  # likelihood where the vehicle says that it flies to another waypoint
@@ -63,6 +66,7 @@ class Seen:
     north_m: float | None
     east_mps: float | None
     north_mps: float | None
+    up_mps: float | None
     sequence: int | None
 
 
@@ -131,18 +135,22 @@ def _at(reading_s: FloatArray, clock: FloatArray, column: FloatArray) -> FloatAr
 
 
 def velocity(profile: Profile, clock: FloatArray, reading_s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """East, north and up [m/s] by the profile, over a second around each reading."""
-    before, after = reading_s - 0.5, reading_s + 0.5
+    """East, north and up [m/s] by the profile, over a second around each reading; over the half of it that there is at the beginning."""
+    before, after = np.maximum(reading_s - 0.5, clock[0]), reading_s + 0.5
     columns = (profile.east_m, profile.north_m, profile.height_m)
-    east, north, up = (_at(after, clock, column) - _at(before, clock, column) for column in columns)
+    east, north, up = ((_at(after, clock, column) - _at(before, clock, column)) / (after - before) for column in columns)
     return east, north, up
 
 
 def _likelihood(profile: Profile, clock: FloatArray, grid_s: FloatArray, sight: Seen) -> FloatArray:
     found = np.ones_like(grid_s)
     if sight.east_m is not None and sight.north_m is not None:
-        gap_m2 = (_at(grid_s, clock, profile.east_m) - sight.east_m) ** 2 + (_at(grid_s, clock, profile.north_m) - sight.north_m) ** 2
-        found *= np.exp(-0.5 * gap_m2 / OFF_M**2) + 1e-5 * np.exp(-0.5 * gap_m2 / FAR_M**2)
+        off_east, off_north = _at(grid_s, clock, profile.east_m) - sight.east_m, _at(grid_s, clock, profile.north_m) - sight.north_m
+        gap_m2 = off_east**2 + off_north**2
+        east, north, _ = velocity(profile, clock, grid_s)
+        along_m2 = (off_east * east + off_north * north) ** 2 / np.maximum(east**2 + north**2, 1.0)
+        near = np.exp(-0.5 * (along_m2 / ALONG_M**2 + np.maximum(gap_m2 - along_m2, 0.0) / OFF_M**2))
+        found *= near + NOT_EVEN * np.exp(-0.5 * gap_m2 / OFF_M**2) + 1e-5 * np.exp(-0.5 * gap_m2 / FAR_M**2)
     if sight.east_mps is not None and sight.north_mps is not None:
         east, north, _ = velocity(profile, clock, grid_s)
         gap_mps2 = (east - sight.east_mps) ** 2 + (north - sight.north_mps) ** 2
@@ -207,10 +215,10 @@ def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, sight: Seen)
     """By the speed that was told, where it flies evenly: 0 near corners and stops."""
     if sight.east_mps is None or sight.north_mps is None:
         return 0.0
-    here = np.array([places_s.mean()])
-    east, north, _ = velocity(profile, clock, here)
-    later = velocity(profile, clock, here + 2.0)
-    told_mps, by_profile_mps = math.hypot(sight.east_mps, sight.north_mps), math.hypot(east[0], north[0])
-    if by_profile_mps < 3.0 or math.hypot(later[0][0] - east[0], later[1][0] - north[0]) > 0.1 * by_profile_mps:
+    here_s = float(places_s.mean())
+    each = np.array(velocity(profile, clock, here_s + np.array([0.0, *EVEN_S])))
+    by_profile_mps = float(np.linalg.norm(each[:, 0]))
+    if by_profile_mps < LEAST_EVEN_MPS or np.linalg.norm(each[:, 1:] - each[:, :1], axis=0).max() > 0.1 * by_profile_mps:
         return 0.0
+    told_mps = math.sqrt(sight.east_mps**2 + sight.north_mps**2 + (sight.up_mps or 0.0) ** 2)
     return NOW_SHARE * min(max(told_mps / by_profile_mps - 1.0, -0.5), 0.5)

@@ -18,16 +18,17 @@ from telemetry.estimation.knowledge import Knowledge
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-ACCELERATION_MPS2 = 2.0  # PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5; neither is held from the first metre on
+ACCELERATION_MPS2, BRAKING_MPS2 = 2.0, 1.5  # PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5; neither is held from the first metre on
 DESCENT_SHARE = 0.75  # of the speed of climbing: PX4 1.5 of 3 m/s, ArduCopter 1.5 of 2.5
 LANDING_MPS = 0.7  # PX4's MPC_LAND_SPEED; ArduCopter's LAND_SPEED is 0.5
 SLOW_BELOW_M = 8.0  # where both land slowly
 SETTLE_S = 1.5  # until it stands at a task, and until it leaves
 SLOWEST_MPS = 0.5
+SLOWS_SHARE, LEAST_CORNER_SHARE = 0.5, 0.1  # of its speed in a corner, for each radian; never below
 STEPS = 12  # of a leg
 # Standard deviations of how long something takes, beside the speed.
-TURN_S = 0.6
-STOP_S = 1.1
+STRAIGHT_S, TURN_S = 0.15, 1.8  # at a waypoint that is passed, and by the sine of half the bend more
+STOP_S = 1.5
 CLIMB_SHARE = 0.18  # of the time that a leg takes because of its height
 
 
@@ -75,6 +76,7 @@ class _Node:
     hold_s: float | None  # None: not stopped at
     sequence: int = -1
     target: int = -1
+    lands: bool = False
 
 
 def profile_of(knowledge: Knowledge) -> Profile | None:
@@ -93,8 +95,8 @@ def way_home(frame: LocalFrame, start_m: tuple[float, float, float], start_mps: 
     nodes = [
         _Node(*start_m, 0.0, None),
         _Node(float(east_m), float(north_m), height_m, knowledge.cruise_speed_mps, 0.0),
-        _Node(float(east_m), float(north_m), 0.0, knowledge.cruise_speed_mps, 0.0),
     ]
+    nodes += _landing(nodes[-1], 0.0)
     return _profile(nodes, frame, knowledge, ends_in_air=False, start_mps=start_mps)
 
 
@@ -111,8 +113,14 @@ def _route_nodes(flight: Flight, frame: LocalFrame, knowledge: Knowledge) -> lis
         nodes.append(_Node(float(east_m), float(north_m), waypoint.altitude_relative_m, speed_mps, hold_s, waypoint.sequence, target))
     last, end = nodes[-1], flight.waypoints[-1]
     if flight.end_action != HOVER:
-        nodes.append(_Node(last.east_m, last.north_m, end.ground_relative_m, knowledge.cruise_speed_mps, 0.0))
+        nodes += _landing(last, end.ground_relative_m)
     return nodes
+
+
+def _landing(above: _Node, ground_m: float) -> list[_Node]:
+    slow_m = min(ground_m + SLOW_BELOW_M, above.height_m)
+    slowly = _Node(above.east_m, above.north_m, slow_m, SLOWEST_MPS, None)
+    return [slowly, _Node(above.east_m, above.north_m, ground_m, SLOWEST_MPS, 0.0, lands=True)]
 
 
 def _speed_in_wind(east_m: float, north_m: float, wished_mps: float, agl_m: float, knowledge: Knowledge) -> float:
@@ -134,11 +142,11 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
     up_mps, down_mps = knowledge.climb_speed_mps, DESCENT_SHARE * knowledge.climb_speed_mps
     level_s = level_m / np.array([max(node.speed_mps, SLOWEST_MPS) for node in nodes[1:]])
     vertical_s = np.where(step[:, 2] > 0, step[:, 2] / up_mps, -step[:, 2] / down_mps)
-    if not ends_in_air:
-        vertical_s[-1] += min(SLOW_BELOW_M, float(-step[-1, 2])) * (1.0 / LANDING_MPS - 1.0 / down_mps) if step[-1, 2] < 0 else 0.0
+    vertical_s = np.where([node.lands for node in nodes[1:]], np.abs(step[:, 2]) / LANDING_MPS, vertical_s)
     wanted_s = np.maximum(np.maximum(level_s, vertical_s), 1e-6)
     wanted_mps = np.maximum(length_m / wanted_s, 1e-3)
-    corner_mps = _corner_speeds(nodes, step, length_m, wanted_mps, start_mps)
+    bend = _bends(step, length_m)
+    corner_mps = _corner_speeds(nodes, bend, length_m, wanted_mps, start_mps)
     moving, standing, doubt, along, leg, points = [0.0], [0.0], [0.0], [0.0], [0], [place[0]]
     reached = []
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, math.pi, STEPS + 1)))
@@ -148,7 +156,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
             speed = np.minimum(
                 wanted_mps[number],
                 np.sqrt(np.minimum(corner_mps[number] ** 2 + 2 * ACCELERATION_MPS2 * way_m,
-                                   corner_mps[number + 1] ** 2 + 2 * ACCELERATION_MPS2 * (length_m[number] - way_m))),
+                                   corner_mps[number + 1] ** 2 + 2 * BRAKING_MPS2 * (length_m[number] - way_m))),
             )  # fmt: skip
             taken_s = np.diff(way_m) / np.maximum(0.5 * (speed[1:] + speed[:-1]), 1e-3)
             climbing_s2 = (CLIMB_SHARE * vertical_s[number]) ** 2 if vertical_s[number] > level_s[number] else 0.0
@@ -163,7 +171,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
         reached.append(len(moving) - 1)
         is_last = number == len(nodes) - 2
         stops = node.hold_s is not None
-        doubt[-1] += 0.0 if stops or corner_mps[number + 1] > 0.8 * wanted_mps[number] else TURN_S**2
+        doubt[-1] += 0.0 if stops or is_last else (STRAIGHT_S + TURN_S * math.sin(0.5 * bend[number + 1])) ** 2
         if stops and not is_last:
             moving.append(moving[-1])
             standing.append(standing[-1] + SETTLE_S + (node.hold_s or 0.0))
@@ -189,17 +197,26 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
     )
 
 
-def _corner_speeds(nodes: list[_Node], step: FloatArray, length_m: FloatArray, wanted_mps: FloatArray, start_mps: float) -> FloatArray:
-    """At each node: 0 where it stops, the less of both legs' the sharper the turn; no more than can be reached and left."""
+def _bends(step: FloatArray, length_m: FloatArray) -> FloatArray:
+    """By how much the way bends at each node [rad], 0 at both ends and where a leg has no length."""
+    bend = np.zeros(len(step) + 1)
+    for number in range(1, len(step)):
+        lengths_m2 = float(length_m[number - 1] * length_m[number])
+        if lengths_m2 > 1e-4:
+            bend[number] = math.acos(min(max(float(step[number - 1] @ step[number]) / lengths_m2, -1.0), 1.0))
+    return bend
+
+
+def _corner_speeds(nodes: list[_Node], bend: FloatArray, length_m: FloatArray, wanted_mps: FloatArray, start_mps: float) -> FloatArray:
+    """At each node: 0 where it stops, less than both legs' the sharper the turn; no more than can be reached and left."""
     speed = np.zeros(len(nodes))
     speed[0] = start_mps
     for number in range(1, len(nodes) - 1):
-        if nodes[number].hold_s is not None or length_m[number - 1] <= 0.01 or length_m[number] <= 0.01:
-            continue
-        straightness = float(step[number - 1] @ step[number]) / float(length_m[number - 1] * length_m[number])
-        speed[number] = min(wanted_mps[number - 1], wanted_mps[number]) * 0.5 * (1.0 + straightness)
+        if nodes[number].hold_s is None and min(length_m[number - 1], length_m[number]) > 0.01:
+            share = max(1.0 - SLOWS_SHARE * bend[number], LEAST_CORNER_SHARE)
+            speed[number] = min(wanted_mps[number - 1], wanted_mps[number]) * share
     for number in range(1, len(nodes)):
         speed[number] = min(speed[number], math.sqrt(speed[number - 1] ** 2 + 2 * ACCELERATION_MPS2 * length_m[number - 1]))
-    for number in range(len(nodes) - 2, -1, -1):
-        speed[number] = min(speed[number], math.sqrt(speed[number + 1] ** 2 + 2 * ACCELERATION_MPS2 * length_m[number]))
+    for number in range(len(nodes) - 2, 0, -1):
+        speed[number] = min(speed[number], math.sqrt(speed[number + 1] ** 2 + 2 * BRAKING_MPS2 * length_m[number]))
     return speed

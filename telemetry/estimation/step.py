@@ -21,7 +21,8 @@ BARO_VARIANCE_M2 = 0.25**2
 LONGEST_DIFFERENCE_S = 15.0  # between two positions, for a velocity
 STANDS_BELOW_MPS = 0.7
 CLIMBS_ABOVE_MPS = 0.5
-RETURN_PACE_SD = 0.12
+AT_HOME_M, CREEPS_MPS = 8.0, 1.5  # it comes down there
+RETURN_PACE_SD = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +98,8 @@ def _sight(phase: Phase, told: Measurement, place: tuple[float, float] | None) -
     """The velocity only where it tells of the place on the route."""
     velocity = _velocity(told) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
     east_m, north_m = place or (None, None)
-    east_mps, north_mps, _ = velocity or (None, None, None)
-    return Seen(east_m, north_m, east_mps, north_mps, told.waypoint_sequence)
+    east_mps, north_mps, up_mps = velocity or (None, None, None)
+    return Seen(east_m, north_m, east_mps, north_mps, up_mps, told.waypoint_sequence)
 
 
 def _velocity_from(state: State, belief: Belief, place: tuple[float, float] | None, at_s: float) -> tuple[float, float, float]:
@@ -162,6 +163,8 @@ def _with_way(course: Course, state: State) -> State:
         return _changed(state, Phase.RETURN, None)
     east_m, north_m = course.frame.to_metres(np.array([home]))[0] - (state.east_m, state.north_m)
     far_m = math.hypot(east_m, north_m)
+    if far_m < AT_HOME_M and math.hypot(state.east_mps, state.north_mps) < CREEPS_MPS:
+        return _changed(state, Phase.LAND, None)
     towards_mps = 0.0 if far_m < 1.0 else max((state.east_mps * east_m + state.north_mps * north_m) / far_m, 0.0)
     profile = way_home(course.frame, (state.east_m, state.north_m, state.height_m), towards_mps, LonLat(*home), course.knowledge)
     return _changed(state, Phase.RETURN, Track(profile, Pace(np.zeros(PLACES), variance=RETURN_PACE_SD**2)))

@@ -115,6 +115,7 @@ class _Pilot:
         self.pace = chance.gauss(1.0, 0.04)
         self.radius_m = chance.uniform(1.5, 8.0)
         self.corner = chance.uniform(0.25, 0.75)
+        self.slow_below_m = chance.uniform(5.0, 10.0)
         self.settle_s = chance.uniform(0.3, 3.0)
         self.names = MODES[chance.choice(["px4", "ardupilot"])]
         layer = knowledge.conditions.wind_at(60.0)
@@ -167,9 +168,9 @@ class _Pilot:
         if not self.is_return:
             self._land("land", 0.0)
             return self._truth()
-        target_m = max(self.uav.up, 50.0)
+        target_m, stay = max(self.uav.up, 50.0), self._braked()
         while self.uav.up < target_m - 1.0:
-            self._step(0.0, 0.0, self.uav.climbs_mps, "return")
+            self._stay(stay, self.uav.climbs_mps, "return")
         while (far_m := math.hypot(self.uav.east, self.uav.north)) > 2.0 and self.now_s < LONGEST_S:
             speed = min(self._ground_speed(-self.uav.east, -self.uav.north, self.knowledge.cruise_speed_mps), self._stopping(far_m))
             self._step(-self.uav.east / far_m * speed, -self.uav.north / far_m * speed, 0.0, "return")
@@ -244,9 +245,22 @@ class _Pilot:
         return max(min(wished, along + math.sqrt(max(limit**2 - across**2, 0.0))), 1.0)
 
     def _wait_paused(self) -> None:
-        until_s = self.now_s + self.pause_s
+        until_s, stay = self.now_s + self.pause_s, self._braked()
         while self.now_s < until_s and not self._called():
-            self._step(0.0, 0.0, 0.0, "hold")
+            self._stay(stay, 0.0, "hold")
+
+    def _braked(self) -> tuple[float, float]:
+        """Where it comes to a stand."""
+        uav = self.uav
+        speed = math.hypot(uav.v_east, uav.v_north)
+        reach_s = 0.5 * speed / uav.accelerates_mps2
+        return uav.east + uav.v_east * reach_s, uav.north + uav.v_north * reach_s
+
+    def _stay(self, place: tuple[float, float], up_mps: float, mode: str) -> None:
+        to_e, to_n = place[0] - self.uav.east, place[1] - self.uav.north
+        far_m = math.hypot(to_e, to_n)
+        share = self._stopping(far_m) / far_m if far_m > 0 else 0.0
+        self._step(to_e * min(share, 0.8), to_n * min(share, 0.8), up_mps, mode)
 
     def _hover(self, seconds: float, number: int) -> None:
         (east, north), waypoint = self.places[number], self.flight.waypoints[number]
@@ -256,9 +270,10 @@ class _Pilot:
             self._step(0.7 * (east - self.uav.east), 0.7 * (north - self.uav.north), up, "mission", waypoint.sequence)
 
     def _land(self, mode: str, ground_m: float) -> None:
+        stay = self._braked()
         while self.uav.up > ground_m + 0.1 and self.now_s < LONGEST_S:
-            sinks = self.uav.sinks_mps if self.uav.up > ground_m + 9.0 else 0.7
-            self._step(0.0, 0.0, -sinks, mode)
+            sinks = self.uav.sinks_mps if self.uav.up > ground_m + self.slow_below_m else 0.7
+            self._stay(stay, -sinks, mode)
         self._stand(8.0, mode, in_air=False)
 
     def _stand(self, seconds: float, mode: str, *, in_air: bool) -> None:
