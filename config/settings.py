@@ -366,9 +366,13 @@ GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
 GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
 LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
+# The watch, which estimates where UAVs are between their reports.
+ESTIMATOR_NAME = os.environ.get("SPANWISE_ESTIMATOR_NAME", "")
+ESTIMATOR_MOST_UAVS = int(_float("SPANWISE_ESTIMATOR_MOST_UAVS", 1_000))  # that one watch holds at once
 TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
 # by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
 TAKE_OFF_HEIGHT_M = min(_float("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
+RESUME_DISTANCE_M = _float("SPANWISE_RESUME_DISTANCE_M", 30.0)  # at most from the leg that a UAV in the air would go on with
 TRANSFER_RULES = TransferRules(
     timeout_s=_float("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
     item_timeout_s=_float("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),

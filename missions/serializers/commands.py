@@ -36,6 +36,7 @@ class FlightsSerializer(serializers.Serializer):
     uav = serializers.IntegerField(help_text="its place in the mission")
     flights = serializers.IntegerField(help_text="in how many it flies its route")
     flown = serializers.IntegerField()
+    has_failed = serializers.BooleanField(help_text="a flight of it failed: it is not set in motion again in this mission")
 
 
 class MissionApprovalSerializer(ApprovalSerializer):

@@ -225,7 +225,7 @@ class OptionsSerializer(KnownFieldsSerializer):
         allow_null=True,
         min_value=LEAST_CHARGING_W,
         max_value=LARGEST_POWER_W,
-        help_text="power of charging at towers on the way; null: there is none",
+        help_text="power of charging at towers on the way, of UAVs that fly once; null: there is none",
     )
 
     lost_link = LostLinkSerializer(required=False, allow_null=True)

@@ -97,6 +97,10 @@ class PlanRequest:
     organisation: int | None = None
     mission: str | None = None
 
+    def may_charge(self, uav: int) -> bool:
+        """Whether this UAV, by its number, charges at towers: who flies several times takes a full battery at the base instead."""
+        return self.charging_w is not None and self.uavs[uav].sorties == 1
+
     def end_action(self, uav: int) -> EndAction:
         """What the UAV does in the end: the wish that all return comes first."""
         return EndAction.RETURN if self.return_to_start else self.uavs[uav].end_action

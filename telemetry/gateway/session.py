@@ -20,6 +20,7 @@ from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
+from telemetry.gateway.own_return import OwnReturn
 from telemetry.gateway.peers import Peer
 from telemetry.ground_station.ends import AUTOPILOT
 from telemetry.ground_station.flavour import Flavour
@@ -66,6 +67,7 @@ class Session:
     is_unsaved: bool = False
     has_signed: bool = False  # since somebody asked last
     limit_questions_left: int = LIMIT_QUESTIONS
+    own_return: OwnReturn = field(default_factory=OwnReturn)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
@@ -177,6 +179,7 @@ class Session:
         if now_s - self._position_s > POSITIONS_MISSING_S and now_s - self._asked_s >= ASK_AGAIN_S:
             self._asked_s = now_s
             self.send(greeting.requests(self.uav.system, flavour), now_s)
+        self.send(self.own_return.questions(self.state, time.monotonic()), now_s)
         questions = self._questions()
         if questions and now_s - self._questioned_s >= self._question_again_s:
             self._questioned_s = now_s
@@ -268,12 +271,19 @@ class Session:
         monotonic_s = time.monotonic()
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
-            self.flown += self._flight.look(self.state, kind)
+            self._note_flown(self._flight.look(self.state, kind))
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)
         for listener in list(self.listeners):
             listener(message, monotonic_s)
+
+    def _note_flown(self, flown: list[FlownItem]) -> None:
+        """Of items that were reached and wait to be told the last one tells of all; the first may be being told."""
+        for item in flown:
+            if len(self.flown) > 1 and not (self.flown[-1].is_down or item.is_down):
+                self.flown.pop()
+            self.flown.append(item)
 
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None

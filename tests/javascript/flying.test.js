@@ -20,6 +20,23 @@ test("what is approved and after that is frozen", () => {
   assert.deepEqual(frozen, ["approved", "dispatched", "active", "completed", "aborted", "failed"]);
 });
 
+test("what would be refused is not offered: nothing moves without a mission on its way", () => {
+  const why = (kind, now, commands = []) => flying.whyNotMoved(kind, now, flying.flyersOf(now)[0], commands);
+  const flights = [{ uav: 0, flights: 1, flown: 0, has_failed: true }];
+  const { approval } = mission("active");
+  for (const kind of ["arm", "take-off", "start", "resume"]) {
+    assert.equal(why(kind, mission("approved")), "UAV 7 has no mission.");
+    assert.equal(why(kind, mission("active", { approval: { ...approval, revoke_requested_at: "2027-05-04T10:00:00Z" } })), "The approval is being taken back.");
+    assert.match(why(kind, mission("active", { approval: { ...approval, flights } })), /has failed/);
+  }
+  assert.equal(why("arm", mission("dispatched")), "");
+  assert.equal(why("take-off", mission("active")), "");
+  assert.match(why("resume", mission("active")), /not started/);
+  assert.match(why("resume", mission("dispatched"), [command("start", "sent", { sent_at: "2027-05-04T09:00:00Z" })]), /not started/);
+  assert.equal(why("resume", mission("active"), [command("start", "applied", { sent_at: "2027-05-04T09:00:00Z" })]), "");
+  for (const kind of ["hold", "return", "land", "abort", "pause", "change-speed"]) assert.equal(why(kind, mission("approved")), "");
+});
+
 test("UAVs that fly no route are not told anything", () => {
   const [first, second] = flying.flyersOf(mission("approved", { plan: { routes: [route(7, { geometry: null }), route(8)] } }));
   assert.deepEqual([first.place, first.letter, first.uav, first.flights], [1, "B", 8, 2]);

@@ -35,11 +35,11 @@ export const isOnItsWay = (mission) => ON_ITS_WAY.includes(mission.state);
 export const isOpen = ({ state }) => ["queued", "sent", "acknowledged"].includes(state);
 const isOfMission = ({ kind }) => kind === "upload-mission" || kind === "clear-mission";
 
-/** UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown }]. */
+/** UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown, hasFailed }]. */
 export function flyersOf(mission) {
   const flights = new Map((mission.approval?.flights ?? []).map((entry) => [entry.uav, entry]));
   return (mission.plan?.routes ?? [])
-    .map((route, place) => ({ place, letter: routeLetter(place), name: route.uav, uav: route.uav_id, flights: flights.get(place)?.flights ?? 1, flown: flights.get(place)?.flown ?? 0, route }))
+    .map((route, place) => ({ place, letter: routeLetter(place), name: route.uav, uav: route.uav_id, flights: flights.get(place)?.flights ?? 1, flown: flights.get(place)?.flown ?? 0, hasFailed: flights.get(place)?.has_failed ?? false, route }))
     .filter(({ route }) => route.geometry);
 }
 
@@ -92,9 +92,23 @@ export function timesOf({ created_at, sent_at, acknowledged_at, finished_at, sta
   return steps.filter(([, at]) => at).map(([word, at]) => `${word} ${timeText(at)}`).join(", ");
 }
 
+const IN_MOTION = ["arm", "take-off", "start", "resume"];
+
+/** Why a UAV is not set in motion by this command; empty where it is, and for commands that stop it or bring it back. */
+export function whyNotMoved(kind, mission, { uav, name, hasFailed }, commands) {
+  if (!IN_MOTION.includes(kind)) return "";
+  if (!isOnItsWay(mission) || !mission.approval) return t("{name} has no mission.", { name });
+  if (mission.approval.revoke_requested_at) return t("The approval is being taken back.");
+  if (hasFailed) return t("A flight of {name} has failed: it does not fly on in this mission.", { name });
+  const wasStarted = commands.some((command) => command.kind === "start" && command.uav.id === uav && command.sent_at && command.approval === mission.approval.id);
+  return kind === "resume" && !(mission.state === "active" && wasStarted) ? t("{name} has not started its mission: there is nothing to go on with.", { name }) : "";
+}
+
 /** Why a UAV cannot be started; empty where it can. */
-export function whyNoStart(mission, { uav, name, flown }, commands) {
-  if (mission.approval?.revoke_requested_at) return t("The approval is being taken back.");
+export function whyNoStart(mission, flyer, commands) {
+  const { uav, name, flown } = flyer;
+  const unmoved = whyNotMoved("start", mission, flyer, commands);
+  if (unmoved) return unmoved;
   const board = boardOf(commands, uav);
   if (board?.kind !== "upload-mission" || board.state !== "applied") return t("{name} does not have its mission yet.", { name });
   const flight = board.parameters.flight ?? 1;
