@@ -1,6 +1,7 @@
 """The front door of live pages, with a Redis of its own."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,9 +17,15 @@ def door(django_db_setup: None) -> Iterator[Door]:
 
 
 @pytest.fixture
-def here(door: Door, settings: Any) -> Iterator[Door]:
-    """The tests' own words go through its Redis as well."""
+def without_redis(door: Door, settings: Any, tmp_path: Path) -> Door:
+    """The tests' own words go through its Redis as well, once a test has started one."""
     through_its_redis(door, settings)
-    with running(redis_at(door.redis)):
-        wait_until(door.redis.exists)
-        yield door
+    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
+    return door
+
+
+@pytest.fixture
+def here(without_redis: Door) -> Iterator[Door]:
+    with running(redis_at(without_redis.redis)):
+        wait_until(without_redis.redis.exists)
+        yield without_redis
