@@ -10,10 +10,22 @@ from tests.workspace.front_door import Door, front_door, redis_at, running, thro
 
 
 @pytest.fixture(scope="package")
-def door(django_db_setup: None) -> Iterator[Door]:
-    with front_door() as door, door.serves_live():
-        wait_until(lambda: door.is_open)
+def closed_door(django_db_setup: None) -> Iterator[Door]:
+    with front_door() as door:
         yield door
+
+
+@pytest.fixture(scope="package")
+def live_program(closed_door: Door) -> Iterator[int]:
+    """The process that keeps those which serve; it starts another when one is killed."""
+    with closed_door.serves_live() as program:
+        wait_until(lambda: closed_door.is_open)
+        yield program.pid
+
+
+@pytest.fixture
+def door(closed_door: Door, live_program: int) -> Door:
+    return closed_door
 
 
 @pytest.fixture
