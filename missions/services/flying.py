@@ -5,14 +5,18 @@ after a mission has ended, changes nothing.
 """
 
 from enum import StrEnum
+from functools import partial
 from uuid import UUID
 
 from django.db import transaction
+from django.db.models import QuerySet
+from django.db.models.functions import Now
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
 from missions.selectors import approval_in_force
 from missions.services.approval import change_state
 from missions.services.missions import note
+from workspace.live import publish_live
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
@@ -45,8 +49,8 @@ def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> No
         to_come = {target for sequence, target in visits if sequence > waypoint}
         before = {target for sequence, target in visits if sequence < waypoint} - here - to_come
         targets = InspectionTarget.objects.filter(mission=held)
-        targets.filter(pk__in=here, state=TargetState.PENDING).update(state=TargetState.IN_PROGRESS)
-        targets.filter(pk__in=before, state__in=UNDECIDED).update(state=TargetState.COMPLETE)
+        _put(held, targets.filter(pk__in=here, state=TargetState.PENDING), TargetState.IN_PROGRESS)
+        _put(held, targets.filter(pk__in=before, state__in=UNDECIDED), TargetState.COMPLETE)
 
 
 def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
@@ -55,7 +59,8 @@ def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state in {MissionState.DRAFT, MissionState.PLANNED, MissionState.APPROVED}:
             return False
-        return bool(InspectionTarget.objects.filter(mission=held, sequence=target).update(state=state))
+        found = InspectionTarget.objects.filter(mission=held, sequence=target)
+        return _put(held, found.exclude(state=state), state) or found.exists()
 
 
 def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:
@@ -74,13 +79,13 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
         if end is FlightEnd.FAILED:
             route.has_failed = True
             route.save(update_fields=["has_failed"])
-            _settle(route, TargetState.FAILED)
+            _settle(held, route, TargetState.FAILED)
             note(held, None, "fail-route", before=None, after={"uav": uav_id, "flight": flight})
         elif flight > route.flights_flown:
             route.flights_flown = flight
             route.save(update_fields=["flights_flown"])
         if not route.has_failed and route.flights_flown >= flights.get(uav_id, 1):
-            _settle(route, TargetState.COMPLETE)
+            _settle(held, route, TargetState.COMPLETE)
         _end_with_the_last(held, flights)
         return MissionState(held.state)
 
@@ -98,9 +103,17 @@ def _end_with_the_last(held: Mission, flights: dict[int, int]) -> None:
         change_state(held, MissionState.COMPLETED, None, "complete", {})
 
 
-def _settle(route: Route, state: TargetState) -> None:
+def _settle(held: Mission, route: Route, state: TargetState) -> None:
     on_route = route.waypoints.filter(kind=WaypointKind.TARGET).values("target")
-    InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED).update(state=state)
+    _put(held, InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED), state)
+
+
+def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState) -> bool:
+    """Whether there were any. Live pages are told after the commit."""
+    if not targets.update(state=state, state_at=Now()):
+        return False
+    transaction.on_commit(partial(publish_live, held.organisation_id))
+    return True
 
 
 def _flights(mission: Mission) -> dict[int, int]:
