@@ -89,6 +89,7 @@ def _checked(
         departs_s=departs_s,
         ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
         spans=spans_of(network),
+        home=asked.home,
     )
     failed = [
         {

@@ -237,6 +237,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 sensors=tuple(row.sensors),
                 performance=_performance(row),
                 sorties=row.sorties,
+                home=None if row.home is None else LonLat(*row.home.coords),
                 own_figures=tuple(row.own_figures),
             )
             for row in mission.mission_uavs.all()
@@ -314,6 +315,7 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             sensors=list(uav.sensors),
             performance=performance_to_json(uav.performance),
             sorties=uav.sorties,
+            home=None if uav.home is None else Point(*uav.home, srid=4326),
             own_figures=list(uav.own_figures),
         )
         for sequence, uav in enumerate(uavs)
