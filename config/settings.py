@@ -369,6 +369,7 @@ LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
 TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
 # by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
 TAKE_OFF_HEIGHT_M = min(_float("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
+RESUME_DISTANCE_M = _float("SPANWISE_RESUME_DISTANCE_M", 30.0)  # at most from the leg that a UAV in the air would go on with
 TRANSFER_RULES = TransferRules(
     timeout_s=_float("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
     item_timeout_s=_float("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),

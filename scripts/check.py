@@ -1,4 +1,4 @@
-"""./check: private servers, then one step after the other, the browser tests beside them, and a summary.
+"""./check: private servers, then one step after the other, the browser tests and those that mostly wait beside them, and a summary.
 
 All steps run, even when one has failed.
 
@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
@@ -29,6 +29,10 @@ PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 POLL_S = 0.5
 STOP_S = 60
 BROWSER_TESTS_AFTER = ("tests/browser/ground", "tests/browser/people")  # in line with the others; the rest run beside, about as long
+WAITING_TESTS = (  # for other processes, more than they compute: beside the others they cost little
+    "tests/telemetry/gateway", "tests/telemetry/test_companion.py", "tests/telemetry/test_command_delivery.py",
+    "tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py", "tests/workspace/test_live.py", "tests/scripts",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,8 @@ class Step:
     name: str
     command: list[str]
     environment: dict[str, str] = field(default_factory=dict)
-    runs_beside: bool = False  # has its own servers and waits a lot: it starts first and is told last
+    runs_beside: bool = False  # it starts first and is told last
+    has_own_database: bool = False  # on the servers of all, since two runs of pytest on one database would be in each other's way
 
 
 def _python(*arguments: str) -> list[str]:
@@ -68,7 +73,8 @@ def steps(arguments: list[str]) -> list[Step]:
         Step("import contracts", [str(PROGRAMS / "lint-imports")]),
         Step("migrations complete", _python("manage.py", "makemigrations", "--check", "--dry-run")),
         Step("check --deploy", _python("manage.py", "check", "--deploy", "--fail-level", "WARNING"), {"SPANWISE_HTTPS": "1"}),
-        Step("pytest", _pytest(f"not browser{without_long}", [])),
+        Step("pytest", _pytest(f"not browser{without_long}", [f"--ignore={place}" for place in WAITING_TESTS])),
+        Step("tests that wait", _pytest(f"not browser{without_long}", list(WAITING_TESTS)), runs_beside=True, has_own_database=True),
     ]
     if scripts := sorted(str(path) for path in (PROJECT_DIR / "tests" / "javascript").glob("**/*.test.*js")):
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
@@ -131,11 +137,25 @@ def _headline(step: Step) -> None:
     print(f"\n── {step.name} {'─' * max(0, shutil.get_terminal_size((100, 24)).columns - len(step.name) - 4)}", flush=True)
 
 
+def _own_database(environment: dict[str, str]) -> dict[str, str]:
+    """The same servers, with another name for the database and another number for Redis's."""
+    database, _, options = environment["DATABASE_URL"].partition("?")
+    redis, _, number = environment["REDIS_URL"].partition("?db=")
+    if not redis.startswith("unix:"):
+        redis, _, number = redis.rpartition("/") if redis.count("/") > 2 else (redis, "", "0")
+    own = int(number or 0) + 1
+    return {
+        "DATABASE_URL": f"{database}_beside" + (f"?{options}" if options else ""),
+        "REDIS_URL": f"{redis}?db={own}" if redis.startswith("unix:") else f"{redis}/{own}",
+    }
+
+
 def _start(step: Step, environment: dict[str, str], output: BinaryIO | None) -> subprocess.Popen[bytes]:
+    whole = {**os.environ, **environment, **step.environment}
     return subprocess.Popen(
         step.command,
         cwd=PROJECT_DIR,
-        env={**os.environ, **environment, **step.environment},
+        env=whole | _own_database(whole) if step.has_own_database else whole,
         stdout=output,
         stderr=None if output is None else subprocess.STDOUT,
         start_new_session=True,  # an interrupt reaches it once, from here, or it would not stop its site
@@ -179,20 +199,23 @@ def _tell(step: Step, log: Path, process: subprocess.Popen[bytes]) -> None:
                 time.sleep(POLL_S)
 
 
-def run_all(to_run: list[Step], environment: dict[str, str], log: Path) -> list[Result]:
-    """One step after the other; at most one of them beside the others, its output kept in `log` until they are done."""
-    beside = next((step for step in to_run if step.runs_beside), None)
-    if beside is None:
-        return [_run_here(step, environment) for step in to_run]
-    began = time.monotonic()
-    with log.open("wb") as written:
-        process = _start(beside, environment, written)
-    try:
-        results = [_run_here(step, environment) for step in to_run if step is not beside]
-        _tell(beside, log, process)
-    finally:
-        _end(process)
-    return [*results, Result(beside.name, process.returncode, time.monotonic() - began)]
+def run_all(to_run: list[Step], environment: dict[str, str], logs: Path) -> list[Result]:
+    """One step after the other, beside those that run beside them, whose output is kept in the folder `logs` until the others are done."""
+    began_s = time.time()
+    with ExitStack() as open_logs:
+        started: list[tuple[Step, Path, subprocess.Popen[bytes]]] = []
+        try:
+            for number, step in enumerate(step for step in to_run if step.runs_beside):
+                log = logs / f"beside-{number}.log"
+                started.append((step, log, _start(step, environment, open_logs.enter_context(log.open("wb")))))
+            results = [_run_here(step, environment) for step in to_run if not step.runs_beside]
+            for step, log, process in started:
+                _tell(step, log, process)
+                results.append(Result(step.name, process.returncode, max(0.0, log.stat().st_mtime - began_s)))  # until its last word
+        finally:
+            for _, _, process in started:
+                _end(process)
+    return results
 
 
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
@@ -207,7 +230,7 @@ def main(arguments: list[str]) -> int:
     try:
         with private_servers(state_directory() / "check") as environment:
             print(f"servers … {time.monotonic() - began:.1f} s", flush=True)
-            results = run_all(steps(arguments), environment, state_directory() / "check" / "beside.log")
+            results = run_all(steps(arguments), environment, state_directory() / "check")
     except CannotStart as error:
         print(f"The servers for the tests could not start: {error}", file=sys.stderr)
         return 1

@@ -19,7 +19,7 @@ from missions.services.commands import note_acknowledged, note_applied, note_fai
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import CannotCarry, Task, reason_not_to, task_of
-from telemetry.gateway.reading import read_aboard
+from telemetry.gateway.reading import ask_for_the_present, read_aboard
 from telemetry.gateway.session import Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
 from telemetry.ground_station.command import CommandEnd, CommandOutcome
@@ -69,7 +69,7 @@ class Carriage:
         try:
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
-                task = reason_not_to(task, self.session.state) or await self._beyond_limits(task) or task
+                task = await self._reason_against(task) or await self._beyond_limits(task) or task
             if isinstance(task, CannotCarry):
                 await self._refuse(task)
             elif task.load is not None:
@@ -87,6 +87,11 @@ class Carriage:
             await self._end(note_failed, reason.code, reason.words)
         else:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words)
+
+    async def _reason_against(self, task: Task) -> CannotCarry | None:
+        if task.aboard is not None:
+            await ask_for_the_present(self.session, lambda: self.is_ours)
+        return reason_not_to(task, self.session.state, time.monotonic())
 
     async def _beyond_limits(self, task: Task) -> CannotCarry | None:
         if task.load is None or not task.load.mission:

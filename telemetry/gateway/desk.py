@@ -28,6 +28,7 @@ MOST_AT_ONCE = 200  # above which speeds wait
 MOST_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
+NOTES_AT_ONCE = 4  # the end of a command may have to wait for its mission; the beginning of another must not
 
 
 @dataclass
@@ -36,6 +37,7 @@ class Desk:
     lease_s: float
     sessions: Callable[[], list[Session]]
     database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-commands"))
+    notes: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-notes", NOTES_AT_ONCE))  # of what is carried
     _carriages: dict[UUID, Carriage] = field(default_factory=dict)
     _tasks: dict[UUID, asyncio.Task[None]] = field(default_factory=dict)
     _hint: asyncio.Event = field(default_factory=asyncio.Event)
@@ -85,7 +87,7 @@ class Desk:
         )
         for command in claimed:
             session = served[command.uav_id]
-            self._carriages[command.pk] = Carriage(command, session, self.database, held_until_s(asked_s, self.lease_s))
+            self._carriages[command.pk] = Carriage(command, session, self.notes, held_until_s(asked_s, self.lease_s))
 
     async def close(self) -> None:
         """Ends what goes on, and gives back what has not ended by then."""

@@ -63,6 +63,7 @@ class Gateway:
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
+        self.telling = DatabaseThread("gateway-tells")  # what may wait for missions: leases do not wait behind it
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.flights = Flights(self.options)
         self.desk = Desk(self.options.holder, self.options.lease_s, lambda: list(self.sessions.values()))
@@ -185,11 +186,12 @@ class Gateway:
                 while await self.store.flush():
                     pass
                 await self._tell_flown()
-                await self.flights.write_rows(self.database)
+                await self.flights.write_rows(self.telling)
                 await self.database.run(release_leases, holder=self.options.holder)
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
+        self.telling.close()
 
     async def _close_desk(self) -> None:
         try:
@@ -198,6 +200,7 @@ class Gateway:
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: commands are taken up again when their leases run out")
         self.desk.database.close()
+        self.desk.notes.close()
 
     # What goes on all the time
 
@@ -207,6 +210,7 @@ class Gateway:
             uav = self._uavs.get(system)
             if uav is None or uav.uav_id != session.uav.uav_id:
                 self.flights.end(session, time.time())
+                session.lose()
                 del self.sessions[system]
             elif uav != session.uav:
                 session.change(uav)
@@ -291,16 +295,22 @@ class Gateway:
             other, last_s = session.second_sender
             if now_s - last_s < SECOND_SENDER_GONE_S:
                 words = f"Two senders say that they are {session.uav.name}: {session.peer.name}, which is believed, and {other}."
-                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
+                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
             else:
                 session.second_sender = None
-                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
+                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
 
     async def _tell_flown(self) -> None:
-        """In order, each as often as it takes."""
+        """In order, each as often as it takes. What cannot be told of one UAV holds up no other."""
         for session in list(self.sessions.values()):
             while session.flown:
-                await self.database.run(note_flown, uav_id=session.uav.uav_id, flown=session.flown[0])
+                flown = session.flown[0]
+                try:
+                    await self.telling.run(note_flown, uav_id=session.uav.uav_id, flown=flown)
+                except DatabaseAway:
+                    raise
+                except Exception:
+                    logger.exception("what %s has flown could not be told: %s", session.uav.name, flown)
                 session.flown.pop(0)
 
     async def _note_keys(self) -> None:
@@ -308,11 +318,11 @@ class Gateway:
         for session in signed:
             session.has_signed = False
         if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
-            await self.database.run(note_mavlink_key_use, credential_ids=used)
+            await self.telling.run(note_mavlink_key_use, credential_ids=used)
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())
-        await self.flights.write_rows(self.database)
+        await self.flights.write_rows(self.telling)
 
     async def _tell_counts(self) -> None:
         counts = {**self.damages, **self.listeners.damages}

@@ -1,4 +1,7 @@
-"""Whether a vehicle holds what it is about to fly: by reading it back now, for somebody else may have put another list on it since."""
+"""What is asked of a vehicle just before it flies its list: whether it holds the approved one, and whence it counts its heights.
+
+Somebody else may have put another list on it since it was loaded, and it may have booted elsewhere.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,12 +9,14 @@ from dataclasses import dataclass
 from django.conf import settings
 
 from missions.mavlink.content import FlightLoad, MissionType
-from telemetry.gateway.conversation import Conversation
+from telemetry.gateway.conversation import Conversation, Keeper
 from telemetry.gateway.session import Session
 from telemetry.ground_station.compare import differences
 from telemetry.ground_station.download import Download
 from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flavour import RESTARTS, Flavour
+from telemetry.ground_station.home_reading import HomeReading
+from telemetry.ground_station.parameters import ParameterReading
 from telemetry.ground_station.transfer import TransferState
 from telemetry.ground_station.wire import held_list
 
@@ -39,6 +44,17 @@ async def read_aboard(session: Session, load: FlightLoad, is_wanted: Callable[[]
         if reading is None or not reading.is_aboard:
             return reading
     return Reading(True)
+
+
+async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -> None:
+    """Its state then has its home, and of an ArduPilot in the air how it would go on; what it does not tell is as old as it was."""
+    ends, rules = Ends(session.uav.system), settings.TRANSFER_RULES
+    asked: list[Keeper] = [HomeReading(session.state, ends, rules)]
+    if session.flavour is Flavour.ARDUPILOT and session.state.is_in_air:
+        session.state.parameters.pop(RESTARTS, None)
+        asked.append(ParameterReading((RESTARTS,), session.state, ends, rules))
+    for keeper in asked:
+        await Conversation(session, keeper, is_wanted).run(on_change=lambda: None)
 
 
 async def _read(session: Session, load: FlightLoad, kind: MissionType, is_wanted: Callable[[], bool]) -> Reading | None:

@@ -268,12 +268,19 @@ class Session:
         monotonic_s = time.monotonic()
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
-            self.flown += self._flight.look(self.state, kind)
+            self._note_flown(self._flight.look(self.state, kind))
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)
         for listener in list(self.listeners):
             listener(message, monotonic_s)
+
+    def _note_flown(self, flown: list[FlownItem]) -> None:
+        """Of items that were reached and wait to be told the last one tells of all; the first may be being told."""
+        for item in flown:
+            if len(self.flown) > 1 and not (self.flown[-1].is_down or item.is_down):
+                self.flown.pop()
+            self.flown.append(item)
 
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None

@@ -12,6 +12,7 @@ from django.db.models.functions import Now
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from missions.mavlink.content import FlightLoad, MissionItem
 from missions.mavlink.frozen import TakeOff
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands import claim_commands
@@ -19,9 +20,10 @@ from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway
 from telemetry.gateway.desk import MOST_UPLOADS, Desk
 from telemetry.gateway.fleet import KnownUav
-from telemetry.gateway.preparation import EMPTY, Task, reason_not_to
+from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session
+from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.orders import Order
 from telemetry.ground_station.rules import CommandRules
 from telemetry.ground_station.vehicle_state import VehicleState
@@ -31,6 +33,14 @@ from tests.telemetry.gateway.station import unsigned_uav
 
 HERE = LonLat(10.0, 56.0)
 FAR = LonLat(10.02, 56.0)
+MISSION = 4 << 16 | 4 << 24  # PX4
+
+
+def an_item(command: int, place: LonLat, altitude_m: float) -> MissionItem:
+    return MissionItem(command, 6, (0.0, 0.0, 0.0, 0.0), round(place.lon * 1e7), round(place.lat * 1e7), altitude_m)
+
+
+TO_FAR = FlightLoad((an_item(22, HERE, 30.0), an_item(16, FAR, 60.0), an_item(21, FAR, 0.0)))
 IN_AIR, ON_GROUND = mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_ON_GROUND
 
 
@@ -152,9 +162,43 @@ def test_what_was_given_back_and_claimed_anew_is_carried_on():
 @pytest.mark.parametrize("order", [Order.START, Order.RESUME])
 def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, position, home, home_m, code):
     state = VehicleState(
-        7, landed_state=landed, landed_at_s=0.0, heard_at_s=0.0, position=position, altitude_amsl_m=100.0, home=home, home_amsl_m=home_m
-    )
-    found = reason_not_to(Task(order=order, aboard=EMPTY, take_off=TakeOff(HERE, 100.0)), state)
+        7, flavour=Flavour.PX4, landed_state=landed, landed_at_s=0.0, heard_at_s=0.0, position=position, altitude_amsl_m=100.0,
+        altitude_relative_m=30.0, position_at_s=0.0, home=home, home_amsl_m=home_m, home_at_s=0.0, mission_item=1, mission_item_at_s=0.0,
+    )  # fmt: skip
+    found = reason_not_to(Task(order=order, aboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
+    assert (found and found.code) == code
+
+
+@pytest.mark.parametrize(
+    ("facts", "code"),
+    [
+        ({}, None),
+        ({"position": LonLat(10.01, 56.0002)}, None),
+        ({"position": LonLat(10.01, 56.0005)}, "off-route"),
+        ({"position": LonLat(10.021, 56.0)}, "off-route"),
+        ({"position": LonLat(10.021, 56.0), "custom_mode": MISSION}, None),  # it does so already: nothing is sent
+        ({"altitude_relative_m": 75.0}, "off-height"),
+        ({"altitude_relative_m": 15.0}, "off-height"),
+        ({"mission_item": 3}, "flown-already"),
+        ({"mission_item": None}, "no-item"),
+        ({"position_at_s": -20.0}, "no-position"),
+        ({"mission_item_at_s": -20.0}, "no-item"),
+        ({"home_at_s": -20.0}, "no-home"),
+        ({"flavour": Flavour.ARDUPILOT, "mission_item": 2}, "no-item"),
+        ({"flavour": Flavour.ARDUPILOT, "mission_item": 2, "parameters": {"MIS_RESTART": 0.0}}, None),
+        ({"flavour": Flavour.ARDUPILOT, "mission_item": 2, "parameters": {"MIS_RESTART": 1.0}}, "off-route"),
+    ],
+)
+@pytest.mark.parametrize("order", [Order.START, Order.RESUME])
+def test_a_uav_in_the_air_goes_on_only_from_the_leg_that_was_approved(order, facts, code):
+    """After a hold it may have been flown elsewhere by hand, or be on its way back: from there the way was looked at by nobody."""
+    usual = {
+        "flavour": Flavour.PX4, "custom_mode": 0, "landed_state": IN_AIR, "landed_at_s": 0.0, "heard_at_s": 0.0,
+        "position": LonLat(10.01, 56.0), "altitude_relative_m": 50.0, "position_at_s": 0.0, "home": HERE, "home_amsl_m": 100.0,
+        "home_at_s": 0.0, "mission_item": 1, "mission_item_at_s": 0.0,
+    }  # fmt: skip
+    state = VehicleState(7, **usual | facts)
+    found = reason_not_to(Task(order=order, aboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
     assert (found and found.code) == code
 
 
