@@ -16,6 +16,7 @@ from missions.services.missions import note
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
+FLIGHT_FAILED = "flight-failed"  # why a target has failed of which nobody reported anything
 
 
 class FlightEnd(StrEnum):
@@ -108,7 +109,8 @@ def _end_with_the_last(held: Mission, flights: dict[int, int]) -> None:
 
 def _settle(route: Route, state: TargetState) -> None:
     on_route = route.waypoints.filter(kind=WaypointKind.TARGET).values("target")
-    InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED).update(state=state)
+    reason = FLIGHT_FAILED if state == TargetState.FAILED else ""
+    InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED).update(state=state, state_reason=reason)
 
 
 def _flights(mission: Mission) -> dict[int, int]:

@@ -39,6 +39,7 @@ from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
+LONGEST_NAME = Mission._meta.get_field("name").max_length
 BESIDE_ROUTES = ("name", "lost_link")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
@@ -86,7 +87,7 @@ class MissionChange:
         return any(getattr(self, part.name) is not None for part in fields(self) if part.name not in BESIDE_ROUTES)
 
 
-def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
+def create_mission(*, organisation: Organisation, author: User | None, name: str, request: PlanRequest) -> Mission:
     """Store a draft. Raises InvalidRequest if a target is not on the ground, or wishes contradict each other."""
     refuse_contradictions(request)
     targets = _target_rows(request.targets)
