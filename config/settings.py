@@ -358,6 +358,7 @@ COMMAND_RULES = CommandRules(
     stop_s=_float("SPANWISE_STOP_COMMAND_S", CommandRules.stop_s),
     upload_s=_float("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
     speed_s=_float("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
+    read_back_s=_float("SPANWISE_READ_BACK_S", CommandRules.read_back_s),
 )
 # The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")

@@ -70,6 +70,7 @@ class CommandRules:
     stop_s: float = 600.0  # pause, hold, return, land, abort
     upload_s: float = 3_600.0
     speed_s: float = 60.0
+    read_back_s: float = 120.0  # by which a start or resume may be wanted longer, while what is on the UAV is read back before it
 
     def wanted_for_s(self, kind: str) -> float | None:
         if kind == "clear-mission":

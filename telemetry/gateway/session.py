@@ -19,6 +19,7 @@ from telemetry.decoding.report import Flown, Reporter, is_place, is_vehicle
 from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
 from telemetry.gateway.fleet import KnownUav
+from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.own_return import OwnReturn
 from telemetry.gateway.peers import Peer
@@ -69,6 +70,7 @@ class Session:
     has_signed: bool = False  # since somebody asked last
     limit_questions_left: int = LIMIT_QUESTIONS
     own_return: OwnReturn = field(default_factory=OwnReturn)
+    lists: ListWatch = field(default_factory=ListWatch)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
@@ -167,6 +169,7 @@ class Session:
                 self.log(raw, message.get_msgId(), now_s)
             if self.peer is not None:
                 self.peer.send(raw)
+            self.lists.note_sent(message, time.monotonic())
         self.is_unsaved |= bool(messages)
 
     def tick(self, now_s: float) -> None:
@@ -275,6 +278,7 @@ class Session:
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
             self._note_flown(self._flight.look(self.state, kind))
+            self.lists.look(message, self.state, monotonic_s)
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)
@@ -290,7 +294,11 @@ class Session:
 
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None
-        return self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
+        if self.time.boots:
+            self.lists.look_at_boot(self.time.boots[-1].key, time.monotonic())
+        stamp = self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
+        self.lists.look_at_boot(self.time.boots[-1].key, time.monotonic())
+        return stamp
 
     def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:
         state = self.state

@@ -65,8 +65,8 @@ class LinkState:
 
 TAKE = """
 INSERT INTO telemetry_uavlink
-    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, loaded_doubt, boots, signing, losses, limits)
-SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '', '[]', '{}', '{}', '{}'
+    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses, limits)
+SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}', '{}'
 FROM missions_uav uav WHERE uav.id = ANY(%(uav_ids)s) ORDER BY uav.id
 ON CONFLICT (uav_id) DO UPDATE SET holder = excluded.holder, lease_expires_at = excluded.lease_expires_at
 WHERE telemetry_uavlink.holder IN ('', excluded.holder)
