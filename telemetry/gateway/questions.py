@@ -1,5 +1,6 @@
 """What one vehicle is asked for by itself: its messages where they do not come, and what is told once where it was not told."""
 
+import math
 from dataclasses import dataclass, field
 
 from missions.mavlink.frames import Message
@@ -12,28 +13,27 @@ from telemetry.ground_station.vehicle_state import VehicleState
 ASK_AGAIN_S = 5.0  # for positions that do not come; for what is told once after ever longer
 ASK_SELDOM_S = 60.0
 LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
-POSITIONS_MISSING_S = 3.0
 
 
 @dataclass
 class Questions:
-    """Times are seconds since 1970, but those of `own_return`, which are monotonic."""
+    """Times are monotonic seconds."""
 
     limits_left: int = LIMIT_QUESTIONS
     own_return: OwnReturn = field(default_factory=OwnReturn)
-    _asked_s: float = 0.0
-    _questioned_s: float = 0.0
+    _asked_s: float = -math.inf
+    _questioned_s: float = -math.inf
     _question_again_s: float = ASK_AGAIN_S
 
-    def due(self, state: VehicleState, position_s: float, now_s: float, monotonic_s: float) -> list[Message]:
-        """Asked once a second about a vehicle that is heard and has said what it is; `position_s`: when it last told where it is."""
+    def due(self, state: VehicleState, now_s: float, *, has_position: bool) -> list[Message]:
+        """Of a vehicle that is heard; `has_position`: it has told where it is a moment ago."""
         if state.flavour is None:
             return []
         wanted = []
-        if now_s - position_s > POSITIONS_MISSING_S and now_s - self._asked_s >= ASK_AGAIN_S:
+        if not has_position and now_s - self._asked_s >= ASK_AGAIN_S:
             self._asked_s = now_s
             wanted += greeting.requests(state.system, state.flavour)
-        wanted += self.own_return.questions(state, monotonic_s)
+        wanted += self.own_return.questions(state, now_s)
         once = self._once(state)
         if once and now_s - self._questioned_s >= self._question_again_s:
             self._questioned_s = now_s

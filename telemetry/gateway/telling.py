@@ -63,10 +63,10 @@ class Telling:
 
     async def own_returns(self) -> None:
         for session in self.sessions():
-            told = session.own_return.news(session.state)
+            told = session.questions.own_return.news(session.state)
             if told is not None:
                 await self._tell(session, "its own return", note_own_return, autopilot=told.autopilot, parameters=told.parameters)
-                session.own_return.note(told)
+                session.questions.own_return.note(told)
 
     async def doubts(self) -> None:
         for session in self.sessions():
