@@ -4,8 +4,9 @@ All times are the database's, so that the clocks of those who carry do not matte
 once another one has taken it over, or it has ended, nothing that the first one writes meets a row.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from datetime import timedelta
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -29,6 +30,7 @@ from missions.models import (
     UavCommandEvent,
 )
 from missions.services.refused import refuse
+from workspace.live import publish_live
 from workspace.models import User
 from workspace.services import record_change
 
@@ -104,6 +106,7 @@ def queue_command(
             },
         )  # fmt: skip
         _tell(uav.pk)
+        _tell_pages([uav.organisation_id])
     return command
 
 
@@ -167,7 +170,11 @@ def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
 
 def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
     """So many items of an upload are over."""
-    return bool(_held(command_id, attempt, holder).update(progress={"done": done, "total": total}))
+    with transaction.atomic():
+        if not _held(command_id, attempt, holder).update(progress={"done": done, "total": total}):
+            return False
+        _tell_pages([_organisation_of(command_id)])
+    return True
 
 
 def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
@@ -238,6 +245,7 @@ def _note(
         if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
             return False
         UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
+        _tell_pages([_organisation_of(command_id)])
     return True
 
 
@@ -251,6 +259,7 @@ def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: 
         UavCommandEvent(command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=words)
         for command in found
     )
+    _tell_pages({command.organisation_id for command in found})
     return len(found)
 
 
@@ -258,3 +267,13 @@ def _tell(uav_id: int) -> None:
     """Whoever listens hears it once the transaction is committed, and not at all if it is not."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_notify(%s, %s)", [CHANNEL, str(uav_id)])
+
+
+def _tell_pages(organisations: Iterable[int]) -> None:
+    """Once the transaction is committed."""
+    for organisation_id in organisations:
+        transaction.on_commit(partial(publish_live, organisation_id))
+
+
+def _organisation_of(command_id: UUID) -> int:
+    return UavCommand.objects.values_list("organisation_id", flat=True).get(pk=command_id)
