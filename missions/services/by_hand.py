@@ -15,16 +15,13 @@ from missions.models import Mission, Route, Waypoint
 from missions.services.hand_checks import (
     HIGHER_M,
     HandGround,
-    HandPoint,
-    are_moved,
     faults_as_flown,
     flown_by_hand,
     hand_ground,
-    list_faults,
     obstacle_faults,
     point_faults,
-    route_points,
 )
+from missions.services.hand_points import HandPoint, are_moved, list_faults, route_points
 from missions.services.kept_route import KeptWaypoint, kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute

@@ -2,13 +2,11 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 
-from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
 from inspection.models import AssetKind
@@ -22,10 +20,11 @@ from missions.flight_plan.route_points import line_of, with_short_legs
 from missions.flight_plan.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
 from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
 from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from missions.flight_plan.waypoints import RoutePoints, WaypointKind, Waypoints
 from missions.leg_selectors import LegFlyer, speed_words, too_low_text
 from missions.models import EndAction, Mission
 from missions.routing.terminals import tallest_support_m
+from missions.services.hand_points import HandPoint, are_moved, list_faults, route_points
 from missions.services.kept_route import KeptWaypoint, kept_route
 from missions.services.last_look import flown_route
 from missions.services.plan_json import PlannedRoute
@@ -33,10 +32,7 @@ from missions.services.requests import InvalidRequest, PlanRequest
 from missions.zone_selectors import MetZone, zones_met
 from workspace.number_text import number_text
 
-MOVED_M = 0.1  # less is rounding
 HIGHER_M = 0.05
-MOST_WAYPOINTS = 5_000
-LONGEST_M = 1_000_000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,19 +48,6 @@ def hand_ground() -> HandGround:
     """Of now. Raises NoGraph."""
     ground = planning_read().ground()
     return HandGround(ground.network(), heights_at(ground.edition), ground.edition)
-
-
-@dataclass(frozen=True)
-class HandPoint:
-    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
-
-    speed_mps: over ground on the leg that leads here; None: the UAV's own.
-    """
-
-    position: LonLat
-    agl_m: float
-    was: int | None = None
-    speed_mps: float | None = None
 
 
 @dataclass(frozen=True)
@@ -129,21 +112,6 @@ def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest
         )
         for number in range(len(wished))
     )
-
-
-def list_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> dict[str, str]:
-    """What is wrong with the list itself: with such a fault nothing else can be said of it."""
-    if len(points) > MOST_WAYPOINTS:
-        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MOST_WAYPOINTS}}
-    kept = [point.was for point in points if point.was is not None]
-    if any(not 0 <= was < len(until_now) for was in kept) or any(right <= left for left, right in pairwise(kept)):
-        return {"waypoints": _("The waypoints are not in the order of the route.")}
-    fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
-    if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
-        return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
-    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
-        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(LONGEST_M / 1_000)}}
-    return {}
 
 
 def point_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint], ground: HandGround) -> dict[str, str]:
@@ -214,26 +182,6 @@ def _node_heights_m(network: Network, assets: Collection[int]) -> dict[int, floa
     for asset, height_m in zip(network.node_asset[nodes].tolist(), network.node_height_m[nodes].tolist(), strict=True):
         found[asset] = max(height_m, found.get(asset, height_m))
     return found
-
-
-def are_moved(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> list[bool]:
-    """Whether each point is put in, or elsewhere than the waypoint that it was."""
-    before = [point.position if point.was is None else until_now[point.was].position for point in points]
-    away_m = distance_m(np.array([point.position for point in points]), np.array(before)).tolist()
-    return [point.was is None or metres > MOVED_M for point, metres in zip(points, away_m, strict=True)]
-
-
-def route_points(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> RoutePoints:
-    """A point that was moved passes nothing."""
-    drawn = []
-    for point, is_moved in zip(points, are_moved(points, until_now), strict=True):
-        waypoint = None if point.was is None else until_now[point.was]
-        if waypoint is None or (waypoint.kind == WaypointKind.PASS and is_moved):
-            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m, speed_mps=point.speed_mps))
-            continue
-        asset = None if waypoint.asset is None else waypoint.asset.key
-        drawn.append(RoutePoint(waypoint.position, waypoint.kind, point.agl_m, asset, waypoint.target, waypoint.task, point.speed_mps))
-    return RoutePoints.of(drawn)
 
 
 def flown_by_hand(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float, ground: HandGround) -> PlannedRoute:
