@@ -7,7 +7,7 @@ from telemetry.alerting.situation import Situation
 
 CODE = "no-progress"
 WORDS = "%(uav)s flies its route, but has not come on for %(seconds)s s."
-STEP_M, CLIMB_STEP_M = 10.0, 3.0  # what counts as coming on: more than receivers stray
+STEP_M, CLIMB_STEP_M = 10.0, 6.0  # what counts as coming on: more than receivers stray
 CLEAR_STEPS = 2.0  # that it has to come on, once it has been told
 AT_END_M = 15.0
 SLACK = 1.2  # of a planned stay, which autopilots round up
