@@ -19,9 +19,10 @@ class Given:
     has_unclaimed: bool
 
 
+# What was handed over and not answered is not handed over again when its time is over: a start would come when nobody expects it.
 _OPEN = """
     command.state IN ('queued', 'sent', 'acknowledged') AND (command.expires_at IS NULL OR command.expires_at > statement_timestamp()
-        OR command.lease_expires_at > statement_timestamp())"""
+        OR (command.acknowledged_at IS NOT NULL AND command.lease_expires_at > statement_timestamp()))"""
 _OWN = f"""command.uav_id = %s AND command.link = '{LinkKind.HTTP.value}'
     AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = command.uav_id AND uav.link = '{LinkKind.HTTP.value}')"""
 # The last word about missions counts: an upload or a clearing that was neither refused nor came too late.
@@ -61,3 +62,9 @@ def places_of_targets(uav_id: int, approval: Approval) -> frozenset[int]:
     """Of the targets on this UAV's route, as approved: their places in the mission's list."""
     (route,) = [route for route in approval.document["routes"] if route["uav"] == uav_id]
     return frozenset(waypoint["target"] for waypoint in route["route"]["waypoints"] if waypoint["target"] is not None)
+
+
+def number_of_flights(uav_id: int, approval: Approval) -> int:
+    """Of this UAV's route, as approved."""
+    (route,) = [route for route in approval.document["routes"] if route["uav"] == uav_id]
+    return len(route["flights"])

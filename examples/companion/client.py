@@ -1,9 +1,11 @@
 """The companion itself: what is done when. It reads no clock and never sleeps: whoever runs it calls `step` about once a second.
 
 Nothing that was measured is forgotten before the server has answered that it is stored. A request whose answer was lost is sent
-again as it was; by stream and number the server knows what it has. The autopilot flies on whatever the link does.
+again as it was; by stream and number the server knows what it has. The autopilot flies on whatever the link does. But nothing is set in
+motion that the server does not want at this moment: after a crash somebody may stand beside the UAV.
 """
 
+import math
 from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import Any
@@ -15,6 +17,7 @@ from examples.companion.link import Answer, Link, LinkDown
 
 RECORDS_AT_ONCE, RESULTS_AT_ONCE, ACKNOWLEDGEMENTS_AT_ONCE = 500, 20, 50
 PATIENCE_S = 60.0  # after which a command that is not seen to be done has failed
+SETS_IN_MOTION = {"arm", "take-off", "start", "resume"}
 LATER = {408, 425, 429}  # try again; 5xx likewise
 
 
@@ -36,6 +39,7 @@ class Companion:
         self._poll_at_s = self._report_at_s = 0.0
         self._wait_until_s = 0.0  # the server asked for it
         self._is_up = False
+        self._asked_at_s = -math.inf  # and answered: what waits was wanted then
         self._begun_at_s: dict[str, float] = {}
 
     def step(self, now_s: float) -> None:
@@ -60,7 +64,10 @@ class Companion:
             return False
         if answer.status in {200, 204}:
             self._journal.take(answer.body, answer.headers.get("etag", ""))
-        return answer.status in {200, 204, 304}
+        if answer.status not in {200, 204, 304}:
+            return False
+        self._asked_at_s = now_s
+        return True
 
     def _carry_out(self, now_s: float) -> None:
         for command, state in self._journal.commands():
@@ -68,7 +75,9 @@ class Companion:
             if state == OPEN:
                 self._journal.move_command(key, UNDER_WAY, {"command": key, "state": "acknowledged"})
             try:
-                if state == OPEN or key not in self._begun_at_s:  # also after a crash: it sets a state, so once more does no harm
+                if state == OPEN or key not in self._begun_at_s:  # also after a crash: it sets a state, so once more changes nothing
+                    if not self._is_wanted(command, now_s):
+                        continue
                     self._begun_at_s[key] = now_s
                     if self._begin(command, now_s):
                         continue
@@ -78,6 +87,14 @@ class Companion:
                     self._end(key, {"state": "failed", "reason": f"Not seen to be done in {PATIENCE_S:.0f} s."})
             except Refused as error:
                 self._end(key, {"state": "failed", "reason": str(error)[:500]})
+
+    def _is_wanted(self, command: dict[str, Any], now_s: float) -> bool:
+        """Whether to begin it now. Raises Refused for what came too late."""
+        if command["kind"] not in SETS_IN_MOTION:
+            return True
+        if command["expires_at"] is not None and datetime.fromisoformat(command["expires_at"]).timestamp() <= now_s:
+            raise Refused("It came too late: nobody may expect it any more.")
+        return now_s - self._asked_at_s < self._poll_every_s
 
     def _begin(self, command: dict[str, Any], now_s: float) -> bool:
         """Whether it has ended at once."""

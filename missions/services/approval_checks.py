@@ -1,14 +1,17 @@
 """What speaks against flying a mission's routes as they are stored: looked at before it is approved, and again before it is sent."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 from django.conf import settings
 from django.utils.translation import gettext as _
 
-from inspection.selectors import ground_heights_m
+from inspection.selectors import ground_heights_m, ground_revision
 from inspection.selectors.planning import planning_read
-from missions.models import Mission, Route
+from missions.models import Mission, MissionState, Route
+from missions.selectors import mission_of_organisation
+from missions.services.missions import MissionChanged
 from missions.services.over_wires import spans_in_the_way
 from missions.services.refused import Reason
 from missions.services.still_apart import separation_of_stored
@@ -32,6 +35,40 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
         *_height_references(mission, flown),
         *_ground(mission),
     ]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What spoke against a mission, taken before its row is held: that may take seconds, for which no abort shall wait."""
+
+    mission_revision: int
+    ground: int
+    is_under_way: bool
+    reasons: tuple[Reason, ...]
+
+    def still_counts(self, held: Mission) -> bool:
+        """Whether neither the mission nor the ground was changed since. The caller holds the mission's row."""
+        now = (held.revision, held.state == MissionState.ACTIVE)
+        return now == (self.mission_revision, self.is_under_way) and self.ground == ground_revision()
+
+
+def look_at(mission: Mission, *, now: datetime) -> Look | None:
+    """reasons_against, with the mission's revision and the ground's; None for one that has been put away."""
+    ground = ground_revision()
+    try:
+        loaded = mission_of_organisation(mission.organisation, mission.pk)
+    except Mission.DoesNotExist:
+        return None
+    is_under_way = loaded.state == MissionState.ACTIVE
+    return Look(loaded.revision, ground, is_under_way, tuple(reasons_against(loaded, now=now, is_under_way=is_under_way)))
+
+
+def look_that_counts(look: Look | None, held: Mission, *, now: datetime) -> Look:
+    """The look that was taken before the row was held, or a new one. Raises MissionChanged for a mission that has been put away."""
+    seen = look if look is not None and look.still_counts(held) else look_at(held, now=now)
+    if seen is None:
+        raise MissionChanged
+    return seen
 
 
 def _departure(mission: Mission, now: datetime) -> Iterator[Reason]:

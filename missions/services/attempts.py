@@ -1,7 +1,7 @@
 """One answer to a request on one set of zones: what can be flown there, who does what, and how it is drawn."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
@@ -46,16 +46,10 @@ class Attempt:
         return [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
 
     def drawn_alone(self, uav: int, order: Sequence[int], ground: GroundHeights | None) -> PlannedRoute | None:
-        """One flight of one UAV, by its number in the request, over these visits; None where the wind over the ground stops it.
-
-        Who may fly several times is not reckoned with as charging.
-        """
+        """One flight of one UAV, by its number in the request, over these visits; None where the wind over the ground stops it."""
         alone = [[order] if other == uav else [] for other in self.uavs]
-        drawing = self.drawing
-        if drawing.request.uavs[uav].sorties > 1:
-            drawing = replace(drawing, request=replace(drawing.request, charging_w=None))
         try:
-            return drawing.routes(self.uavs, alone, ground)[uav]
+            return self.drawing.routes(self.uavs, alone, ground)[uav]
         except InvalidRequest:
             return None
 
@@ -107,6 +101,7 @@ def attempt(
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
+        homes=[Terminal(request.uavs[uav].returns_to) for uav in uavs],
     )
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     costs = counted(drawing, uavs) if counts else None
@@ -116,7 +111,14 @@ def attempt(
         request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s, kept_from
     )
     sketch = Sketch(
-        asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
+        asked.problem,
+        ways,
+        scene.graph,
+        [request.uavs[uav].position for uav in uavs],
+        [request.uavs[uav].returns_to for uav in uavs],
+        [base.position for base in bases],
+        uavs,
+        courses,
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
     left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing, kept_from)

@@ -25,9 +25,9 @@ from missions.models import (
     Uav,
     UavCommand,
 )
-from missions.selectors import approval_in_force, mission_of_organisation
+from missions.selectors import approval_in_force
 from missions.services.approval import change_state, held_mission, uavs_that_may_hold
-from missions.services.approval_checks import reasons_against
+from missions.services.approval_checks import look_at, look_that_counts
 from missions.services.approval_document import content_sha256
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
@@ -71,6 +71,7 @@ def dispatch_mission(
 
     `place` is the UAV's in the mission. Raises MissionChanged or Refused.
     """
+    look = look_at(mission, now=timezone.now())
     with transaction.atomic():
         held = held_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
@@ -84,10 +85,8 @@ def dispatch_mission(
             raise refuse("no_route", _("This UAV flies no route."), place)
         if not any(0 < flight <= len(route["flights"]) for route in wanted):
             raise refuse("no_flight", _("This UAV has no such flight."), place)
-        loaded = mission_of_organisation(held.organisation, held.pk)
-        is_under_way = held.state == MissionState.ACTIVE
-        against = reasons_against(loaded, now=timezone.now(), is_under_way=is_under_way)
-        refuse_for([*_uav_reasons(loaded, wanted), *_link_reasons(wanted), *against])
+        against = look_that_counts(look, held, now=timezone.now()).reasons
+        refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *against])
         to_send = [route for route in wanted if place is not None or not _is_on_its_way(approval, route["uav"])]
         refuse_for([] if to_send else [Reason("nothing_to_send", _("Every UAV has its route already, or it is on its way."))])
         if place is not None:
@@ -117,7 +116,8 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
         is_over = held.state in UNSUCCESSFUL
         if approval is None or not (is_over or held.state in ON_ITS_WAY):
             raise refuse("not_on_its_way", _("Only a mission that was sent to UAVs can be aborted."))
-        in_use = {route["uav"] for route in approval.document["routes"]}
+        continued = set(held.routes.filter(continued_by__isnull=False).values_list("mission_uav__uav", flat=True))
+        in_use = {route["uav"] for route in approval.document["routes"]} - continued
         touched = Uav.objects.filter(Q(pk__in=uavs_that_may_hold(approval)) | Q(pk__in=in_use, commands__mission=held))
         if is_over:
             touched = Uav.objects.filter(pk__in=uavs_that_may_hold(approval)).exclude(pk__in=_busy_elsewhere(held))
@@ -138,6 +138,7 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
 def _busy_elsewhere(mission: Mission) -> QuerySet[MissionUav, Any]:
     """UAVs that fly a route of another mission."""
     others = MissionUav.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
+    others = others.filter(route__continued_by=None)
     return others.exclude(mission=mission).filter(uav__isnull=False).values("uav")
 
 
@@ -193,8 +194,9 @@ def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Reason]
             )
             continue
         others = MissionUav.objects.filter(
-            uav=route["uav"], mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False
-        )
+            uav=route["uav"], mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False,
+            route__continued_by=None,
+        )  # fmt: skip
         other = others.exclude(mission=mission).select_related("mission").first()
         if other is not None:
             words = _("%(uav)s is busy with %(mission)s.") % {**values, "mission": other.mission.name}

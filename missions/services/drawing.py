@@ -82,7 +82,7 @@ class Drawing(LaidOut):
             raise InvalidRequest({"conditions": _("The wind is too strong for %(uav)s on its route.") % {"uav": asked.name}}) from error
         stops: tuple[ChargingStop, ...] = ()
         lacks_wh = 0.0
-        if self.request.charging_w is not None and len(drawn) == 1:
+        if self.request.may_charge(uav):
             try:
                 stops = self._charging(uav, waypoints, clock)
                 clock = with_stops(clock, stops, asked.performance.battery_wh or math.inf)
@@ -138,7 +138,7 @@ class Drawing(LaidOut):
             transit_agl_m=flight.transit_agl_m,
             targets=[self._target(visit) for visit in order],
             ways=passed,
-            home=at if action is EndAction.RETURN else None if base is None else base.position,
+            home=self.request.uavs[uav].returns_to if action is EndAction.RETURN else None if base is None else base.position,
         )
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)

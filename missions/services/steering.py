@@ -23,8 +23,8 @@ from missions.models import (
     UavCommand,
     UavState,
 )
-from missions.selectors import approval_in_force, mission_of_organisation
-from missions.services.approval_checks import reasons_against
+from missions.selectors import approval_in_force
+from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
@@ -46,22 +46,29 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
     if uav.state == UavState.RETIRED:
         raise refuse("uav_not_in_service", _("%(uav)s is retired.") % {"uav": uav.name})
     checked = _parameters(uav, kind, parameters or {})
+    mission = mission_in_hand(uav)
+    look = look_at(mission, now=timezone.now()) if mission is not None and kind == CommandKind.START else None
     with transaction.atomic():
-        mission = mission_in_hand(uav)
-        if mission is not None:
+        if mission is not None and kind in SETS_IN_MOTION:  # what stops a UAV waits for nobody who holds its mission
             mission = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         approval = None if mission is None else approval_in_force(mission)
         if kind in SETS_IN_MOTION:
             mission, approval = _to_move_for(uav, kind, mission, approval)
             if kind == CommandKind.START:
-                checked["flight"] = _flight_to_start(uav, mission, approval, timezone.now())
+                checked["flight"] = _flight_to_start(uav, mission, approval, look, timezone.now())
         return queue_command(uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval)
 
 
 def mission_in_hand(uav: Uav) -> Mission | None:
     """The dispatched or active mission in which it flies a route."""
     return (
-        Mission.objects.filter(deleted_at=None, state__in=ON_ITS_WAY, mission_uavs__uav=uav, mission_uavs__route__geometry__isnull=False)
+        Mission.objects.filter(
+            deleted_at=None,
+            state__in=ON_ITS_WAY,
+            mission_uavs__uav=uav,
+            mission_uavs__route__geometry__isnull=False,
+            mission_uavs__route__continued_by=None,
+        )
         .order_by("-updated_at")
         .first()
     )
@@ -94,7 +101,7 @@ def _within(name: str, given: dict[str, Any], low: float, high: float, unit: str
 def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval: Approval | None) -> tuple[Mission, Approval]:
     """A UAV moves for a mission that is approved and on its way, and goes on with one that was started. Raises Refused."""
     values = {"uav": uav.name}
-    if mission is None or approval is None:
+    if mission is None or approval is None or mission.state not in ON_ITS_WAY:
         raise refuse("no_mission", _("%(uav)s has no mission.") % values)
     if approval.revoke_requested_at is not None:
         raise refuse("being_revoked", _("The approval is being taken back."))
@@ -106,7 +113,7 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
     return mission, approval
 
 
-def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, now: datetime) -> int:
+def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look | None, now: datetime) -> int:
     """That is on the UAV, seen there, and due. Raises Refused."""
     values = {"uav": uav.name}
     last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
@@ -118,15 +125,13 @@ def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, now: dateti
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
     if flight == 1 and mission.departs_at is not None:
         _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
-    refuse_for(_reasons_against(mission, route.mission_uav.sequence, now))
+    refuse_for(_reasons_for(route.mission_uav.sequence, look_that_counts(look, mission, now=now)))
     return flight
 
 
-def _reasons_against(mission: Mission, place: int, now: datetime) -> list[Reason]:
+def _reasons_for(place: int, look: Look) -> list[Reason]:
     """As things are now, for this UAV: zones may have come since the mission was sent. Its own departure is looked at by itself."""
-    loaded = mission_of_organisation(mission.organisation, mission.pk)
-    found = reasons_against(loaded, now=now, is_under_way=mission.state == MissionState.ACTIVE)
-    return [reason for reason in found if reason.uav in (None, place) and reason.code != "departure_past"]
+    return [reason for reason in look.reasons if reason.uav in (None, place) and reason.code != "departure_past"]
 
 
 def _refuse_untimely(departs_at: datetime, now: datetime, values: dict[str, str]) -> None:

@@ -1,16 +1,21 @@
-"""The database from inside the loop: one thread, one connection, and errors told apart that another try may mend."""
+"""The database from inside the loop: threads with a connection each, and errors told apart that another try may mend.
+
+A row that somebody else holds is not waited for long: what stands behind would wait, too, be it an abort.
+"""
 
 import asyncio
 import logging
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
-from django.db import close_old_connections, connection
+from django.db import close_old_connections, connection, connections
 
 from workspace.errors import DATABASE_AWAY
 
 logger = logging.getLogger(__name__)
+
+LONGEST_LOCK_WAIT_S = 1.0
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
@@ -21,8 +26,11 @@ class DatabaseAway(Exception):
 
 
 class DatabaseThread:
-    def __init__(self, name: str) -> None:
-        self._executor = ThreadPoolExecutor(1, thread_name_prefix=name)
+    """What is given to one thread is done in its order; of several threads each does what comes next."""
+
+    def __init__(self, name: str, threads: int = 1) -> None:
+        self._executor = ThreadPoolExecutor(threads, thread_name_prefix=name)
+        self._connections: list[Any] = []
 
     async def run(self, do: Callable[P, Result], /, *args: P.args, **kwargs: P.kwargs) -> Result:
         """Raises DatabaseAway, or what `do` raises."""
@@ -30,6 +38,8 @@ class DatabaseThread:
         def inside() -> Result:
             close_old_connections()
             try:
+                if connection.connection is None:
+                    self._connect()
                 return do(*args, **kwargs)
             except DATABASE_AWAY as error:
                 connection.close()
@@ -38,5 +48,14 @@ class DatabaseThread:
         return await asyncio.get_running_loop().run_in_executor(self._executor, inside)
 
     def close(self) -> None:
-        self._executor.submit(lambda: connection.close())  # that of the thread
         self._executor.shutdown(wait=True)
+        with ThreadPoolExecutor(1) as closing:  # Django wants no connection to be touched in the loop
+            list(closing.map(lambda one: one.close(), self._connections))
+
+    def _connect(self) -> None:
+        own = connections["default"]
+        if own not in self._connections:
+            own.inc_thread_sharing()  # closed by whoever ends the threads
+            self._connections.append(own)
+        with own.cursor() as cursor:
+            cursor.execute("SELECT set_config('lock_timeout', %s, false)", [f"{LONGEST_LOCK_WAIT_S:g}s"])

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from django.conf import settings
+
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
@@ -24,10 +26,10 @@ logger = logging.getLogger(__name__)
 
 LOOK_EVERY_S = 1.0
 HEARD_WITHIN_S = 5.0  # else its commands wait for it, or for another gateway
-MOST_AT_ONCE = 200  # above which speeds wait
 MOST_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
+NOTES_AT_ONCE = 4  # the end of a command may have to wait for its mission; the beginning of another must not
 
 
 @dataclass
@@ -36,6 +38,7 @@ class Desk:
     lease_s: float
     sessions: Callable[[], list[Session]]
     database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-commands"))
+    notes: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-notes", NOTES_AT_ONCE))  # of what is carried
     _carriages: dict[UUID, Carriage] = field(default_factory=dict)
     _tasks: dict[UUID, asyncio.Task[None]] = field(default_factory=dict)
     _hint: asyncio.Event = field(default_factory=asyncio.Event)
@@ -72,7 +75,7 @@ class Desk:
         if served:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
             await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
-            await self._claim(served, CommandAxis.SPEED, MOST_AT_ONCE - len(self._carriages))
+            await self._claim(served, CommandAxis.SPEED, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
         self._begin()
 
     async def _claim(self, served: dict[int, Session], axis: CommandAxis, room: int) -> None:
@@ -85,7 +88,7 @@ class Desk:
         )
         for command in claimed:
             session = served[command.uav_id]
-            self._carriages[command.pk] = Carriage(command, session, self.database, held_until_s(asked_s, self.lease_s))
+            self._carriages[command.pk] = Carriage(command, session, self.notes, held_until_s(asked_s, self.lease_s))
 
     async def close(self) -> None:
         """Ends what goes on, and gives back what has not ended by then."""

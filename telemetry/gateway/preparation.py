@@ -11,6 +11,8 @@ from missions.mavlink.content import FlightLoad
 from missions.mavlink.frozen import TakeOff
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
+from telemetry.ground_station.flavour import RESTARTS, Flavour, Mode
+from telemetry.ground_station.leg import beside_leg
 from telemetry.ground_station.orders import Order
 from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.loads import Loaded, loaded_on
@@ -19,6 +21,7 @@ LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
 FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
 EMPTY = FlightLoad(())
 KNOWN_LOADS = 5
+NEW_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -90,21 +93,57 @@ def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | Cann
     return approved_load(approval, uav_id=command.uav_id, flight=before.flight)
 
 
-def reason_not_to(task: Task, state: VehicleState) -> CannotCarry | None:
-    """Whether the vehicle stands where its flight was planned to begin, and counts its heights from there."""
+def reason_not_to(task: Task, state: VehicleState, now_s: float) -> CannotCarry | None:
+    """Whether the vehicle stands where its flight was planned to begin, or flies where it was to fly, and counts its heights from there.
+
+    now_s: by the state's clock. What was told longer ago may have been before a boot, or before somebody carried the vehicle away.
+    """
     if task.take_off is None:
         return None
     if not state.is_in_air:
-        if state.position is None:
-            return CannotCarry("no-position", "The UAV has not told where it stands.", is_for_good=False)
+        if state.position is None or not _is_new(state.position_at_s, now_s):
+            return CannotCarry("no-position", "The UAV does not tell where it stands.", is_for_good=False)
         elsewhere = _elsewhere(task.take_off, state.position, state.altitude_amsl_m, "UAV stands", "UAV reports", "")
         if elsewhere is not None:
             return elsewhere
     if task.order is None:
         return None
-    if state.home is None:
-        return CannotCarry("no-home", "The UAV has not told where its home is, from which it counts its heights.", is_for_good=False)
-    return _elsewhere(task.take_off, state.home, state.home_amsl_m, "UAV's home is", "UAV's home is", "home-")
+    if state.home is None or not _is_new(state.home_at_s, now_s):
+        return CannotCarry("no-home", "The UAV does not tell where its home is, from which it counts its heights.", is_for_good=False)
+    elsewhere = _elsewhere(task.take_off, state.home, state.home_amsl_m, "UAV's home is", "UAV's home is", "home-")
+    if elsewhere is not None or not state.is_in_air or task.aboard is None or state.is_in(Mode.MISSION):
+        return elsewhere
+    return _off_the_leg(task.take_off, task.aboard, state, now_s)
+
+
+def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s: float) -> CannotCarry | None:
+    """In the air it goes on to its present item, straight on from wherever it is."""
+    if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
+        return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
+    if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
+        return CannotCarry("no-item", "The UAV does not tell which waypoint it would fly to.", is_for_good=False)
+    item = state.mission_item
+    if state.flavour is Flavour.ARDUPILOT:
+        if state.parameters.get(RESTARTS) is None:
+            return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
+        item = 0 if state.parameters[RESTARTS] else max(item - 1, 0)
+    beside = beside_leg(load, item, take_off.position, state.position, state.altitude_relative_m)
+    if beside is None:
+        return CannotCarry("flown-already", "The UAV has flown its mission to the end: there is nothing to go on with.")
+    if beside.away_m > settings.RESUME_DISTANCE_M:
+        words = f"The UAV is {beside.away_m:.0f} m from the leg that it would fly on; {settings.RESUME_DISTANCE_M:.0f} m are allowed."
+        return CannotCarry("off-route", words)
+    if abs(beside.above_m) > settings.TAKE_OFF_HEIGHT_M:
+        side = "above" if beside.above_m > 0 else "below"
+        words = (
+            f"The UAV is {abs(beside.above_m):.0f} m {side} the leg that it would fly on; {settings.TAKE_OFF_HEIGHT_M:.0f} m are allowed."
+        )
+        return CannotCarry("off-height", words)
+    return None
+
+
+def _is_new(told_at_s: float | None, now_s: float) -> bool:
+    return told_at_s is not None and now_s - told_at_s <= NEW_S
 
 
 def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, stands: str, reports: str, code: str) -> CannotCarry | None:

@@ -17,6 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, message_of
 from missions.services.credentials import note_mavlink_key_use
+from missions.services.own_return import note_own_return
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
@@ -33,6 +34,7 @@ from telemetry.services.alerts import tell_of_second_sender
 from telemetry.services.flown import note_flown
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
+from telemetry.services.loads import doubt_loaded
 from telemetry.services.sightings import Sighting
 
 logger = logging.getLogger(__name__)
@@ -63,6 +65,7 @@ class Gateway:
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
+        self.telling = DatabaseThread("gateway-tells")  # what may wait for missions: leases do not wait behind it
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.flights = Flights(self.options)
         self.desk = Desk(self.options.holder, self.options.lease_s, lambda: list(self.sessions.values()))
@@ -161,6 +164,8 @@ class Gateway:
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
             "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
             "flown": self._every(FLOWN_EVERY_S, self._tell_flown),
+            "returns": self._every(FLOWN_EVERY_S, self._tell_own_returns),
+            "doubts": self._every(FLOWN_EVERY_S, self._tell_doubts),
             "keys": self._every(KEYS_EVERY_S, self._note_keys),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
@@ -185,11 +190,12 @@ class Gateway:
                 while await self.store.flush():
                     pass
                 await self._tell_flown()
-                await self.flights.write_rows(self.database)
+                await self.flights.write_rows(self.telling)
                 await self.database.run(release_leases, holder=self.options.holder)
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
+        self.telling.close()
 
     async def _close_desk(self) -> None:
         try:
@@ -198,6 +204,7 @@ class Gateway:
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: commands are taken up again when their leases run out")
         self.desk.database.close()
+        self.desk.notes.close()
 
     # What goes on all the time
 
@@ -207,6 +214,7 @@ class Gateway:
             uav = self._uavs.get(system)
             if uav is None or uav.uav_id != session.uav.uav_id:
                 self.flights.end(session, time.time())
+                session.lose()
                 del self.sessions[system]
             elif uav != session.uav:
                 session.change(uav)
@@ -291,28 +299,50 @@ class Gateway:
             other, last_s = session.second_sender
             if now_s - last_s < SECOND_SENDER_GONE_S:
                 words = f"Two senders say that they are {session.uav.name}: {session.peer.name}, which is believed, and {other}."
-                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
+                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
             else:
                 session.second_sender = None
-                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
+                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
 
     async def _tell_flown(self) -> None:
-        """In order, each as often as it takes."""
+        """In order, each as often as it takes. What cannot be told of one UAV holds up no other."""
         for session in list(self.sessions.values()):
             while session.flown:
-                await self.database.run(note_flown, uav_id=session.uav.uav_id, flown=session.flown[0])
+                flown = session.flown[0]
+                try:
+                    await self.telling.run(note_flown, uav_id=session.uav.uav_id, flown=flown)
+                except DatabaseAway:
+                    raise
+                except Exception:
+                    logger.exception("what %s has flown could not be told: %s", session.uav.name, flown)
                 session.flown.pop(0)
+
+    async def _tell_own_returns(self) -> None:
+        for session in list(self.sessions.values()):
+            told = session.own_return.news(session.state)
+            if told is not None:
+                uav_id = session.uav.uav_id
+                await self.telling.run(note_own_return, uav_id=uav_id, autopilot=told.autopilot, parameters=told.parameters)
+                session.own_return.note(told)
+
+    async def _tell_doubts(self) -> None:
+        for session in list(self.sessions.values()):
+            while session.lists.found:
+                doubt, at_s = session.lists.found[0]
+                await self.telling.run(doubt_loaded, uav_id=session.uav.uav_id, doubt=doubt, ago_s=time.monotonic() - at_s)
+                if session.lists.found[:1] == [(doubt, at_s)]:
+                    session.lists.found.pop(0)
 
     async def _note_keys(self) -> None:
         signed = [session for session in self.sessions.values() if session.has_signed]
         for session in signed:
             session.has_signed = False
         if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
-            await self.database.run(note_mavlink_key_use, credential_ids=used)
+            await self.telling.run(note_mavlink_key_use, credential_ids=used)
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())
-        await self.flights.write_rows(self.database)
+        await self.flights.write_rows(self.telling)
 
     async def _tell_counts(self) -> None:
         counts = {**self.damages, **self.listeners.damages}

@@ -1,8 +1,8 @@
 """What was heard, on its way into the database: nothing is lost while that is away, as long as it fits."""
 
 import logging
-from collections import deque
-from collections.abc import Callable, Sequence
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
@@ -80,14 +80,38 @@ class Store:
                 await self._store(part)
 
     def _drop_overflow(self) -> None:
-        for _ in range(len(self.records) - self.most_records):
-            self.records.popleft()
-            self.lost += 1
+        """The oldest of those who have most: one that sends far too much takes no room from the others."""
+        before = len(self.records)
+        if before <= self.most_records:
+            return
+        waiting = Counter(record.uav_id for record in self.records)
+        most_of_each = _most_of_each(waiting.values(), self.most_records)
+        kept = []
+        for record in self.records:
+            if waiting[record.uav_id] <= most_of_each:
+                kept.append(record)
+            else:
+                waiting[record.uav_id] -= 1
+        self.records.clear()
+        self.records.extend(kept)
+        self.lost += before - len(kept)
 
     def _tell(self, *, is_away: bool, why: str = "") -> None:
         if is_away != self.is_away:
             self.is_away = is_away
             logger.warning("the database is %s; %s records wait. %s", "away" if is_away else "back", len(self.records), why)
+
+
+def _most_of_each(numbers: Iterable[int], most: int) -> int:
+    """To how many each is cut so that no more than `most` are left of all."""
+    room = most
+    by_size = sorted(numbers)
+    for place, number in enumerate(by_size):
+        share = room // (len(by_size) - place)
+        if number > share:
+            return share
+        room -= number
+    return most
 
 
 def _parts(heard: Heard) -> Sequence[Heard]:

@@ -44,7 +44,11 @@ COPTER_NAMES = {
 }  # fmt: skip
 COPTER_HOLDING = frozenset({4, 5, 16, 17})  # the list is not flown: GUIDED, LOITER, POSHOLD, BRAKE
 COPTER_NOT_ARMABLE = frozenset({3, 6, 9, 17, 21, 27})  # from which a start begins by GUIDED
+RESTARTS = "MIS_RESTART"  # ArduPilot: unless 0, each change to AUTO begins the list anew
 COPTER_RETURNING = frozenset({6, 21, 27})
+
+
+MISSION_MODES = frozenset({PX4_AUTO_NAMES[PX4_SUB_MODES[Mode.MISSION]], COPTER_NAMES[COPTER_MODES[Mode.MISSION]]})  # by their names
 
 
 def px4_mode(custom_mode: int) -> tuple[int, int]:

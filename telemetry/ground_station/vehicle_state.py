@@ -12,6 +12,7 @@ from telemetry.ground_station.flavour import COPTER_HOLDING, Flavour, Mode, flav
 from telemetry.ground_station.rules import CommandRules
 
 TEXTS_KEPT = 10
+MOST_PARAMETERS = 4_000  # more than any autopilot has
 WHOLE_TYPES = frozenset({
     mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_UINT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_UINT16,
     mavlink.MAV_PARAM_TYPE_INT32, mavlink.MAV_PARAM_TYPE_UINT32,
@@ -36,10 +37,12 @@ class VehicleState:
     is_armed: bool | None = None
     landed_state: int | None = None
     position: LonLat | None = None
+    position_at_s: float | None = None
     altitude_amsl_m: float | None = None
     altitude_relative_m: float | None = None
     home: LonLat | None = None
     home_amsl_m: float | None = None
+    home_at_s: float | None = None
     mission_item: int | None = None
     mission_item_at_s: float | None = None
     mission_total: int | None = None
@@ -52,6 +55,7 @@ class VehicleState:
     heartbeat_at_s: float | None = None
     landed_at_s: float | None = None
     parameters: dict[str, float] = field(default_factory=dict)
+    parameters_at_s: dict[str, float] = field(default_factory=dict)
     texts: list[tuple[float, int, str]] = field(default_factory=list)
 
     def receive(self, message: Message, now_s: float) -> None:
@@ -120,11 +124,13 @@ def _position(state: VehicleState, message: Message, now_s: float) -> None:
     state.position = LonLat(message.lon / 1e7, message.lat / 1e7)
     state.altitude_amsl_m = message.alt / 1000.0
     state.altitude_relative_m = message.relative_alt / 1000.0
+    state.position_at_s = now_s
 
 
 def _home(state: VehicleState, message: Message, now_s: float) -> None:
     state.home = LonLat(message.longitude / 1e7, message.latitude / 1e7)
     state.home_amsl_m = message.altitude / 1000.0
+    state.home_at_s = now_s
 
 
 def _mission_current(state: VehicleState, message: Message, now_s: float) -> None:
@@ -155,8 +161,9 @@ def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
     value = float(message.param_value)
     if state.flavour is Flavour.PX4 and message.param_type in WHOLE_TYPES:
         value = float(struct.unpack("<i", struct.pack("<f", value))[0])
-    if math.isfinite(value):
+    if math.isfinite(value) and (message.param_id in state.parameters or len(state.parameters) < MOST_PARAMETERS):
         state.parameters[message.param_id] = value
+        state.parameters_at_s[message.param_id] = now_s
 
 
 def _text(state: VehicleState, message: Message, now_s: float) -> None:

@@ -304,3 +304,38 @@ def test_a_token_is_not_taken_along_to_another_server() -> None:
 def test_a_token_is_not_sent_in_the_clear(server: str) -> None:
     with pytest.raises(ValueError, match="https"):
         HttpLink(server, "spu_x")
+
+
+def test_a_start_is_not_carried_out_after_a_crash_when_nobody_wants_it_any_more(flight: Flight) -> None:
+    """The computer goes out as it takes the command, and on again when somebody stands beside the UAV and there is no link."""
+
+    class Killed(BaseException):
+        pass
+
+    def die(*_: Any) -> None:
+        raise Killed
+
+    flight.fly(10)
+    start, command = flight.give(CommandKind.START, flight=1), flight.autopilot.command
+    flight.autopilot.command = die  # type: ignore[method-assign]
+    with pytest.raises(Killed):
+        flight.fly(10)
+    flight.autopilot.command = command  # type: ignore[method-assign]
+    flight.restart()
+    flight.link.is_down = lambda now_s: True
+    flight.fly(60)
+    assert not flight.autopilot.is_in_air
+    UavCommand.objects.filter(pk=start.pk).update(expires_at=datetime.fromtimestamp(0, UTC))
+    flight.link.is_down = lambda now_s: False
+    flight.fly(10)
+    assert not flight.autopilot.is_in_air and not flight.autopilot.is_armed
+
+
+def test_a_start_whose_time_is_over_by_the_companions_clock_is_refused(flight: Flight) -> None:
+    flight.fly(10)
+    start = flight.give(CommandKind.START, flight=1)
+    flight.now_s += 7_200.0
+    flight.fly(10)
+    start.refresh_from_db()
+    assert (start.state, flight.autopilot.is_in_air) == (CommandState.FAILED, False), start.outcome
+    assert "too late" in start.outcome

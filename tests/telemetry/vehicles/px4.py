@@ -25,7 +25,6 @@ class Px4(Vehicle):
     state: str = IDLE
     refuses: dict[int, int] = field(default_factory=dict)  # number of a mission item: the result it is refused with
     heard_items: int = 0
-    parameters: dict[str, float] = field(default_factory=dict)  # of others it says nothing
     autopilot = mavlink.MAV_AUTOPILOT_PX4
     _kind: MissionType = MissionType.MISSION
     _at: int = 0
@@ -140,12 +139,6 @@ class Px4(Vehicle):
             else:
                 one = two = three = four = 0.0
         return item_int(number, kind, item, (one, two, three, four), frame, item.altitude_m)
-
-    def _param_request_read(self, message: Any, now_s: float) -> list[Any]:
-        if message.param_id not in self.parameters:
-            return []
-        value = self.parameters[message.param_id]
-        return [mavlink.MAVLink_param_value_message(message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, 2, 0)]
 
     def _due(self, now_s: float) -> list[Any]:
         if self.state != IDLE and now_s >= self._heard_s + GIVE_UP_S:

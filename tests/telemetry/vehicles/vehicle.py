@@ -29,6 +29,7 @@ class Vehicle:
     deaf_commands: int = 0  # so many commands are answered by yes, and nothing is done
     is_mute: bool = False  # commands are carried out and never answered
     says: str = ""  # with every refusal
+    parameters: dict[str, float] = field(default_factory=lambda: {"MIS_RESTART": 0.0})  # of others it says nothing
     denied: dict[int, int] = field(default_factory=dict)  # MAV_CMD: the result that is answered
     taken: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)  # commands that were carried out
     _next_heartbeat_s: float = 0.0
@@ -106,6 +107,12 @@ class Vehicle:
     def _mission_set_current(self, message: Any, now_s: float) -> list[Any]:
         self._set_current(message.seq)
         return self.reports()
+
+    def _param_request_read(self, message: Any, now_s: float) -> list[Any]:
+        if message.param_id not in self.parameters:
+            return []
+        value = self.parameters[message.param_id]
+        return [mavlink.MAVLink_param_value_message(message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, 2, 0)]
 
     def _set_current(self, item: int) -> int:
         if item >= len(self.lists[MissionType.MISSION]):
