@@ -107,6 +107,7 @@ class TargetInline(_ReadOnlyInline):
 
 class RouteInline(_ReadOnlyInline):
     model = Route
+    fk_name = "mission"
     fields = ["mission_uav", "length_m", "duration_s"]
 
 

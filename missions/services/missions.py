@@ -40,6 +40,7 @@ from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
+LONGEST_NAME = Mission._meta.get_field("name").max_length
 BESIDE_ROUTES = ("name", "lost_link")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
@@ -87,7 +88,7 @@ class MissionChange:
         return any(getattr(self, part.name) is not None for part in fields(self) if part.name not in BESIDE_ROUTES)
 
 
-def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
+def create_mission(*, organisation: Organisation, author: User | None, name: str, request: PlanRequest) -> Mission:
     """Store a draft. Raises InvalidRequest if a target is not on the ground, or wishes contradict each other."""
     refuse_contradictions(request)
     targets = _target_rows(request.targets)
@@ -239,6 +240,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 sensors=tuple(row.sensors),
                 performance=_performance(row),
                 sorties=row.sorties,
+                home=None if row.home is None else LonLat(*row.home.coords),
                 own_figures=tuple(row.own_figures),
                 fleet_figures=row.fleet_figures,
             )
@@ -317,6 +319,7 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             sensors=list(uav.sensors),
             performance=performance_to_json(uav.performance),
             sorties=uav.sorties,
+            home=None if uav.home is None else Point(*uav.home, srid=4326),
             own_figures=list(uav.own_figures),
             fleet_figures=dict(uav.fleet_figures),
         )

@@ -3,6 +3,8 @@
 import math
 import random
 
+import numpy as np
+
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.conditions import Conditions, WindLayer
@@ -10,8 +12,6 @@ from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.frozen import HOVER, RETURN, Flight, FrozenRoute, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
 from telemetry.estimation.knowledge import Knowledge
-
-import numpy as np
 
 HOME = LonLat(9.8, 55.4)
 TRANSIT_M = 60.0

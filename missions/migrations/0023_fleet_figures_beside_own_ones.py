@@ -2,7 +2,7 @@ from django.db import migrations, models
 
 
 class Migration(migrations.Migration):
-    dependencies = [("missions", "0021_live_monitoring")]
+    dependencies = [("missions", "0022_autopilots_own_return")]
 
     operations = [
         migrations.AddField(
