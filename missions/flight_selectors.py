@@ -15,6 +15,7 @@ from missions.flight_plan.separation import TimedRoute
 from missions.models import EndAction, Mission, MissionState, Route, Waypoint, WaypointKind
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
+STILL_FLOWN: dict[str, Any] = {"geometry__isnull": False, "continued_by": None}  # of routes; the rest of others is another mission's
 COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task", "kind")
 _SECOND = Value(timedelta(seconds=1))
 _FLOWN = ExpressionWrapper((F("departs_s") + F("duration_s")) * _SECOND, output_field=DurationField())
@@ -40,7 +41,7 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
     longest = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
     missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at__lt=window_to)
     routes = (
-        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), geometry__isnull=False)
+        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN)
         .alias(ends_at=_ENDS_AT)
         .filter(ends_at__gt=window_from - longest)  # who hovers stays for so long
         .select_related("mission", "mission_uav")
@@ -72,7 +73,7 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
 
 def _routes_without_departure(organisation_id: int, but: UUID | str | None) -> list[Route]:
     missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at=None)
-    routes = Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), geometry__isnull=False)
+    routes = Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN)
     return list(routes.select_related("mission_uav").order_by("mission_id", "mission_uav__sequence"))
 
 
@@ -130,7 +131,7 @@ def _timed_route(
         arrival_s=arrival_s,
         hold_s=hold_s,
         take_off_s=take_off_s,
-        take_off_m=float(ground_m[0]),
+        take_off_m=float(ground_m[0] if route.begun_by is None else amsl_m[0]),
         lands_s=None if lands_s is None else max(lands_s, float(arrival_s[-1] + hold_s[-1])),
         landing_m=float(ground_m[-1] if _lands(route) else amsl_m[-1]),
         mission=mission,

@@ -78,8 +78,9 @@ def flight_costs(
     conditions: Conditions,
     rules: FlightRules,
     ground: NodeGround | None = None,
+    homes: Sequence[LonLat] | None = None,
 ) -> FlightCosts:
-    """classes, finishes, starts: of each UAV of the ways; courses, agl_m, hold_s: of each visit; bases as the ways have them.
+    """classes, finishes, starts: of each UAV of the ways; courses, agl_m, hold_s: of each visit; bases and homes as the ways have them.
 
     Timing a drawn route finds the same, but for turns of its course that drawing leaves out, waypoints that the terrain asks for, and
     wind that changes with height along a leg. Without the ground nothing is known of hills, and the air is that of the sea's level.
@@ -89,7 +90,8 @@ def flight_costs(
     class_of = tuple(numbers.setdefault(flying, len(numbers)) for flying in classes)
     course = np.array(list(chain.from_iterable(courses)), dtype=np.float64).reshape(-1, 2)
     course_first = np.array([0, *accumulate(map(len, courses))], dtype=np.int64)
-    stands = np.array([*starts, *bases], dtype=np.float64).reshape(-1, 2)
+    begins = np.array(starts, dtype=np.float64).reshape(-1, 2)
+    stands = np.array([*(starts if homes is None else homes), *bases], dtype=np.float64).reshape(-1, 2)
     flown = np.array([agl_m, hold_s], dtype=np.float64)
     ends = np.array([(_ENDS[finish.end], finish.lands) for finish in finishes], dtype=np.int64).reshape(-1, 2)
     source_m, sink_m = (_NOT_KNOWN, _NOT_KNOWN) if ground is None else (ground.source_m, ground.sink_m)
@@ -100,7 +102,8 @@ def flight_costs(
     for flying, number in numbers.items():
         taken = graph_taken(graph, flying, conditions, rules, ground)
         _fill(
-            number, own_class, ends, ways.nearest_base, course, course_first, stands, flown, source_m, sink_m, float(rules.transit_agl_m),
+            number, own_class, ends, ways.nearest_base, course, course_first, begins, stands, flown,
+            source_m, sink_m, float(rules.transit_agl_m),
             travel.way, travel.entry_leg, travel.entry_label, travel.leg_node, *chain_arrays(travel.index),
             taken.sums.place, taken.sums.label, graph.position, taken.passed_m, taken.ground_m,
             *bends, taken.air.wind, taken.air.temperature_c, taken.air.own, taken.air.table, first, onward, end, at_visit,
@@ -127,6 +130,7 @@ def _fill(
     nearest_base: IntArray,
     course: FloatArray,
     course_first: IntArray,
+    begins: FloatArray,
     stands: FloatArray,
     flown: FloatArray,
     source_ground_m: FloatArray,
@@ -158,14 +162,15 @@ def _fill(
 ) -> None:
     """Write what UAVs of one class take into first (2, u, v), onward (2, c, v, v), end (2, v, u) and at_visit (2, along or service, c, v).
 
-    course: the visits' courses one after another; stands: the starts, then the bases; flown: height and hold of each visit; ends (u, 2):
-    where each UAV ends, and whether it lands.
+    course: the visits' courses one after another; begins: the starts; stands: the homes, then the bases; flown: height and hold of
+    each visit; ends (u, 2): where each UAV ends, and whether it lands.
     """
     uavs, visits = len(class_of), len(course_first) - 1
     source, sink = np.full((uavs + visits, 4), np.nan), np.full((visits + len(stands), 4), np.nan)
     for uav in range(len(stands)):
         sink[visits + uav, :2], sink[visits + uav, 2] = stands[uav], transit_m
-    source[:uavs] = sink[visits : visits + uavs]
+    for uav in range(uavs):
+        source[uav, :2], source[uav, 2] = begins[uav], transit_m
     for visit in range(visits):
         source[uavs + visit, :2], sink[visit, :2] = course[course_first[visit + 1] - 1], course[course_first[visit]]
         source[uavs + visit, 2] = sink[visit, 2] = max(flown[0, visit], transit_m)

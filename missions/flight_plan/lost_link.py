@@ -111,12 +111,14 @@ def checked_returns(
     departs_s: float | None = None,
     ground_heights_m: GroundHeights | None = None,
     spans: Spans = NOTHING_STANDS,
+    home: LonLat | None = None,
 ) -> Returns:
     """Every waypoint from which holding and returning would not go well, and each reason for it, in the order of the route.
 
     The UAV climbs where it is, flies straight to the nearest of its start and the rally points at one height above the sea, and lands
     there. That height clears the ground by transit_agl_m and what stands or hangs beside the way by clearance_m, and is not lower than
     where it is; it must not be above max_agl_m anywhere. The battery has to do with its reserve left, after what is done at the waypoint.
+    home: of a route that begins in the air where its UAV took off; that is its start then.
     Without ground_heights_m flat ground is assumed, as the route then does. departs_s: when the route begins, in seconds since the epoch;
     without it zones count at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than longest_leg_m.
     """
@@ -125,7 +127,8 @@ def checked_returns(
     hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
     air = _Air(performance, cruise_speed_mps, conditions, rules)
     taken_wh = _taken_wh(clock, performance)
-    returns = _returns(waypoints, plan.rally_points, ground_heights_m)
+    begin = LonLat(*waypoints.points.position[0].tolist()) if home is None else home
+    returns = _returns(waypoints, begin, plan.rally_points, ground_heights_m)
     starts, ends = (np.stack([one.line[side] for one in returns]) for side in (0, -1))
     known = ground_heights_m if returns[0].is_known else None
     tops_m = tops_below(starts, ends, spans, known, rules.transit_agl_m - rules.clearance_m)
@@ -156,8 +159,15 @@ def checked_returns(
         flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
         met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
         failed += [FailedReturn(one.waypoint, one.haven, Trouble.ZONE, zone=zone) for zone in met]
-    highest_m = max(levels_m, default=math.nan) - float(returns[0].ground_m[0])
+    # The first waypoint stands over the start; from home the ground is told by what is above sea level less what is above home.
+    stands_m = float(returns[0].ground_m[0]) if home is None else _home_m(waypoints)
+    highest_m = max(levels_m, default=math.nan) - stands_m
     return Returns(failed, None if math.isnan(highest_m) else highest_m)
+
+
+def _home_m(waypoints: Waypoints) -> float:
+    """Of the ground from which relative heights count, over the ground that returns know."""
+    return 0.0 if waypoints.amsl_m is None else float(waypoints.amsl_m[0] - waypoints.relative_m[0])
 
 
 def _taken_wh(clock: Timing, performance: Performance) -> FloatArray | None:
@@ -168,10 +178,10 @@ def _taken_wh(clock: Timing, performance: Performance) -> FloatArray | None:
     return taken_wh
 
 
-def _returns(waypoints: Waypoints, rally_points: Sequence[LonLat], ground_heights_m: GroundHeights | None) -> list[_Return]:
+def _returns(waypoints: Waypoints, home: LonLat, rally_points: Sequence[LonLat], ground_heights_m: GroundHeights | None) -> list[_Return]:
     """From each waypoint the way to the nearest haven; of two that are as near, to the first."""
     position = waypoints.points.position
-    havens = np.concatenate([position[:1], np.array(rally_points, dtype=np.float64).reshape(-1, 2)])
+    havens = np.array([home, *rally_points], dtype=np.float64).reshape(-1, 2)
     metres = np.stack([distance_m(position, np.broadcast_to(haven, position.shape)) for haven in havens])
     nearest = metres.argmin(axis=0)
     lines = []

@@ -65,7 +65,11 @@ class Flight:
 
 @dataclass(frozen=True)
 class FrozenRoute:
-    """One UAV's route. `take_off` is where it begins; `charging_stops` are places of waypoints at which it was planned to charge."""
+    """One UAV's route. `take_off` is where it begins; `charging_stops` are places of waypoints at which it was planned to charge.
+
+    One with `begun_by` is begun in the air, anywhere on its way to the waypoint of this `sequence`: the UAV is somewhere there when it is
+    given the route. It took off from `take_off` before, and counts its heights from there; it has one flight.
+    """
 
     uav: str
     take_off: TakeOff
@@ -74,12 +78,15 @@ class FrozenRoute:
     waypoints: tuple[FrozenWaypoint, ...]
     charging_stops: tuple[int, ...] = ()
     departs_s: float = 0.0
+    begun_by: int | None = None
 
     def __post_init__(self) -> None:
         if self.end_action not in END_ACTIONS:
             raise NotARoute(f"A route cannot end by {self.end_action!r}.")
         if not self.cruise_speed_mps > 0:
             raise NotARoute("A route's speed must be above 0.")
+        if self.begun_by is not None and any(waypoint.kind is WaypointKind.BASE for waypoint in self.waypoints):
+            raise NotARoute("A route that is begun in the air does not stand at a base between two flights.")
 
     @property
     def flights(self) -> tuple[Flight, ...]:
@@ -124,6 +131,7 @@ def route_to_json(route: FrozenRoute) -> dict[str, Any]:
         "end_action": route.end_action,
         "charging_stops": list(route.charging_stops),
         "departs_s": route.departs_s,
+        **({} if route.begun_by is None else {"begun_by": route.begun_by}),
         "waypoints": [_waypoint_to_json(waypoint) for waypoint in route.waypoints],
     }
 
@@ -138,6 +146,7 @@ def route_from_json(stored: Mapping[str, Any]) -> FrozenRoute:
         waypoints=tuple(_waypoint_from_json(waypoint) for waypoint in stored["waypoints"]),
         charging_stops=tuple(stored["charging_stops"]),
         departs_s=stored["departs_s"],
+        begun_by=stored.get("begun_by"),
     )
 
 

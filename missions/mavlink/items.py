@@ -55,14 +55,14 @@ def flight_loads(
     Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. The way back is among the waypoints, so a flight that
     returns lands under the last of them: an autopilot's own return would climb to a height of its own and fly straight, over wires and
     through zones. A flight that ends in hovering has no item for it: both flavours hover after their last waypoint. Raises CannotBeFlown.
+
+    A route that is begun in the air has no take-off: no vehicle leaves the ground by it. As it may be begun at any waypoint until
+    `begun_by`, the speed is told again after each of these.
     """
     if route.charging_stops:
         raise CannotBeFlown("charging", "The route charges at towers on its way, which a plain autopilot cannot do.")
     rules = rules or ItemRules()
-    return tuple(
-        FlightLoad(tuple(_items(flight, route.cruise_speed_mps, rules)), fence=fence, rally=_rally_of(flight, rally))
-        for flight in route.flights
-    )
+    return tuple(FlightLoad(tuple(_items(flight, route, rules)), fence=fence, rally=_rally_of(flight, rally)) for flight in route.flights)
 
 
 def _rally_of(flight: Flight, rally: tuple[MissionItem, ...]) -> tuple[MissionItem, ...]:
@@ -73,15 +73,17 @@ def _rally_of(flight: Flight, rally: tuple[MissionItem, ...]) -> tuple[MissionIt
     return tuple(replace(item, altitude_m=height_m) for item, height_m in zip(rally, heights_m, strict=True))
 
 
-def _items(flight: Flight, cruise_speed_mps: float, rules: ItemRules) -> Iterator[MissionItem]:
+def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[MissionItem]:
     first, last = flight.waypoints[0], flight.waypoints[-1]
+    begun_by = -1 if route.begun_by is None else route.begun_by
     if first.altitude_relative_m <= 0:
         raise CannotBeFlown("take-off-height", "The route's first waypoint is not above its take-off.")
-    yield _at(mavlink.MAV_CMD_NAV_TAKEOFF, first, (0.0, 0.0, 0.0, math.nan))
+    if route.begun_by is None:
+        yield _at(mavlink.MAV_CMD_NAV_TAKEOFF, first, (0.0, 0.0, 0.0, math.nan))
     flown_mps = 0.0
     for place, waypoint in enumerate(flight.waypoints):
-        wanted_mps = cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
-        if abs(wanted_mps - flown_mps) > rules.speed_step_mps:
+        wanted_mps = route.cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
+        if waypoint.sequence <= begun_by + 1 or abs(wanted_mps - flown_mps) > rules.speed_step_mps:
             yield _plain(mavlink.MAV_CMD_DO_CHANGE_SPEED, (GROUND_SPEED, wanted_mps, NO_THROTTLE, 0.0), waypoint)
             flown_mps = wanted_mps
         follows = flight.waypoints[place + 1] if place + 1 < len(flight.waypoints) else None

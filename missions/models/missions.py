@@ -116,6 +116,11 @@ class MissionUav(models.Model):
         blank=True,
         help_text="names of the figures that are said for this mission; the others were the UAV's when it was made",
     )
+    fleet_figures = models.JSONField(
+        default=dict, db_default={}, blank=True, help_text="of the own figures: what the UAV had for them when they were said"
+    )
+    home = models.PointField(srid=4326, null=True, blank=True, help_text="where it took off, if it is in the air already; empty = at start")
+    home_amsl_m = models.FloatField(null=True, blank=True, help_text="of the ground there; empty without terrain data")
 
     class Meta:
         ordering = ["sequence"]
@@ -191,6 +196,17 @@ class Route(models.Model):
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
     flights_flown = models.PositiveSmallIntegerField(default=0, db_default=0, help_text="of its flights, since it was approved")
     has_failed = models.BooleanField(default=False, db_default=False, help_text="a flight of it, since it was approved: it is not flown on")
+    continued_by = models.ForeignKey(
+        Mission,
+        on_delete=models.SET_NULL,
+        null=True,
+        blank=True,
+        related_name="continued_routes",
+        help_text="the mission that has taken over what was left of it: it is not flown on",
+    )
+    begun_by = models.PositiveIntegerField(
+        null=True, blank=True, help_text="of one that is begun in the air: the waypoint until which that may be; empty = it takes off"
+    )
     geometry = models.LineStringField(srid=4326, null=True, blank=True, help_text="empty when the UAV is not used")
     before_hand = models.JSONField(
         default=list,

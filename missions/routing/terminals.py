@@ -280,12 +280,13 @@ def ways_between(
     exits: Sequence[Terminal],
     rules: AccessRules,
     bases: Sequence[Terminal] = (),
+    homes: Sequence[Terminal] | None = None,
 ) -> Ways:
-    """Least-cost ways from starts and exits to entries, starts and bases.
+    """Least-cost ways from starts and exits to entries, homes and bases. Who is not in the air already has its home at its start.
 
     A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
     """
-    sources, sinks = [*starts, *exits], [*entries, *starts, *bases]
+    sources, sinks = [*starts, *exits], [*entries, *(starts if homes is None else homes), *bases]
     number: dict[Terminal, int] = {}
     source = [number.setdefault(place, len(number)) for place in sources]
     sink = [number.setdefault(place, len(number)) for place in sinks]

@@ -8,7 +8,7 @@ from rest_framework import serializers
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
-from workspace.stored_words import in_words
+from missions.stored_outcomes import outcome_in_words
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100
@@ -186,5 +186,5 @@ def command_json(command: UavCommand) -> dict[str, Any]:
         "finished_at": command.finished_at,
         "progress": command.progress,
         "outcome_code": command.outcome_code,
-        "outcome": str(OUTCOMES.get(command.outcome_code) or in_words(command.outcome)),
+        "outcome": str(OUTCOMES.get(command.outcome_code) or outcome_in_words(command.outcome)),
     }

@@ -85,19 +85,23 @@ def approval_document(mission: Mission, *, longest_leg_m: float | None = None) -
 
 
 def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
-    """A stored route in plain values. Its first waypoint stands above the take-off."""
+    """A stored route in plain values. Its first waypoint stands above the take-off, if it does not begin in the air."""
     waypoints = list(route.waypoints.all())
     first, uav = waypoints[0], route.mission_uav
     ground_m = None if first.altitude_amsl_m is None else round(first.altitude_amsl_m - first.altitude_agl_m, 2)
+    take_off = TakeOff(LonLat(*first.position.coords[:2]), ground_m)
+    if uav.home is not None:
+        take_off = TakeOff(LonLat(*uav.home.coords[:2]), uav.home_amsl_m)
     sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
     return FrozenRoute(
         uav=uav.name,
-        take_off=TakeOff(LonLat(*first.position.coords[:2]), ground_m),
+        take_off=take_off,
         cruise_speed_mps=uav.cruise_speed_mps,
         end_action=str(EndAction.RETURN if mission.return_to_start else EndAction(uav.end_action)),
         waypoints=tuple(_waypoint(waypoint, sequence_of) for waypoint in waypoints),
         charging_stops=tuple(stop["waypoint"] for stop in route.charging),
         departs_s=route.departs_s,
+        begun_by=route.begun_by,
     )
 
 

@@ -101,6 +101,7 @@ def attempt(
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         rules=scene.access,
         bases=[Terminal(base.position) for base in bases],
+        homes=[Terminal(request.uavs[uav].returns_to) for uav in uavs],
     )
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     costs = counted(drawing, uavs) if counts else None
@@ -110,7 +111,14 @@ def attempt(
         request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s, kept_from
     )
     sketch = Sketch(
-        asked.problem, ways, scene.graph, [request.uavs[uav].position for uav in uavs], [base.position for base in bases], uavs, courses
+        asked.problem,
+        ways,
+        scene.graph,
+        [request.uavs[uav].position for uav in uavs],
+        [request.uavs[uav].returns_to for uav in uavs],
+        [base.position for base in bases],
+        uavs,
+        courses,
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
     left_out += unreached_places(solution.unassigned, request, asked, places, ways, scene, no_landing, kept_from)

@@ -36,7 +36,8 @@ def unheard(progress: PlanProgress) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Sketch:
-    """Draws routes of visits along the network, without heights. `starts` and `uavs` (their numbers in the request) of those that fly.
+    """Draws routes of visits along the network, without heights. `starts`, `homes` and `uavs` (their numbers in the request) of those
+    that fly.
 
     `bases` are those of the ways.
     """
@@ -45,6 +46,7 @@ class Sketch:
     ways: Ways
     graph: InspectionGraph
     starts: Sequence[LonLat]
+    homes: Sequence[LonLat]
     bases: Sequence[LonLat]
     uavs: Sequence[int]
     courses: Sequence[tuple[LonLat, ...]]
@@ -83,7 +85,7 @@ class Sketch:
         for leg, visit in zip(legs, route, strict=False):
             parts += [leg, np.array(self.courses[visit])]
         if end is End.RETURN:
-            parts += [legs[-1], np.array([self.starts[uav]])]
+            parts += [legs[-1], np.array([self.homes[uav]])]
         elif end is End.ANY_BASE:
             parts += [legs[-1], np.array([self.bases[self.ways.nearest_base[route[-1]]]])]
         return np.concatenate(parts)

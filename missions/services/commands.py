@@ -11,6 +11,7 @@ from missions.models import CommandKind, Mission, UavCommand
 from missions.services import outbox
 from missions.services.approval import finish_revocation
 from missions.services.flying import mark_started
+from missions.services.handover import HAND_OVER, go_on_after
 from missions.services.outbox import (
     CHANNEL,
     claim_commands,
@@ -18,9 +19,11 @@ from missions.services.outbox import (
     note_acknowledged,
     note_failed,
     note_progress,
+    note_read_back,
     note_released,
     note_sent,
     queue_command,
+    release_claims_of_others,
     renew_claims,
 )
 
@@ -32,17 +35,22 @@ __all__ = [
     "note_applied",
     "note_failed",
     "note_progress",
+    "note_read_back",
     "note_released",
     "note_sent",
     "queue_command",
+    "release_claims_of_others",
     "renew_claims",
 ]
 
 
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
-    """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked."""
+    """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked.
+
+    Of what hands a UAV over to another mission the next step is given.
+    """
     with transaction.atomic():
-        command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id").filter(pk=command_id).first()
+        command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id", "parameters").filter(pk=command_id).first()
         if command is not None and command.mission_id is not None:
             Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=command.mission_id)  # missions are held before commands
         if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note, warnings=warnings):
@@ -52,4 +60,6 @@ def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "",
             mark_started(mission_id=command.mission_id, uav_id=command.uav_id)
         if command.kind == CommandKind.CLEAR_MISSION and command.approval_id is not None:
             finish_revocation(approval_id=command.approval_id)
+        if command.parameters.get(HAND_OVER):
+            go_on_after(UavCommand.objects.select_related("uav", "mission", "approval", "created_by").get(pk=command_id))
     return True

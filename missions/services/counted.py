@@ -14,7 +14,7 @@ from missions.routing.problem import Objective
 from missions.services.assignment import route_end
 from missions.services.laid_out import LaidOut
 from missions.services.refusals import Scene
-from missions.services.requests import BaseRequest, PlanRequest
+from missions.services.requests import PlanRequest
 
 _NEED_THEM = {Objective.TIME, Objective.ENERGY}
 
@@ -39,25 +39,24 @@ def counted(laid_out: LaidOut, uavs: Sequence[int]) -> FlightCosts:
         classes=[FlightClass(uav.performance, uav.cruise_speed_mps) for uav in asked],
         finishes=[Finish(route_end(request, uav), request.end_action(uav) is not EndAction.HOVER) for uav in uavs],
         starts=starts,
+        homes=[uav.returns_to for uav in asked],
         bases=[base.position for base in laid_out.bases],
         courses=laid_out.courses,
         agl_m=[laid_out.agl_m[visit.target] for visit in laid_out.visits],
         hold_s=[laid_out.places[visit.target].task.hold_s for visit in laid_out.visits],
         conditions=request.conditions,
         rules=scene.flight,
-        ground=_ground(scene, starts, laid_out.courses, laid_out.bases),
+        ground=_ground(scene, starts, [uav.returns_to for uav in asked], laid_out),
     )
 
 
-def _ground(
-    scene: Scene, starts: Sequence[LonLat], courses: Sequence[tuple[LonLat, ...]], bases: Sequence[BaseRequest]
-) -> NodeGround | None:
+def _ground(scene: Scene, starts: Sequence[LonLat], homes: Sequence[LonLat], laid_out: LaidOut) -> NodeGround | None:
     """Under the network, and under the sources and sinks of the ways in their order; None where no terrain model is."""
     heights = heights_at(scene.edition)
     if heights is None:
         return None
-    entries, exits = [course[0] for course in courses], [course[-1] for course in courses]
+    entries, exits = [course[0] for course in laid_out.courses], [course[-1] for course in laid_out.courses]
     sources = [*starts, *exits]
-    sinks = [*entries, *starts, *(base.position for base in bases)]
+    sinks = [*entries, *homes, *(base.position for base in laid_out.bases)]
     heights_m = heights(np.array([*sources, *sinks], dtype=np.float64).reshape(-1, 2))
     return NodeGround(node_ground_m(scene.graph, terrain_at(scene.edition)), heights_m[: len(sources)], heights_m[len(sources) :])

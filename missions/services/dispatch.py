@@ -116,7 +116,8 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
         is_over = held.state in UNSUCCESSFUL
         if approval is None or not (is_over or held.state in ON_ITS_WAY):
             raise refuse("not_on_its_way", _("Only a mission that was sent to UAVs can be aborted."))
-        in_use = {route["uav"] for route in approval.document["routes"]}
+        continued = set(held.routes.filter(continued_by__isnull=False).values_list("mission_uav__uav", flat=True))
+        in_use = {route["uav"] for route in approval.document["routes"]} - continued
         touched = Uav.objects.filter(Q(pk__in=uavs_that_may_hold(approval)) | Q(pk__in=in_use, commands__mission=held))
         if is_over:
             touched = Uav.objects.filter(pk__in=uavs_that_may_hold(approval)).exclude(pk__in=_busy_elsewhere(held))
@@ -137,6 +138,7 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
 def _busy_elsewhere(mission: Mission) -> QuerySet[MissionUav, Any]:
     """UAVs that fly a route of another mission."""
     others = MissionUav.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
+    others = others.filter(route__continued_by=None)
     return others.exclude(mission=mission).filter(uav__isnull=False).values("uav")
 
 
@@ -192,8 +194,9 @@ def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Reason]
             )
             continue
         others = MissionUav.objects.filter(
-            uav=route["uav"], mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False
-        )
+            uav=route["uav"], mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False,
+            route__continued_by=None,
+        )  # fmt: skip
         other = others.exclude(mission=mission).select_related("mission").first()
         if other is not None:
             words = _("%(uav)s is busy with %(mission)s.") % {**values, "mission": other.mission.name}

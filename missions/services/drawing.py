@@ -138,7 +138,7 @@ class Drawing(LaidOut):
             transit_agl_m=flight.transit_agl_m,
             targets=[self._target(visit) for visit in order],
             ways=passed,
-            home=at if action is EndAction.RETURN else None if base is None else base.position,
+            home=self.request.uavs[uav].returns_to if action is EndAction.RETURN else None if base is None else base.position,
         )
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)

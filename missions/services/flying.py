@@ -14,12 +14,13 @@ from django.db.models.functions import Now
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
 from missions.selectors import approval_in_force
-from missions.services.approval import change_state, held_mission
+from missions.services.approval import change_state
 from missions.services.missions import note
 from workspace.live import publish_live
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
+FLIGHT_FAILED = "flight-failed"  # why a target has failed of which nobody reported anything
 
 
 class FlightEnd(StrEnum):
@@ -30,7 +31,7 @@ class FlightEnd(StrEnum):
 def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
     """A UAV flies its part. Returns whether the mission became active by it."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state != MissionState.DISPATCHED:
             return False
         change_state(held, MissionState.ACTIVE, None, "start", {"uav": uav_id})
@@ -40,10 +41,10 @@ def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
 def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> None:
     """A UAV is at a waypoint of its route, by its place in it: the target there is in progress, those before it are done."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state not in ON_ITS_WAY:
             return
-        rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, waypoints__kind=WaypointKind.TARGET)
+        rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, continued_by=None, waypoints__kind=WaypointKind.TARGET)
         visits = list(rows.order_by("waypoints__sequence").values_list("waypoints__sequence", "waypoints__target"))
         here = {target for sequence, target in visits if sequence == waypoint}
         to_come = {target for sequence, target in visits if sequence > waypoint}
@@ -56,7 +57,7 @@ def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> No
 def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
     """What a UAV reports of a target, by its place in the mission, is the last word on it: complete, skipped or failed."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state in {MissionState.DRAFT, MissionState.PLANNED, MissionState.APPROVED}:
             return False
         found = InspectionTarget.objects.filter(mission=held, sequence=target)
@@ -68,12 +69,12 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
 
     It is completed with the last flight of the last UAV. A flight that failed is the end of its route and of no other: others fly on, and
     are paused and aborted as before; then the mission has failed. Targets on a flown route that nothing else was said of are complete,
-    those on one that failed have failed. Returns the mission's state.
+    those on one that failed have failed. A route that another mission continues has ended by that. Returns the mission's state.
     """
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         route = Route.objects.select_for_update().filter(mission=held, mission_uav__uav=uav_id, geometry__isnull=False).first()
-        if held.state not in ON_ITS_WAY or route is None or route.has_failed:
+        if held.state not in ON_ITS_WAY or route is None or route.has_failed or route.continued_by_id is not None:
             return MissionState(held.state)
         flights = _flights(held)
         if end is FlightEnd.FAILED:
@@ -90,27 +91,36 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
         return MissionState(held.state)
 
 
+def end_if_over(held: Mission) -> None:
+    """After routes were taken over by another mission; the caller holds the row."""
+    _end_with_the_last(held, _flights(held))
+
+
 def _end_with_the_last(held: Mission, flights: dict[int, int]) -> None:
-    """flights: how many each UAV has to fly."""
-    routes = Route.objects.filter(mission=held, geometry__isnull=False)
-    ends = {uav: (flown, has_failed) for uav, flown, has_failed in routes.values_list("mission_uav__uav", "flights_flown", "has_failed")}
-    failed = sorted(uav for uav in flights if uav in ends and ends[uav][1])
-    if not all(uav in failed or ends.get(uav, (0, False))[0] >= number for uav, number in flights.items()):
+    """flights: how many each UAV has to fly. A flight that failed makes it failed; else it is aborted where a route was taken over."""
+    routes = {route.mission_uav.uav_id: route for route in held.routes.filter(geometry__isnull=False).select_related("mission_uav")}
+    failed = sorted(uav for uav in flights if uav in routes and routes[uav].has_failed)
+    continued = sorted(uav for uav in flights if uav in routes and routes[uav].continued_by_id is not None)
+    ended = {*failed, *continued, *(uav for uav, number in flights.items() if uav in routes and routes[uav].flights_flown >= number)}
+    if not ended.issuperset(flights):
         return
     if failed:
         change_state(held, MissionState.FAILED, None, "fail", {"uavs": failed})
+    elif continued:
+        change_state(held, MissionState.ABORTED, None, "continue-elsewhere", {"uavs": continued})
     else:
         change_state(held, MissionState.COMPLETED, None, "complete", {})
 
 
 def _settle(held: Mission, route: Route, state: TargetState) -> None:
     on_route = route.waypoints.filter(kind=WaypointKind.TARGET).values("target")
-    _put(held, InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED), state)
+    reason = FLIGHT_FAILED if state == TargetState.FAILED else ""
+    _put(held, InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED), state, reason)
 
 
-def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState) -> bool:
+def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState, reason: str = "") -> bool:
     """Whether there were any. Live pages are told after the commit."""
-    if not targets.update(state=state, state_at=Now()):
+    if not targets.update(state=state, state_at=Now(), state_reason=reason):
         return False
     transaction.on_commit(partial(publish_live, held.organisation_id))
     return True

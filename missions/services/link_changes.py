@@ -23,5 +23,6 @@ def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
     if uav.commands.filter(state__in=OPEN_COMMANDS).exists():
         raise refuse("commands_waiting", _("A command to %(uav)s is not done yet: how it is reached cannot be changed now.") % values)
     flown = MissionUav.objects.filter(uav=uav, mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
+    flown = flown.filter(route__continued_by=None)
     if flown.exists():
         raise refuse("mission_on_its_way", _("%(uav)s has a mission on its way: how it is reached cannot be changed now.") % values)

@@ -89,6 +89,7 @@ def _checked(
         departs_s=departs_s,
         ground_heights_m=None if route.is_flat else heights,
         spans=spans_of(network),
+        home=asked.home,
     )
     failed = [
         {

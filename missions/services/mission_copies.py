@@ -7,11 +7,10 @@ from django.db import transaction
 from django.db.models import Model
 
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
-from missions.services.missions import note
+from missions.services.missions import LONGEST_NAME, note
 from missions.services.still_apart import separation_of_stored
 from workspace.models import User
 
-LONGEST_NAME = Mission._meta.get_field("name").max_length
 COPIED = (
     "organisation_id", "state", "objective", "return_to_start", "planned_at", "graph_version", "ground_revision", "flat_ground_assumed",
     "total_length_m", "longest_route_m", "plan_warnings", "last_plan", "locks", "plan_quality",

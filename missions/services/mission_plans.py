@@ -159,6 +159,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             charging=route.get("charging", []),
             battery_percent=route.get("battery_percent"),
             base_name=route.get("base") or "",
+            begun_by=route.get("begun_by"),
             lands_at=Point(*route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,
             geometry=LineString(route["geometry"]["coordinates"], srid=4326) if route["geometry"] else None,
         )

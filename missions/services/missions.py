@@ -17,6 +17,7 @@ from missions.models import EndAction, InspectionTarget, Mission, MissionState, 
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
 from missions.services.lost_link import lost_link_of_stored
+from missions.services.own_figures import as_said_before
 from missions.services.places import places_of
 from missions.services.requests import (
     InvalidRequest,
@@ -39,6 +40,7 @@ from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
+LONGEST_NAME = Mission._meta.get_field("name").max_length
 BESIDE_ROUTES = ("name", "lost_link")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
@@ -86,7 +88,7 @@ class MissionChange:
         return any(getattr(self, part.name) is not None for part in fields(self) if part.name not in BESIDE_ROUTES)
 
 
-def create_mission(*, organisation: Organisation, author: User, name: str, request: PlanRequest) -> Mission:
+def create_mission(*, organisation: Organisation, author: User | None, name: str, request: PlanRequest) -> Mission:
     """Store a draft. Raises InvalidRequest if a target is not on the ground, or wishes contradict each other."""
     refuse_contradictions(request)
     targets = _target_rows(request.targets)
@@ -141,8 +143,9 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
         elif targets is not None:
             locked.locks = []
         if change.uavs is not None:
+            said_before = request_of_mission(mission=locked).uavs
             locked.mission_uavs.all().delete()
-            _store_uavs(locked, change.uavs)
+            _store_uavs(locked, tuple(as_said_before(uav, said_before) for uav in change.uavs))
         if targets is not None:
             locked.targets.all().delete()
             _store_targets(locked, targets)
@@ -237,7 +240,9 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 sensors=tuple(row.sensors),
                 performance=_performance(row),
                 sorties=row.sorties,
+                home=None if row.home is None else LonLat(*row.home.coords),
                 own_figures=tuple(row.own_figures),
+                fleet_figures=row.fleet_figures,
             )
             for row in mission.mission_uavs.all()
         ),
@@ -314,7 +319,9 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             sensors=list(uav.sensors),
             performance=performance_to_json(uav.performance),
             sorties=uav.sorties,
+            home=None if uav.home is None else Point(*uav.home, srid=4326),
             own_figures=list(uav.own_figures),
+            fleet_figures=dict(uav.fleet_figures),
         )
         for sequence, uav in enumerate(uavs)
     )

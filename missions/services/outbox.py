@@ -12,8 +12,8 @@ from uuid import UUID
 
 from django.conf import settings
 from django.db import connection, transaction
-from django.db.models import Max, Q, QuerySet
-from django.db.models.functions import Coalesce, Now
+from django.db.models import F, Max, Q, QuerySet
+from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
 
 from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
@@ -145,6 +145,14 @@ def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
     return attempts
 
 
+def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
+    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many."""
+    if not uav_ids:
+        return 0
+    held = UavCommand.objects.filter(uav__in=uav_ids, link=LinkKind.MAVLINK, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+    return held.exclude(holder__in=["", holder]).update(lease_expires_at=None)
+
+
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
     still_wanted = Q(expires_at=None) | Q(expires_at__gt=Now())
@@ -167,6 +175,18 @@ def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, tot
             return False
         _tell_pages([_organisation_of(command_id)])
     return True
+
+
+def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
+    """So many items of what is on board were read, before it is sent: from now on it is wanted as long as it was when it was given.
+
+    That is put off by `read_back_s` at most. False once nobody wants it any more.
+    """
+    rules = settings.COMMAND_RULES
+    latest = F("created_at") + timedelta(seconds=rules.motion_s + rules.read_back_s)
+    put_off = Greatest(F("expires_at"), Least(Now() + timedelta(seconds=rules.motion_s), latest))
+    held = _held(command_id, attempt, holder).filter(sent_at=None, expires_at__gt=Now())
+    return bool(held.update(progress={"done": done, "total": total}, expires_at=put_off))
 
 
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:

@@ -1,5 +1,6 @@
 """What is asked of the planner, as plain values; stored as JSON while a job waits."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -27,7 +28,13 @@ class UavRequest:
     sensors: tuple[str, ...] = ()
     performance: Performance = NO_BATTERY
     sorties: int = 1  # flights that it makes at most; several only where it returns
+    home: LonLat | None = None  # where it took off and returns to, of one that is in the air already; else that is its position
     own_figures: tuple[str, ...] = field(default=(), compare=False)  # of a stored UAV: those that are said for this mission
+    fleet_figures: Mapping[str, Any] = field(default_factory=dict, compare=False)  # of the own figures: what the stored UAV has instead
+
+    @property
+    def returns_to(self) -> LonLat:
+        return self.position if self.home is None else self.home
 
 
 @dataclass(frozen=True)
@@ -176,6 +183,7 @@ def request_to_json(request: PlanRequest) -> dict[str, Any]:
                 "sensors": list(uav.sensors),
                 "performance": performance_to_json(uav.performance),
                 "sorties": uav.sorties,
+                "home": None if uav.home is None else list(uav.home),
             }
             for uav in request.uavs
         ],
@@ -219,6 +227,7 @@ def request_from_json(value: dict[str, Any]) -> PlanRequest:
                 sensors=tuple(uav.get("sensors", ())),
                 performance=performance_from_json(uav.get("performance", {})),
                 sorties=uav.get("sorties", 1),
+                home=LonLat(*uav["home"]) if uav.get("home") else None,
             )
             for uav in value["uavs"]
         ),

@@ -62,7 +62,13 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
 def mission_in_hand(uav: Uav) -> Mission | None:
     """The dispatched or active mission in which it flies a route."""
     return (
-        Mission.objects.filter(deleted_at=None, state__in=ON_ITS_WAY, mission_uavs__uav=uav, mission_uavs__route__geometry__isnull=False)
+        Mission.objects.filter(
+            deleted_at=None,
+            state__in=ON_ITS_WAY,
+            mission_uavs__uav=uav,
+            mission_uavs__route__geometry__isnull=False,
+            mission_uavs__route__continued_by=None,
+        )
         .order_by("-updated_at")
         .first()
     )

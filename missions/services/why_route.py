@@ -107,6 +107,7 @@ def _field(request: PlanRequest, wanted: set[int], scene: Scene, graph: Inspecti
         exits=[Terminal(course[-1], places[visit.target].asset) for visit, course in zip(visits, courses, strict=True)],
         rules=scene.access,
         bases=[Terminal(base) for base in bases],
+        homes=[Terminal(request.uavs[number].returns_to) for number in flying],
     )
     visits_of: dict[int, list[int]] = {}
     for number, visit in enumerate(visits):

@@ -34,6 +34,7 @@ from telemetry.services.alerts import tell_of_second_sender
 from telemetry.services.flown import note_flown
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
+from telemetry.services.loads import doubt_loaded
 from telemetry.services.sightings import Sighting
 
 logger = logging.getLogger(__name__)
@@ -164,6 +165,7 @@ class Gateway:
             "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
             "flown": self._every(FLOWN_EVERY_S, self._tell_flown),
             "returns": self._every(FLOWN_EVERY_S, self._tell_own_returns),
+            "doubts": self._every(FLOWN_EVERY_S, self._tell_doubts),
             "keys": self._every(KEYS_EVERY_S, self._note_keys),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
@@ -322,6 +324,14 @@ class Gateway:
                 uav_id = session.uav.uav_id
                 await self.telling.run(note_own_return, uav_id=uav_id, autopilot=told.autopilot, parameters=told.parameters)
                 session.own_return.note(told)
+
+    async def _tell_doubts(self) -> None:
+        for session in list(self.sessions.values()):
+            while session.lists.found:
+                doubt, at_s = session.lists.found[0]
+                await self.telling.run(doubt_loaded, uav_id=session.uav.uav_id, doubt=doubt, ago_s=time.monotonic() - at_s)
+                if session.lists.found[:1] == [(doubt, at_s)]:
+                    session.lists.found.pop(0)
 
     async def _note_keys(self) -> None:
         signed = [session for session in self.sessions.values() if session.has_signed]

@@ -59,10 +59,18 @@ export function createFlying(store, { failed, page }) {
     store.update({ mission: data });
   }
 
+  /** store.connections: by UAV, what is known of it and of what is on board; null while that could not be read. */
+  async function readConnections() {
+    const uavs = flyersOf(mission()).map(({ uav }) => uav).filter((uav) => uav !== null);
+    const read = await Promise.all(uavs.map((uav) => get(`/uavs/${uav}/connection`).then(({ data }) => [uav, data], () => [uav, null])));
+    store.update({ connections: new Map(read) });
+  }
+
   /** store.returns: what is in the way home, as it was last looked at; null until then. */
   async function readReturns() {
     if (!mission()) return;
     returnsAt = Date.now();
+    void readConnections();
     try {
       store.update({ returns: (await get(`/missions/${mission().id}/returns`)).data.results });
     } catch (error) {
@@ -170,6 +178,7 @@ export function createFlying(store, { failed, page }) {
     const states = new Map(before.map(({ id, state }) => [id, state]));
     for (const { id, uav, kind, state, outcome } of now) {
       if (isOpen({ state }) || !states.has(id) || states.get(id) === state) continue;
+      void readConnections();
       const words = { name: uav.name, act: KINDS[kind], outcome };
       if (state === "applied") say(t("{act}: {name} has done it.", words));
       else if (state === "failed") toast(t("{act}: {name} has not done it. {outcome}", words));

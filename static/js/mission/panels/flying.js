@@ -17,11 +17,12 @@ const secondsText = (iso) => new Date(iso).toLocaleTimeString(localeOf(language)
 /** flying: see flying_actions.js; save(): a copy. */
 export function mountFlying(store, flying, { canFly, saveCopy }) {
   const list = byId("flyers");
+  const connectionOf = ({ uav }) => store.state.connections.get(uav) ?? null;
   const speedOf = (place) => store.state.mission.uavs[place].cruise_speed_mps;
 
   function row(flyer, mission, commands) {
     const board = boardOf(commands, flyer.uav);
-    const { words, image, level, share } = boardWords(board);
+    const { words, image, level, share } = boardWords(board, connectionOf(flyer));
     const flight = flightOf(commands, flyer.uav);
     const said = flight && commandWords(flight);
     const home = isFlown(mission) && returnSaid(returnOf(store.state.returns, flyer.place));
@@ -40,7 +41,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
   }
 
   function acts(flyer, mission, commands) {
-    const next = flightToSend(flyer, commands);
+    const next = flightToSend(flyer, commands, connectionOf(flyer));
     const whyNot = whyNoStart(mission, flyer, commands);
     const button = (words, act, { image = null, reason = "" } = {}) => h("button", { type: "button", class: "button small", disabled: Boolean(reason), title: reason || null, onclick: act }, image && icon(image, "small"), words);
     const more = h("button", { type: "button", class: "icon-button tight", "aria-haspopup": "true", "aria-expanded": "false", "aria-label": t("More for {name}", { name: flyer.name }) }, icon("ellipsis"));
@@ -99,7 +100,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
     byId("revoke").addEventListener("click", () => void flying.revoke());
     byId("abort").addEventListener("click", () => void flying.abort());
   }
-  store.listen(["mission", "commands", "returns", "isDispatching"], draw);
+  store.listen(["mission", "commands", "returns", "connections", "isDispatching"], draw);
 
   /** Shift+P H R L for the route that is chosen, or the only one: the question opens, nothing is done at once. */
   function ask(kind) {

@@ -1,0 +1,117 @@
+"""Taking an offer: one confirmation, after which each UAV concerned is held, given its other route, and goes on.
+
+What is left of the flying mission goes over to the continuing one in one transaction: routes, targets, approval and first commands, or
+nothing of it. No mission is mixed from two plans.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from django.db import transaction
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
+from missions.models import (
+    CommandAxis,
+    CommandKind,
+    CommandState,
+    InspectionTarget,
+    Mission,
+    MissionState,
+    OfferState,
+    ReplanOffer,
+    TargetState,
+    Uav,
+    UavCommand,
+)
+from missions.services.approval import approve_mission, change_state, held_mission
+from missions.services.flying import end_if_over
+from missions.services.handover import HAND_OVER
+from missions.services.outbox import queue_command
+from missions.services.refused import refuse
+from missions.services.replanning.offers import end_offer, held_offer
+from missions.services.replanning.rest import COMING_BACK
+from missions.services.replanning.staleness import why_outdated
+from workspace.models import User
+
+GIVEN_UP = ("changed", "recalled", "out")
+
+
+def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
+    """The continuing mission is approved and on its way. Accepted twice it is accepted once. Raises Refused with every reason."""
+    with transaction.atomic():
+        held = held_offer(offer)
+        if held.state == OfferState.ACCEPTED:
+            return held
+        if held.state != OfferState.OPEN or held.continuation is None:
+            raise refuse("decided", _("This offer is no longer open."))
+        words = why_outdated(held, timezone.now())
+        if words:
+            raise refuse("outdated", words + " " + _("Plan the rest again."))
+        mission, uavs = held_mission(held.mission_id, None), held.difference["uavs"]
+        given_up = [uav["place"] for uav in uavs if uav["change"] in GIVEN_UP]
+        mission.routes.filter(mission_uav__sequence__in=given_up).update(continued_by=held.continuation)
+        approval = approve_mission(mission=held.continuation, actor=actor)
+        continuation = held_mission(held.continuation_id, None)
+        _hand_over_targets(mission, continuation, held.difference)
+        why = _("Continues %(mission)s.") % {"mission": mission.name}
+        told = []
+        for uav in sorted(uavs, key=lambda one: one["uav"] or 0):
+            row = Uav.objects.filter(pk=uav["uav"]).first()
+            if row is None:
+                continue
+            if uav["change"] == "changed":
+                told.append(
+                    queue_command(
+                        uav=row, kind=CommandKind.HOLD, actor=actor, why=why, mission=continuation, approval=approval,
+                        parameters={HAND_OVER: True},
+                    )
+                )  # fmt: skip
+            elif uav["change"] in GIVEN_UP and _is_on_its_own(row, mission):
+                told.append(queue_command(uav=row, kind=CommandKind.RETURN, actor=actor, why=why, mission=mission))
+        commands = [{"uav": command.uav_id, "kind": command.kind, "command": str(command.pk)} for command in told]
+        change_state(
+            continuation,
+            MissionState.DISPATCHED,
+            actor,
+            "dispatch",
+            {"approval": str(approval.pk), "commands": commands, "continues": str(mission.pk)},
+        )
+        end_if_over(mission)
+        end_offer(held, OfferState.ACCEPTED, "", actor=actor)
+    return held
+
+
+def _is_on_its_own(uav: Uav, mission: Mission) -> bool:
+    """Whether it may fly on with what others have taken over: it was started, and not told to come down since."""
+    done = UavCommand.objects.filter(uav=uav, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
+    last = done.order_by("-sequence").first()
+    was_started = done.filter(mission=mission, kind=CommandKind.START).exists()
+    has_failed = mission.routes.filter(mission_uav__uav=uav, has_failed=True).exists()
+    return was_started and not has_failed and last is not None and last.kind not in COMING_BACK
+
+
+def _hand_over_targets(mission: Mission, continuation: Mission, difference: Mapping[str, Any]) -> None:
+    """Nothing is left undecided on a route that is not flown on: each target is the other mission's, done, or left out with the reason."""
+    now = timezone.now()
+    rows = {target.sequence: target for target in mission.targets.all()}
+    taken = sorted(target for uav in difference["uavs"] if uav["change"] == "changed" for target in uav["order"])
+    over = _("Taken over by %(mission)s.") % {"mission": continuation.name}
+    done = []
+    for place, target in enumerate(taken):
+        row = rows[target]
+        if row.state == TargetState.COMPLETE:  # on the way to where its UAV leaves its route
+            done.append(place)
+            continue
+        row.state, row.state_at, row.state_reason = TargetState.SKIPPED, now, over[:300]
+    for entry in difference["targets"]:
+        if entry["to"] is None:
+            row = rows[entry["target"]]
+            row.state, row.state_at, row.state_reason = TargetState.SKIPPED, now, entry["message"][:300]
+    given_up = [uav["place"] for uav in difference["uavs"] if uav["change"] in GIVEN_UP]
+    own = InspectionTarget.objects.filter(mission=mission, waypoints__route__mission_uav__sequence__in=given_up)
+    for key in own.values_list("sequence", flat=True).distinct():
+        if rows[key].state == TargetState.IN_PROGRESS:  # its UAV had left it
+            rows[key].state, rows[key].state_at = TargetState.COMPLETE, now
+    InspectionTarget.objects.bulk_update(rows.values(), ["state", "state_at", "state_reason"])
+    continuation.targets.filter(sequence__in=done).update(state=TargetState.COMPLETE, state_at=now)

@@ -1,0 +1,95 @@
+"""One UAV's continued route: what it flies of the old one until it leaves it, and what was planned from there."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat, path_length_m
+from missions.flight_plan.conditions import Conditions
+from missions.flight_plan.power import NoHeadway
+from missions.flight_plan.route_points import line_of
+from missions.flight_plan.sorties import timing_of_route
+from missions.flight_plan.timing import Timing
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from missions.models import EndAction
+from missions.services.plan_json import PlannedRoute
+from missions.services.replanning.leaving import CannotLeave, Leaving
+from missions.services.requests import task_from_json
+
+
+@dataclass(frozen=True, eq=False)
+class Continued:
+    """A route as the continuing mission stores it; `order` are its targets by their places in the mission that flies."""
+
+    leaving: Leaving
+    route: PlannedRoute
+    order: tuple[int, ...]
+    begun_by: int
+
+
+def continued_route(leaving: Leaving, planned: Mapping[str, Any], order: tuple[int, ...], conditions: Conditions) -> Continued:
+    """`planned`: the route in the shape of the API, whose targets are places in `order`'s mission already. Raises CannotLeave."""
+    rows = planned["waypoints"]
+    begun_by = len(leaving.prefix) - 1
+    skipped = 1 if abs(rows[0]["altitude_agl_m"] - leaving.prefix[-1].agl_m) < 0.01 else 0  # it is there already
+    points = RoutePoints.of([*leaving.prefix, *(_point(row) for row in rows[skipped:])])
+    heights = [row["altitude_amsl_m"] for row in rows[skipped:]]
+    home_m = leaving.rest.take_off_amsl_m
+    if leaving.amsl_m is None or home_m is None or any(height_m is None for height_m in heights):
+        waypoints = Waypoints(points, None, points.agl_m)
+    else:
+        amsl_m = np.array([*leaving.amsl_m, *heights], dtype=np.float64)
+        waypoints = Waypoints(points, amsl_m, amsl_m - home_m)
+    if (waypoints.relative_m <= 0.0).any():
+        raise CannotLeave(_("%(uav)s would fly below the place where it took off.") % {"uav": leaving.rest.name})
+    clock = _clock(leaving, waypoints, EndAction(planned["end_action"]), conditions)
+    route = PlannedRoute(
+        targets=order,
+        waypoints=waypoints,
+        line=line_of(points),
+        length_m=path_length_m(points.position),
+        duration_s=clock.total_s,
+        end_action=EndAction(planned["end_action"]),
+        base=planned["base"],
+        is_flat=waypoints.amsl_m is None,
+        timing=clock,
+    )
+    return Continued(leaving, route, order, begun_by)
+
+
+def _point(row: Mapping[str, Any]) -> RoutePoint:
+    kind = WaypointKind.PASS if row["kind"] == WaypointKind.START else WaypointKind(row["kind"])
+    return RoutePoint(LonLat(*row["position"]), kind, row["altitude_agl_m"], row["asset"], row["target"], task_from_json(row["task"]))
+
+
+def _clock(leaving: Leaving, waypoints: Waypoints, action: EndAction, conditions: Conditions) -> Timing:
+    """From the first waypoint on: it is there already, with what its battery holds now."""
+    performance = leaving.stored.performance
+    try:
+        clock = timing_of_route(
+            waypoints,
+            cruise_speed_mps=leaving.stored.cruise_speed_mps,
+            performance=performance,
+            conditions=conditions,
+            lands=action is not EndAction.HOVER,
+            rules=settings.FLIGHT_RULES,
+        )
+    except NoHeadway as error:
+        raise CannotLeave(_("The wind is too strong for %(uav)s on its route.") % {"uav": leaving.rest.name}) from error
+    climb_s = float(clock.arrival_s[0])
+    clock = replace(clock, arrival_s=clock.arrival_s - climb_s, total_s=clock.total_s - climb_s)
+    if clock.used_wh is None or clock.total_wh is None or performance.battery_wh is None:
+        return clock
+    climb_wh = float(clock.used_wh[0])
+    used_wh, total_wh = clock.used_wh - climb_wh, clock.total_wh - climb_wh
+    usable_wh = performance.usable_wh
+    if usable_wh is not None and total_wh > usable_wh:
+        raise CannotLeave(_("The battery of %(uav)s does not last for it.") % {"uav": leaving.rest.name})
+    now_percent = leaving.rest.battery_percent or 0.0
+    left = now_percent - 100.0 * used_wh / performance.battery_wh
+    end_percent = now_percent - 100.0 * total_wh / performance.battery_wh
+    return replace(clock, used_wh=used_wh, total_wh=total_wh, battery_left_percent=left, end_percent=end_percent)

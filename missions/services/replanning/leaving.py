@@ -1,0 +1,162 @@
+"""From where on its way a UAV leaves its route for another one, and with which battery it does."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import path_length_m
+from missions.flight_plan.conditions import Conditions, air_density
+from missions.flight_plan.leg_taken import J_PER_WH, hold_taken, speeds, table_of
+from missions.flight_plan.performance import InvalidPerformance, Performance, performance_from_json
+from missions.flight_plan.rest_of_route import HEIGHT_ROUNDING_M, where_to_leave
+from missions.flight_plan.waypoints import RoutePoint, WaypointKind
+from missions.models import EndAction
+from missions.services.replanning.rest import Rest
+from missions.services.requests import UavRequest, task_from_json
+
+LEAD_S = 60.0  # from working out to flying: a person decides, the UAV is held, and is given its route
+WAIT_S = 90.0  # for which it hovers meanwhile at most, by the reckoning with its battery
+MOST_RESERVE_PERCENT = 90.0  # that a plan can be asked to leave
+
+
+class CannotLeave(Exception):
+    """In words."""
+
+
+@dataclass(frozen=True, eq=False)
+class Leaving:
+    """`prefix` is flown first: from where the UAV is, on its approved route, to the place where the new part begins.
+
+    `amsl_m` are its heights above the sea, None where they are not known; `targets` those that it does there. `asked` is what the planner
+    is asked for the rest, `stored` what the mission keeps: with the figures of the whole.
+    """
+
+    rest: Rest
+    prefix: tuple[RoutePoint, ...]
+    amsl_m: tuple[float, ...] | None
+    targets: tuple[int, ...]
+    asked: UavRequest
+    stored: UavRequest
+
+
+def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None, is_forced: bool = False) -> Leaving:
+    """before: the waypoint that it must not fly to any more. Raises CannotLeave, in words for whoever decides."""
+    if rest.here is None or rest.uav is None or rest.trouble:
+        raise CannotLeave(rest.trouble or _("Nobody knows where %(uav)s is.") % {"uav": rest.name})
+    prefix, amsl_m = _prefix(rest, before)
+    done = tuple(dict.fromkeys(point.target for point in prefix if point.target is not None))
+    mission_uav = rest.route.mission_uav
+    prefix_m = path_length_m(np.array([point.position for point in prefix])) if len(prefix) > 1 else 0.0
+    performance = _performance(mission_uav.performance)
+    waiting = _with_less(rest, performance, 100.0 - (rest.battery_percent or 0.0) + _waiting_percent(rest, performance, conditions, prefix))
+    range_m = None if mission_uav.max_range_m is None else mission_uav.max_range_m - rest.flown_m
+    if range_m is not None and range_m - prefix_m <= 0.0:
+        raise CannotLeave(_("%(uav)s has no range left.") % {"uav": rest.name})
+    stored = UavRequest(
+        name=mission_uav.name,
+        position=prefix[0].position,
+        max_range_m=range_m,
+        cruise_speed_mps=mission_uav.cruise_speed_mps,
+        end_action=EndAction(mission_uav.end_action),
+        uav=mission_uav.uav_id,
+        sensors=tuple(mission_uav.sensors),
+        performance=waiting,
+        home=rest.take_off,
+        own_figures=tuple(dict.fromkeys([*mission_uav.own_figures, "reserve_percent", "max_range_m"])),
+    )
+    asked = replace(
+        stored,
+        position=prefix[-1].position,
+        max_range_m=None if range_m is None else range_m - prefix_m,
+        performance=_with_less(rest, waiting, _planned_percent(rest, prefix)),
+        most_targets=_most_targets(rest, len(done)),
+    )
+    return Leaving(rest, prefix, amsl_m, done, asked, stored)
+
+
+def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tuple[float, ...] | None]:
+    """The first point is where the UAV is now."""
+    here, points, rows = rest.here, rest.points, rest.rows
+    assert here is not None  # noqa: S101 - the caller has looked
+    last, ahead = rows[here.ahead - 1], rows[here.ahead]
+    agl_m = here.between(last.altitude_agl_m, ahead.altitude_agl_m)
+    begin = RoutePoint(here.position, WaypointKind.START, agl_m)
+    transit_m = settings.FLIGHT_RULES.transit_agl_m
+    in_stretch = last.target_id is not None and last.target_id == ahead.target_id
+    leave: int | None = here.ahead - 1
+    if not rest.is_held or in_stretch or agl_m > transit_m + HEIGHT_ROUNDING_M:
+        lead_s = 0.0 if rest.is_held else LEAD_S
+        leave = where_to_leave(points, here, lead_s=lead_s, transit_agl_m=transit_m, before=before)
+        if leave is None:
+            words = _("%(uav)s comes to it too soon, or has too little of its route left. Hold it, and plan the rest again.")
+            raise CannotLeave(words % {"uav": rest.name})
+    first = here.ahead
+    if not rest.is_held and last.kind == WaypointKind.TARGET and points[here.ahead - 1].target in rest.ahead:
+        first -= 1  # it is still at work there
+    kept = range(first, (leave or 0) + 1) if leave is not None and leave >= first else range(0)
+    entered: set[int | None] = set()
+    prefix = [begin]
+    for place in kept:
+        target = points[place].target if points[place].target in rest.ahead else None
+        is_entry = target is not None and target not in entered
+        entered.add(target)
+        kind = WaypointKind.TARGET if is_entry else WaypointKind.PASS
+        row = rows[place]
+        prefix.append(RoutePoint(points[place].position, kind, row.altitude_agl_m, row.asset_id, target, task_from_json(row.task)))
+    heights = [row.altitude_amsl_m for row in (last, ahead, *(rows[place] for place in kept))]
+    known = [height_m for height_m in heights if height_m is not None]
+    if len(known) < len(heights) or rest.take_off_amsl_m is None:
+        return tuple(prefix), None
+    return tuple(prefix), (here.between(known[0], known[1]), *known[2:])
+
+
+def _performance(stored: dict[str, object]) -> Performance:
+    try:
+        return performance_from_json(stored)
+    except InvalidPerformance as error:
+        raise CannotLeave(str(error)) from error
+
+
+def _with_less(rest: Rest, performance: Performance, percent: float) -> Performance:
+    """So much of the battery kept besides the reserve."""
+    if performance.battery_wh is None:
+        return performance
+    reserve_percent = performance.reserve_percent + percent
+    if reserve_percent > MOST_RESERVE_PERCENT:
+        raise CannotLeave(_("%(uav)s has too little battery left.") % {"uav": rest.name})
+    return replace(performance, reserve_percent=max(reserve_percent, 0.0))
+
+
+def _waiting_percent(rest: Rest, performance: Performance, conditions: Conditions, prefix: Sequence[RoutePoint]) -> float:
+    if performance.battery_wh is None:
+        return 0.0
+    own = speeds(performance, rest.route.mission_uav.cruise_speed_mps, settings.FLIGHT_RULES)
+    density = air_density(0.0, float(conditions.temperature_c))
+    taken = hold_taken(WAIT_S, prefix[0].agl_m, conditions.wind_table, density, own, table_of(performance, own.climb_mps))
+    return 100.0 * float(taken[1]) / J_PER_WH / performance.battery_wh
+
+
+def _planned_percent(rest: Rest, prefix: Sequence[RoutePoint]) -> float:
+    """What the prefix was planned to take."""
+    here, left = rest.here, [row.battery_left_percent for row in rest.rows]
+    if here is None or any(percent is None for percent in left):
+        return 0.0
+    places = [place for place in range(here.ahead, len(rest.rows)) if rest.points[place].position == prefix[-1].position]
+    if not places or len(prefix) == 1:
+        return 0.0
+    return max(0.0, here.between(left[here.ahead - 1] or 0.0, left[here.ahead] or 0.0) - (left[places[0]] or 0.0))
+
+
+def _most_targets(rest: Rest, more: int) -> int | None:
+    """That it may do after the prefix, if the mission limits it."""
+    most = rest.route.mission_uav.most_targets
+    if most is None:
+        return None
+    own = {point.target for point in rest.points if point.target is not None}
+    left = most - (len(own) - len(rest.ahead)) - more
+    if left <= 0:
+        raise CannotLeave(_("%(uav)s does as many targets as it may.") % {"uav": rest.name})
+    return left

@@ -1,0 +1,112 @@
+"""Offers of another plan while a mission flies: asked for, suggested, declined, outdated. Nothing here changes what is flown."""
+
+from datetime import datetime, timedelta
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
+from missions.models import Mission, MissionState, OfferState, ReplanOffer
+from missions.services.missions import note
+from missions.services.refused import refuse
+from missions.services.replanning.staleness import why_outdated
+from workspace.models import Job, User
+from workspace.services import create_job
+
+REPLAN = "missions.tasks.replan_mission"
+ASKED_FOR = "asked-for"
+UNDECIDED = (OfferState.COMPUTING, OfferState.OPEN)
+WORKED_OUT_WITHIN = timedelta(seconds=120)  # else whoever worked on it is lost
+
+
+def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
+    """Somebody wants to see another way to do the rest. An offer that is open goes, and a new one is worked out. Raises Refused."""
+    with transaction.atomic():
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
+        if held.state != MissionState.ACTIVE:
+            raise refuse("not_flying", _("Only what is left of a mission that flies can be planned again."))
+        _set_aside(held, _("It was asked for again."))
+        return _begin(held, ASKED_FOR, {"code": ASKED_FOR}, actor)
+
+
+def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffer | None:
+    """Once for each cause: `code` uav-out, zone-active or battery-short with the `uav` (its key) or the `zone`, and figures besides.
+
+    None where the mission does not fly, or an offer for this cause was made before and is not outdated. Its job is sent to the planners by
+    the schedule (tasks.look_after_offers), within seconds.
+    """
+    with transaction.atomic():
+        held = Mission.objects.select_for_update(no_key=True).filter(pk=mission_id, state=MissionState.ACTIVE, deleted_at=None).first()
+        if held is None:
+            return None
+        named = {"code": code, **{name: cause[name] for name in ("uav", "zone") if cause.get(name) is not None}}
+        known = held.replan_offers.filter(code=code, cause__contains=named).exclude(state=OfferState.OUTDATED)
+        if known.exists():
+            return None
+        _set_aside(held, _("Something else has happened since."))
+        offer, _job = _begin(held, code, {**cause, **named}, None)
+    return offer
+
+
+def decline_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
+    """The mission goes on as it is. Declined twice it is declined once. Raises Refused."""
+    with transaction.atomic():
+        held = held_offer(offer)
+        if held.state == OfferState.DECLINED:
+            return held
+        if held.state not in UNDECIDED:
+            raise refuse("decided", _("This offer is no longer open."))
+        end_offer(held, OfferState.DECLINED, "", actor=actor)
+    return held
+
+
+def settle_offers(*, now: datetime | None = None) -> int:
+    """Marks those outdated from which the mission has moved on, or that nobody works out any more; returns how many."""
+    moment = now or timezone.now()
+    found = 0
+    for key in list(ReplanOffer.objects.filter(state__in=UNDECIDED).values_list("pk", flat=True)):
+        with transaction.atomic():
+            offer = ReplanOffer.objects.select_related("mission").get(pk=key)
+            held = held_offer(offer)
+            if held.state == OfferState.OPEN:
+                words = why_outdated(held, moment)
+            elif held.state == OfferState.COMPUTING and held.created_at + WORKED_OUT_WITHIN < moment:
+                words = _("It was not worked out in time.")
+            else:
+                continue
+            if words:
+                end_offer(held, OfferState.OUTDATED, words)
+                found += 1
+    return found
+
+
+def held_offer(offer: ReplanOffer) -> ReplanOffer:
+    """The row, held until the caller's transaction ends; the mission's before it, as everywhere."""
+    Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=offer.mission_id)
+    return ReplanOffer.objects.select_for_update(of=("self",)).select_related("mission", "continuation").get(pk=offer.pk)
+
+
+def end_offer(offer: ReplanOffer, state: OfferState, words: str, *, actor: User | None = None) -> None:
+    """The caller holds the rows. The mission that was offered is put away unless it is taken."""
+    offer.state, offer.outcome = state, words[:500]
+    if actor is not None:
+        offer.decided_by, offer.decided_at = actor, timezone.now()
+    offer.save(update_fields=["state", "outcome", "decided_by", "decided_at"])
+    if state != OfferState.ACCEPTED and offer.continuation_id is not None:
+        Mission.objects.filter(pk=offer.continuation_id, state=MissionState.PLANNED).update(deleted_at=timezone.now())
+    note(offer.mission, actor, f"replan-{state}", before=None, after={"offer": str(offer.pk), "code": offer.code, "why": words[:500]})
+
+
+def _set_aside(mission: Mission, words: str) -> None:
+    for offer in mission.replan_offers.select_for_update(of=("self",)).select_related("mission").filter(state__in=UNDECIDED):
+        end_offer(offer, OfferState.OUTDATED, words)
+
+
+def _begin(mission: Mission, code: str, cause: dict[str, Any], actor: User | None) -> tuple[ReplanOffer, Job]:
+    offer = ReplanOffer.objects.create(mission=mission, code=code, cause=cause)
+    words = "Working out what is left"
+    job = create_job(organisation=mission.organisation, created_by=actor, task=REPLAN, parameters={"offer": str(offer.pk)}, message=words)
+    note(mission, actor, "replan", before=None, after={"offer": str(offer.pk), "code": code, "cause": cause})
+    return offer, job

@@ -1,0 +1,218 @@
+"""Ways of sharing out what is left: from the one that disturbs least to the one in which everybody may do anything."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Any
+
+from django.utils.translation import gettext as _
+
+from missions.flight_plan.conditions import conditions_from_json
+from missions.models import Mission
+from missions.routing.problem import Objective, Priority
+from missions.routing.solver import Stop, never
+from missions.services.missions import request_of_mission
+from missions.services.planning import make_plan
+from missions.services.replanning.composing import Continued, continued_route
+from missions.services.replanning.leaving import LEAD_S, CannotLeave, Leaving, leaving_of
+from missions.services.replanning.rest import Cause, Rest
+from missions.services.requests import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
+from missions.services.wishes import with_bases
+from missions.zone_selectors import flown_route, zones_met
+
+MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """All that the proposals for one mission have in common, UAVs by their places in it.
+
+    `forced` cannot go on as they do; `zones`: of those before which a zone lies its name. `troubles`: why others cannot do anything else.
+    """
+
+    mission: Mission
+    rests: Sequence[Rest]
+    leavings: Mapping[int, Leaving]
+    forced: frozenset[int]
+    zones: Mapping[int, str]
+    troubles: Mapping[int, str]
+    targets: Mapping[int, TargetRequest]
+    departs_at: datetime
+    search_s: float = 0.0
+    stop: Stop = never
+
+    def rest(self, place: int) -> Rest:
+        return next(rest for rest in self.rests if rest.place == place)
+
+    def why(self, place: int) -> str:
+        """Why a UAV cannot go on as it does, or can do nothing else; empty where neither is so."""
+        zone = self.zones.get(place)
+        words = _("%(zone)s lies across its route.") % {"zone": zone} if zone else ""
+        words = words or (_("Its battery does not last for its route.") if place in self.forced else "")
+        return " ".join(filter(None, [words, self.troubles.get(place, "")]))
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """`continued`: by their places the UAVs whose route changes. `recalled` are to come home. `unreached`: targets with the reason."""
+
+    field: Field
+    continued: Mapping[int, Continued]
+    recalled: frozenset[int]
+    unreached: Mapping[int, tuple[str, str]]
+    plan: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def merit(self) -> tuple[tuple[int, ...], int, float]:
+        """The smaller the better: what is left undone, the most wanted first; how many are disturbed; what is flown."""
+        wanted = [self.field.targets[target].priority for target in self.unreached]
+        undone = tuple(sum(priority == level for priority in wanted) for level in sorted(Priority, reverse=True))
+        value = sum(
+            one.route.length_m if self.field.mission.objective == Objective.TOTAL else one.route.duration_s
+            for one in self.continued.values()
+        )
+        return undone, len(self.continued) + len(self.recalled), value
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Who may be given something: all of these; `free` are those whose remaining order is not kept."""
+
+    able: tuple[int, ...]
+    free: frozenset[int]
+
+
+def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetime) -> Field:
+    conditions = conditions_from_json(mission.conditions)
+    asked = request_of_mission(mission=mission)
+    leavings: dict[int, Leaving] = {}
+    troubles = {rest.place: rest.trouble for rest in rests if rest.trouble}
+    zones: dict[int, str] = {}
+    short: set[int] = set()
+    for rest in rests:
+        if rest.is_out:
+            continue
+        zone, before = _zone_ahead(rest, now)
+        if zone:
+            zones[rest.place] = zone
+        elif cause.code == "battery-short" and rest.uav is not None and rest.uav.pk == cause.uav:
+            short.add(rest.place)
+        try:
+            leavings[rest.place] = leaving_of(rest, conditions, before=before)
+        except CannotLeave as error:
+            troubles.setdefault(rest.place, str(error))
+    return Field(
+        mission,
+        rests,
+        leavings,
+        forced=frozenset(short | set(zones)),
+        zones=zones,
+        troubles=troubles,
+        targets=dict(enumerate(asked.targets)),
+        departs_at=now + timedelta(seconds=LEAD_S),
+    )
+
+
+def _zone_ahead(rest: Rest, now: datetime) -> tuple[str, int | None]:
+    """The first zone across what it would still fly, by the zones of now, and the waypoint that it must not fly to any more."""
+    if rest.here is None:
+        return "", None
+    began_s = now.timestamp() - rest.here.at_s(rest.points)
+    (met,) = zones_met([flown_route(rest.route, began_s)])
+    ahead = [meeting for meeting in met if meeting.breach.leg >= rest.here.ahead - 1]
+    if not ahead:
+        return "", None
+    first = min(ahead, key=lambda meeting: meeting.breach.leg)
+    return first.name, first.breach.leg + 1
+
+
+def proposals(field: Field) -> Iterator[Proposal]:
+    """The one that disturbs least first. Raises what make_plan raises."""
+    seen: set[_Way] = set()
+    for way in _ways(field):
+        if way not in seen:
+            seen.add(way)
+            yield _proposal(field, way, frozenset())
+
+
+def _ways(field: Field) -> Iterator[_Way]:
+    able = tuple(sorted(field.leavings))
+    forced = frozenset(place for place in able if place in field.forced)
+    yield _Way(able, forced)
+    others = [place for place in able if place not in forced]
+    if len(others) > 1:
+        for place in others[:MOST_ALONE]:
+            yield _Way(tuple(sorted({place, *forced})), forced)
+    yield _Way(able, frozenset(able))
+
+
+def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
+    """recalled: UAVs that are given nothing more and come home."""
+    flying = [place for place in way.able if place not in recalled]
+    loose = [target for rest in field.rests if rest.is_out or rest.place in recalled for target in rest.ahead]
+    wanted = sorted(
+        {
+            *loose,
+            *(target for place in flying for target in field.rest(place).ahead if target not in field.leavings[place].targets),
+        }
+    )
+    if not flying:
+        reasons = [field.troubles[rest.place] for rest in field.rests if not rest.is_out and rest.place in field.troubles]
+        words = " ".join(reasons) or "No other UAV of the mission is in the air."
+        return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("nobody_left", words)))
+    if not wanted:
+        return Proposal(field, {}, recalled, {})
+    plan = make_plan(request=_request(field, way, flying, wanted), stop=field.stop, search_s=field.search_s)
+    orders = [tuple(wanted[target] for target in route["targets"]) for route in plan["routes"]]
+    more = {place for place, order in zip(flying, orders, strict=True) if not order and _comes_home(field, place)}
+    if any(field.leavings[place].targets for place in more):
+        return _proposal(field, way, recalled | more)
+    unreached = {wanted[item["target"]]: (item["reason"], item["message"]) for item in plan["unassigned"]}
+    continued: dict[int, Continued] = {}
+    for place, order, route in zip(flying, orders, plan["routes"], strict=True):
+        leaving = field.leavings[place]
+        whole = (*leaving.targets, *order)
+        if place in more or not order or (whole == field.rest(place).ahead and place not in field.forced):
+            continue
+        try:
+            continued[place] = continued_route(leaving, _with_places(route, wanted), whole, conditions_from_json(field.mission.conditions))
+        except CannotLeave as error:
+            own = set(field.rest(place).ahead)
+            lost = [target for target in whole if place in field.forced or target not in own]
+            unreached |= {target: ("beyond_energy", str(error)) for target in lost}
+    return Proposal(field, continued, recalled | more, unreached, plan)
+
+
+def _comes_home(field: Field, place: int) -> bool:
+    """Whether a UAV that is given nothing more has lost what it had, or cannot go on with it."""
+    ahead = field.rest(place).ahead
+    return bool(ahead) and (place in field.forced or set(field.leavings[place].targets) != set(ahead))
+
+
+def _request(field: Field, way: _Way, flying: Sequence[int], wanted: Sequence[int]) -> PlanRequest:
+    mission = field.mission
+    number = {target: place for place, target in enumerate(wanted)}
+    locks = []
+    for place in flying:
+        run = tuple(number[target] for target in field.rest(place).ahead if target in number)
+        if place not in way.free and run:
+            locks.append(LockRequest(field.rest(place).name, run, at_start=True))
+    request = PlanRequest(
+        uavs=tuple(field.leavings[place].asked for place in flying),
+        targets=tuple(field.targets[target] for target in wanted),
+        objective=Objective(mission.objective),
+        return_to_start=mission.return_to_start,
+        locks=tuple(locks),
+        departs_at=field.departs_at,
+        conditions=conditions_from_json(mission.conditions),
+        lost_link=lost_link_from_json(mission.lost_link),
+        organisation=mission.organisation_id,
+        mission=str(mission.pk),
+    )
+    return with_bases(request, mission.organisation)
+
+
+def _with_places(route: Mapping[str, Any], wanted: Sequence[int]) -> dict[str, Any]:
+    """Its targets by their places in the mission that flies."""
+    rows = [replaced | {"target": None if replaced["target"] is None else wanted[replaced["target"]]} for replaced in route["waypoints"]]
+    return {**route, "waypoints": rows}

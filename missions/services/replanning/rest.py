@@ -1,0 +1,232 @@
+"""What is left of a mission that flies: where each UAV is, what it has still to do, and whether it can be given anything else."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import pairwise
+from typing import Any
+
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import WGS84
+from missions.flight_plan.rest_of_route import PassedPoint, PlaceOnRoute, place_on_route
+from missions.models import (
+    Approval,
+    CommandAxis,
+    CommandKind,
+    CommandState,
+    InspectionTarget,
+    LinkKind,
+    Mission,
+    Route,
+    TargetState,
+    Uav,
+    UavCommand,
+    Waypoint,
+    WaypointKind,
+)
+from missions.selectors import approval_in_force
+from missions.services.flying import FLIGHT_FAILED
+
+HEARD_WITHIN_S = 30.0  # else nobody knows where it is
+OFF_ROUTE_M = 100.0
+AT_TARGET_M = 15.0  # of a target that is in progress: it is still being done
+REACHED = (TargetState.IN_PROGRESS, TargetState.COMPLETE)
+LEFT = (TargetState.PENDING, TargetState.IN_PROGRESS)
+HOLDING = (CommandKind.HOLD, CommandKind.PAUSE)
+COMING_BACK = (CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Why: `uav-out`, `zone-active`, `battery-short` or `asked-for`; the UAV (by its key) or zone that it is about."""
+
+    code: str
+    uav: int | None = None
+    zone: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """Of one UAV. Its targets are told by their places in the mission, in the order in which it would do them.
+
+    `trouble`: why it can only go on as it does, or not at all; empty where it can be given another route. `is_out`: it does not go on.
+    `here` is None where its place is not known. `ahead` are the targets whose point of the route is still before it.
+    """
+
+    route: Route
+    uav: Uav | None
+    rows: tuple[Waypoint, ...]
+    points: tuple[PassedPoint, ...]
+    here: PlaceOnRoute | None
+    ahead: tuple[int, ...]
+    is_out: bool
+    is_held: bool
+    trouble: str
+    take_off: LonLat
+    take_off_amsl_m: float | None
+    battery_percent: float | None
+    flown_m: float
+
+    @property
+    def place(self) -> int:
+        return int(self.route.mission_uav.sequence)
+
+    @property
+    def name(self) -> str:
+        return str(self.route.mission_uav.name)
+
+
+def rests_of(mission: Mission, cause: Cause, now: datetime) -> list[Rest]:
+    """Of the UAVs that have something left to fly, or something that is to be flown for them. The mission is as selectors load it."""
+    approval = approval_in_force(mission)
+    if approval is None:
+        return []
+    document = {route["uav"]: route for route in approval.document["routes"]}
+    targets = {target.pk: target for target in mission.targets.all()}
+    found = []
+    for route in mission.routes.all():
+        own = document.get(route.mission_uav.uav_id)
+        if route.geometry is None or route.continued_by_id is not None or own is None:
+            continue
+        if route.flights_flown >= len(own["flights"]) and not route.has_failed:
+            continue
+        found.append(_rest(route, own, approval, targets, cause, now))
+    return found
+
+
+def _rest(
+    route: Route, approved: Mapping[str, Any], approval: Approval, targets: Mapping[int, InspectionTarget], cause: Cause, now: datetime
+) -> Rest:
+    uav = Uav.objects.filter(pk=route.mission_uav.uav_id).first()
+    rows = tuple(route.waypoints.all())
+    points = tuple(_point(row, targets) for row in rows)
+    orders = _orders(uav, approval)
+    trouble, is_out = _out(route, uav, orders, cause), True
+    if not trouble:
+        trouble, is_out = _bound(route, approved, uav, orders, now), False
+    here = None
+    first = _first_ahead(rows, targets)
+    if uav is not None and len(points) > 1:
+        here = place_on_route(points, LonLat(*uav.location.coords[:2]), first=first)
+        if here.away_m > OFF_ROUTE_M:
+            trouble = trouble or _("%(uav)s is %(metres)s m off its route.") % {"uav": uav.name, "metres": f"{here.away_m:.0f}"}
+            here = None
+    take_off = approved["flights"][0]["take_off"]
+    return Rest(
+        route=route,
+        uav=uav,
+        rows=rows,
+        points=points,
+        here=here,
+        ahead=_left(route, points, here, targets, is_whole=is_out),
+        is_out=is_out,
+        is_held=bool(orders) and orders[0].kind in HOLDING,
+        trouble=trouble,
+        take_off=LonLat(*take_off["position"]),
+        take_off_amsl_m=take_off["altitude_amsl_m"],
+        battery_percent=_percent(rows, here, uav),
+        flown_m=_flown_m(route, here, points),
+    )
+
+
+def _point(row: Waypoint, targets: Mapping[int, InspectionTarget]) -> PassedPoint:
+    return PassedPoint(
+        LonLat(*row.position.coords[:2]),
+        row.altitude_agl_m,
+        row.arrival_s or 0.0,
+        (row.task or {}).get("hold_s", 0.0),
+        None if row.target_id is None else targets[row.target_id].sequence,
+    )
+
+
+def _orders(uav: Uav | None, approval: Approval) -> list[UavCommand]:
+    """What it was told about its flight in this mission and has done, the newest first; the oldest is its start."""
+    if uav is None:
+        return []
+    done = UavCommand.objects.filter(uav=uav, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
+    start = done.filter(approval=approval, kind=CommandKind.START).order_by("-sequence").first()
+    return [] if start is None else list(done.filter(sequence__gte=start.sequence).order_by("-sequence"))
+
+
+def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: Cause) -> str:
+    """Why it does not go on; empty where it does."""
+    values = {"uav": route.mission_uav.name}
+    if route.has_failed:
+        return _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values
+    if uav is not None and cause.code == "uav-out" and cause.uav == uav.pk:
+        return _("%(uav)s has dropped out.") % values
+    if orders and orders[0].kind in COMING_BACK:
+        return _("%(uav)s was told to come down.") % values
+    return ""
+
+
+def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: Sequence[UavCommand], now: datetime) -> str:
+    """Why it can only go on as it does; empty where it can be given another route in the air."""
+    values = {"uav": route.mission_uav.name}
+    if uav is None:
+        return _("%(uav)s is not a UAV of the fleet: it cannot be sent anything.") % values
+    if uav.link != LinkKind.MAVLINK:
+        return _("%(uav)s is flown by a companion computer, which is not given another mission in the air.") % values
+    if not orders:
+        return _("%(uav)s has not taken off.") % values
+    if len(approved["flights"]) > 1:
+        return _("%(uav)s flies its route in several flights, and lands in between.") % values
+    if uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
+        return _("%(uav)s was not heard of lately: nobody knows where it is.") % values
+    return ""
+
+
+def _first_ahead(rows: Sequence[Waypoint], targets: Mapping[int, InspectionTarget]) -> int:
+    """The waypoint after the last target that was reached."""
+    reached = [
+        place
+        for place, row in enumerate(rows)
+        if row.kind == WaypointKind.TARGET and row.target_id is not None and targets[row.target_id].state in REACHED
+    ]
+    return max(reached, default=0) + 1
+
+
+def _left(
+    route: Route, points: Sequence[PassedPoint], here: PlaceOnRoute | None, targets: Mapping[int, InspectionTarget], *, is_whole: bool
+) -> tuple[int, ...]:
+    """is_whole: all that nobody has seen the end of, wherever the UAV is."""
+    of_place = {target.sequence: target for target in targets.values()}
+    order = list(dict.fromkeys(point.target for point in points if point.target is not None))
+    left = []
+    for place in order:
+        state, reason = of_place[place].state, of_place[place].state_reason
+        if state not in LEFT and not (route.has_failed and state == TargetState.FAILED and reason == FLIGHT_FAILED):
+            continue
+        last = max(number for number, point in enumerate(points) if point.target == place)
+        is_done = here is not None and state == TargetState.IN_PROGRESS and last < here.ahead and not _is_at(points, last, here)
+        if is_whole or not is_done:
+            left.append(place)
+    return tuple(left)
+
+
+def _is_at(points: Sequence[PassedPoint], place: int, here: PlaceOnRoute) -> bool:
+    """Whether it is still where it does what is done at a waypoint."""
+    return here.ahead == place + 1 and distance_apart_m(points[place].position, here.position) <= AT_TARGET_M
+
+
+def _percent(rows: Sequence[Waypoint], here: PlaceOnRoute | None, uav: Uav | None) -> float | None:
+    """Left in its battery: as it tells, else as it was planned for this place; None without a battery that is counted."""
+    if here is None or any(row.battery_left_percent is None for row in rows):
+        return None
+    if uav is not None and uav.battery_percent is not None:
+        return uav.battery_percent
+    before, after = (rows[place].battery_left_percent or 0.0 for place in (here.ahead - 1, here.ahead))
+    return here.between(before, after)
+
+
+def _flown_m(route: Route, here: PlaceOnRoute | None, points: Sequence[PassedPoint]) -> float:
+    if here is None:
+        return 0.0
+    flown = sum(distance_apart_m(one.position, other.position) for one, other in pairwise(points[: here.ahead]))
+    return flown + distance_apart_m(points[here.ahead - 1].position, here.position)
+
+
+def distance_apart_m(one: LonLat, other: LonLat) -> float:
+    return float(WGS84.inv(one.lon, one.lat, other.lon, other.lat)[2])

@@ -1,0 +1,111 @@
+"""Whether things have moved on since an offer was worked out, so that it can no longer be taken."""
+
+from collections.abc import Iterable, Mapping
+from datetime import datetime
+from typing import Any
+
+from django.utils.dateparse import parse_datetime
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
+from missions.flight_plan.rest_of_route import NEAR_M, PassedPoint, place_on_route
+from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
+from missions.services.replanning.rest import HEARD_WITHIN_S, HOLDING, LEFT, distance_apart_m
+
+LEAST_LEFT_S = 15.0  # until a UAV is where it is to leave its route: it has to be held before
+
+
+def basis_of(uavs: Iterable[int]) -> dict[str, Any]:
+    """What an offer stands on besides its routes: by the keys of UAVs the last command about their flight."""
+    return {"orders": {str(key): last_order(key) for key in uavs}}
+
+
+def last_order(uav_id: int) -> int:
+    last = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.FLIGHT).order_by("-sequence").values_list("sequence", flat=True).first()
+    return last or 0
+
+
+def is_held(uav_id: int) -> bool:
+    """Whether the last thing that it has done about its flight is to stay where it is."""
+    done = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
+    return done.order_by("-sequence").values_list("kind", flat=True).first() in HOLDING
+
+
+def why_outdated(offer: ReplanOffer, now: datetime) -> str:
+    """In words; empty where it can still be taken."""
+    mission, continuation, difference = offer.mission, offer.continuation, offer.difference
+    if mission.state != MissionState.ACTIVE:
+        return _("The mission does not fly any more.")
+    valid_until = parse_datetime(difference.get("valid_until") or "")
+    if continuation is None or valid_until is None or valid_until < now:
+        return _("It was worked out too long ago.")
+    return (
+        _other_orders(difference)
+        or _targets_reached(mission, continuation, difference)
+        or next(filter(None, (_elsewhere(route, now) for route in _routes(continuation))), "")
+    )
+
+
+def _other_orders(difference: Mapping[str, Any]) -> str:
+    orders = (difference.get("basis") or {}).get("orders") or {}
+    for uav in difference["uavs"]:
+        key = str(uav["uav"])
+        if key in orders and last_order(uav["uav"]) != orders[key]:
+            return _("%(uav)s was given another command since.") % {"uav": uav["name"]}
+    return ""
+
+
+def _targets_reached(mission: Mission, continuation: Mission, difference: Mapping[str, Any]) -> str:
+    """Of those that change hands none may be done by now; what a UAV does on its way to where it leaves its route is its own."""
+    states = {target.sequence: target for target in mission.targets.all()}
+    on_the_way = _done_on_the_way(continuation)
+    for uav in difference["uavs"]:
+        if uav["change"] != "changed":
+            continue
+        for target in uav["order"]:
+            row = states[target]
+            if target in uav["kept"] and row.label in on_the_way:
+                continue
+            if row.state not in LEFT and row.state != TargetState.FAILED:
+                return _("%(target)s was done meanwhile.") % {"target": row.label}
+    return ""
+
+
+def _done_on_the_way(continuation: Mission) -> set[str]:
+    return {
+        waypoint.target.label
+        for route in _routes(continuation)
+        for waypoint in route.waypoints.all()
+        if waypoint.target is not None and waypoint.sequence <= (route.begun_by or 0)
+    }
+
+
+def _routes(continuation: Mission) -> list[Route]:
+    routes = continuation.routes.select_related("mission_uav__uav").prefetch_related("waypoints__target").filter(geometry__isnull=False)
+    return list(routes)
+
+
+def _elsewhere(route: Route, now: datetime) -> str:
+    """Whether the UAV is no longer on the way that the offer keeps, or too near to its end."""
+    uav, values = route.mission_uav.uav, {"uav": route.mission_uav.name}
+    if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
+        return _("%(uav)s was not heard of lately: nobody knows where it is.") % values
+    at = LonLat(*uav.location.coords[:2])
+    rows = [row for row in route.waypoints.all() if row.sequence <= (route.begun_by or 0)]
+    points = [_point(row) for row in rows]
+    if len(points) == 1:
+        return "" if distance_apart_m(points[0].position, at) <= NEAR_M else _moved(values)
+    here = place_on_route(points, at)
+    if here.away_m > NEAR_M:
+        return _moved(values)
+    if points[-1].arrival_s - here.at_s(points) < LEAST_LEFT_S and not is_held(uav.pk):
+        return _("%(uav)s has come too near to where it was to leave its route.") % values
+    return ""
+
+
+def _point(row: Waypoint) -> PassedPoint:
+    return PassedPoint(LonLat(*row.position.coords[:2]), row.altitude_agl_m, row.arrival_s or 0.0, (row.task or {}).get("hold_s", 0.0))
+
+
+def _moved(values: Mapping[str, str]) -> str:
+    return _("%(uav)s is not where it was reckoned to be.") % values

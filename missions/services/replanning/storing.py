@@ -1,0 +1,114 @@
+"""A proposal as a planned mission of its own, which continues the one that flies."""
+
+from collections.abc import Collection
+from datetime import datetime
+from typing import Any
+
+from django.db import transaction
+from django.utils.translation import gettext as _
+
+from missions.flight_plan.conditions import conditions_from_json
+from missions.models import Mission, MissionUav, Route
+from missions.routing.problem import Objective
+from missions.selectors import mission_of_organisation
+from missions.services.approval_checks import reasons_against
+from missions.services.mission_plans import store_plan
+from missions.services.missions import LONGEST_NAME, check_lost_link, create_mission
+from missions.services.plan_json import NO_QUALITY, column_to_json, timing_to_json, total_energy_wh, waypoints_to_json
+from missions.services.refused import Reason
+from missions.services.replanning.composing import Continued
+from missions.services.replanning.proposals import Proposal
+from missions.services.requests import PlanRequest, lost_link_from_json
+from missions.services.still_apart import separation_of_stored
+
+
+def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[Reason]]:
+    """The planned mission, or what speaks against flying it as it is: then nothing is stored."""
+    with transaction.atomic():
+        continuation = _store(proposal)
+        reasons = _reasons_against(proposal, continuation, now)
+        if reasons:
+            transaction.set_rollback(True)
+            return None, reasons
+    return continuation, []
+
+
+def given_up_routes(proposal: Proposal) -> list[int]:
+    """Keys of the flying mission's routes that are not flown on once this is."""
+    changed = {*proposal.continued, *proposal.recalled, *(rest.place for rest in proposal.field.rests if rest.is_out)}
+    return [rest.route.pk for rest in proposal.field.rests if rest.place in changed]
+
+
+def _reasons_against(proposal: Proposal, continuation: Mission, now: datetime) -> list[Reason]:
+    """As if it had been taken over: the rest of the routes that it replaces is in nobody's way."""
+    with transaction.atomic():
+        Route.objects.filter(pk__in=given_up_routes(proposal)).update(continued_by=continuation)
+        separation = separation_of_stored(continuation)
+        loaded = mission_of_organisation(continuation.organisation, continuation.pk)
+        reasons = reasons_against(loaded, now=now)
+        transaction.set_rollback(True)
+    Mission.objects.filter(pk=continuation.pk).update(separation=separation)
+    return reasons
+
+
+def _store(proposal: Proposal) -> Mission:
+    field, flying = proposal.field, proposal.field.mission
+    continued = [proposal.continued[place] for place in sorted(proposal.continued)]
+    targets = sorted(target for one in continued for target in one.order)
+    request = PlanRequest(
+        uavs=tuple(one.leaving.stored for one in continued),
+        targets=tuple(field.targets[target] for target in targets),
+        objective=Objective(flying.objective),
+        return_to_start=flying.return_to_start,
+        departs_at=field.departs_at,
+        conditions=conditions_from_json(flying.conditions),
+        lost_link=lost_link_from_json(flying.lost_link),
+    )
+    name = _("%(mission)s, continued") % {"mission": flying.name[: LONGEST_NAME - 20]}
+    draft = create_mission(organisation=flying.organisation, author=flying.author, name=name[:LONGEST_NAME], request=request)
+    Mission.objects.filter(pk=draft.pk).update(continues=flying, alert_limits=flying.alert_limits)
+    for uav, one in zip(draft.mission_uavs.all(), continued, strict=True):
+        MissionUav.objects.filter(pk=uav.pk).update(home_amsl_m=one.leaving.rest.take_off_amsl_m)
+    planned = store_plan(mission=draft, actor=None, revision=draft.revision, plan=_plan(proposal, continued, targets))
+    check_lost_link(mission=planned)
+    planned.save(update_fields=["lost_link_check"])
+    return planned
+
+
+def _plan(proposal: Proposal, continued: Collection[Continued], targets: list[int]) -> dict[str, Any]:
+    """In the shape of the API, as far as it is stored."""
+    routes = [one.route for one in continued]
+    lengths_m = [round(route.length_m, 3) for route in routes]
+    return {
+        **NO_QUALITY,
+        "method": "continued",
+        "graph_version": proposal.plan["graph_version"],
+        "ground_revision": proposal.plan["ground_revision"],
+        "flat_ground_assumed": any(route.is_flat for route in routes),
+        "total_length_m": round(sum(lengths_m), 3),
+        "longest_route_m": max(lengths_m),
+        "total_energy_wh": total_energy_wh(routes),
+        "separation": None,
+        "lost_link": None,
+        "warnings": [],
+        "routes": [_route(one, targets) for one in continued],
+        "unassigned": [],
+    }
+
+
+def _route(one: Continued, targets: list[int]) -> dict[str, Any]:
+    route = one.route
+    assert route.waypoints is not None and route.line is not None  # noqa: S101 - it was composed of them
+    rows = waypoints_to_json(route.waypoints)
+    for row in rows:
+        row["target"] = None if row["target"] is None else targets.index(row["target"])
+    return {
+        "length_m": round(route.length_m, 3),
+        "duration_s": round(route.duration_s, 1),
+        **timing_to_json(route, column_to_json),
+        "charging": [],
+        "base": route.base,
+        "geometry": {"type": "LineString", "coordinates": route.line.tolist()},
+        "waypoints": rows,
+        "begun_by": one.begun_by,
+    }

@@ -1,0 +1,173 @@
+"""What is left of a mission that flies is planned anew, offered, and changes nothing until somebody takes it."""
+
+import pytest
+
+from missions.models import CommandKind, Mission, MissionState, OfferState, ReplanOffer, TargetState
+from missions.services.commands import note_applied, note_failed, note_sent
+from missions.services.flying import FlightEnd, mark_flight_ended
+from missions.services.handover import stuck_hand_overs
+from missions.services.refused import Refused
+from missions.services.replanning import accept_offer, decline_offer, settle_offers, suggest
+from missions.services.steering import mission_in_hand
+from tests.missions.flights import carry, ground
+from tests.missions.outbox import claim, fence, give
+from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
+from tests.workspace.people import somebody
+from workspace.models import Job
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def flight(tmp_path) -> Flight:
+    ground(tmp_path / "hill.tif", 100.0)
+    return two_in_the_air(somebody())
+
+
+def test_what_a_uav_that_failed_leaves_is_offered_to_the_other(flight):
+    first, second = flight.targets(0), flight.targets(1)
+    assert first and second
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
+    offer = flight.offer()
+    assert offer.state == OfferState.OPEN, offer.outcome
+    tern, kite = offer.difference["uavs"]
+    assert (tern["change"], tern["lost"]) == ("out", first)
+    assert (kite["change"], kite["kept"], sorted(kite["gained"])) == ("changed", second, sorted(first))
+    assert kite["order"][: len(second)] == second, "what it had to do it does first, in its order"
+    assert kite["after"]["length_m"] > kite["before"]["length_m"]
+    assert offer.difference["unreached"] == 0
+    moved = {entry["target"]: (entry["from"], entry["to"]) for entry in offer.difference["targets"]}
+    assert moved == dict.fromkeys(first, (0, 1))
+    assert offer.continuation.state == MissionState.PLANNED
+    assert offer.continuation.continues_id == flight.mission.pk
+    assert not flight.mission.commands.filter(kind=CommandKind.HOLD).exists()
+
+
+def test_a_continued_route_goes_on_from_where_the_uav_flies_and_ends_at_its_home(flight):
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
+    flight.fly_to(1, 3, 0.5)
+    old = flight.route(1)
+    offer = flight.offer()
+    route = offer.continuation.routes.get()
+    rows = list(route.waypoints.order_by("sequence"))
+    where = flight.uavs[1].__class__.objects.get(pk=flight.uavs[1].pk).location
+    assert rows[0].position.distance(where) < 1e-6
+    kept = [row.position.coords for row in old.waypoints.order_by("sequence")[3:]]
+    assert [row.position.coords for row in rows[1 : route.begun_by + 1]] == kept[: route.begun_by]
+    assert route.begun_by >= 1
+    home = old.mission_uav.start
+    assert rows[-1].position.distance(home) < 1e-6
+    assert route.mission_uav.home.distance(home) < 1e-6
+    assert all(row.altitude_relative_m == pytest.approx(row.altitude_amsl_m - 100.0, abs=0.02) for row in rows)
+
+
+def failed_tern(flight: Flight):
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[0].pk, flight=1, end=FlightEnd.FAILED)
+    return flight.offer()
+
+
+def test_an_accepted_offer_is_flown_step_by_step(flight):
+    first, kite = flight.targets(0), flight.uavs[1]
+    offer = accept_offer(offer=failed_tern(flight), actor=flight.author)
+    assert offer.state == OfferState.ACCEPTED
+    continuation = offer.continuation
+    continuation.refresh_from_db()
+    assert continuation.state == MissionState.DISPATCHED
+    given = []
+    for _step in range(3):
+        (command,) = carry(kite)
+        assert (command.mission_id, command.approval.mission_id) == (continuation.pk, continuation.pk)
+        given.append(command.kind)
+    assert given == ["hold", "upload-mission", "start"]
+    assert not claim(*flight.uavs)
+    continuation.refresh_from_db()
+    assert continuation.state == MissionState.ACTIVE
+    flying = Mission.objects.get(pk=flight.mission.pk)
+    assert flying.state == MissionState.FAILED, "a flight of it did fail"
+    moved = flying.targets.filter(sequence__in=first)
+    assert set(moved.values_list("state", flat=True)) == {TargetState.SKIPPED}
+    assert all(continuation.name in reason for reason in moved.values_list("state_reason", flat=True))
+    assert mission_in_hand(kite) == continuation
+
+
+def test_accepted_twice_is_accepted_once(flight):
+    offer = failed_tern(flight)
+    accept_offer(offer=offer, actor=flight.author)
+    accept_offer(offer=offer, actor=flight.author)
+    assert flight.uavs[1].commands.filter(kind=CommandKind.HOLD).count() == 1
+
+
+def test_a_declined_offer_changes_nothing_and_its_mission_is_put_away(flight):
+    offer = decline_offer(offer=failed_tern(flight), actor=flight.author)
+    assert offer.state == OfferState.DECLINED
+    assert Mission.objects.get(pk=offer.continuation_id).deleted_at is not None
+    with pytest.raises(Refused):
+        accept_offer(offer=offer, actor=flight.author)
+    assert not claim(*flight.uavs)
+
+
+@pytest.mark.parametrize("what", ["command", "age", "place", "target"])
+def test_an_offer_from_which_things_have_moved_on_cannot_be_taken(flight, what):
+    offer = failed_tern(flight)
+    if what == "command":
+        give(flight.uavs[1], CommandKind.PAUSE)
+    elif what == "age":
+        offer.difference["valid_until"] = "2020-01-01T00:00:00Z"
+        offer.save()
+    elif what == "place":
+        flight.fly_to(1, flight.route(1).waypoints.count() - 2, 0.9)
+    else:
+        flight.mission.targets.filter(sequence=flight.targets(0)[0]).update(state=TargetState.COMPLETE)
+    with pytest.raises(Refused) as refused:
+        accept_offer(offer=offer, actor=flight.author)
+    assert refused.value.reasons[0].code == "outdated"
+    assert settle_offers() == 1
+    offer.refresh_from_db()
+    assert (offer.state, bool(offer.outcome)) == (OfferState.OUTDATED, True)
+    assert not flight.uavs[1].commands.filter(kind=CommandKind.HOLD).exists()
+    assert not flight.mission.routes.filter(continued_by__isnull=False).exists()
+
+
+def test_a_step_that_fails_is_the_last(flight):
+    accept_offer(offer=failed_tern(flight), actor=flight.author)
+    carry(flight.uavs[1])
+    (upload,) = claim(flight.uavs[1])
+    assert note_sent(upload.pk, **fence(upload))
+    assert note_failed(upload.pk, "refused", "The vehicle has no room.", **fence(upload))
+    assert [stuck.command.pk for stuck in stuck_hand_overs()] == [upload.pk]
+    assert not claim(*flight.uavs)
+    give(flight.uavs[1], CommandKind.RETURN)
+    assert not stuck_hand_overs()
+
+
+def test_whoever_commands_the_uav_meanwhile_has_the_last_word(flight):
+    accept_offer(offer=failed_tern(flight), actor=flight.author)
+    carry(flight.uavs[1])
+    (upload,) = claim(flight.uavs[1])
+    give(flight.uavs[1], CommandKind.RETURN)
+    assert note_sent(upload.pk, **fence(upload))
+    assert note_applied(upload.pk, **fence(upload))
+    assert [command.kind for command in claim(*flight.uavs)] == ["return"]
+
+
+def test_one_cause_is_suggested_once(flight):
+    cause = {"uav": flight.uavs[0].pk, "silent_s": 31.0}
+    offer = suggest(mission_id=flight.mission.pk, code="uav-out", cause=cause)
+    assert offer is not None
+    assert suggest(mission_id=flight.mission.pk, code="uav-out", cause=cause | {"silent_s": 40.0}) is None
+    worked = worked_out(offer, Job.objects.get(parameters__offer=str(offer.pk)))
+    assert worked.state == OfferState.OPEN, worked.outcome
+    decline_offer(offer=worked, actor=flight.author)
+    assert suggest(mission_id=flight.mission.pk, code="uav-out", cause=cause) is None
+    assert suggest(mission_id=flight.mission.pk, code="battery-short", cause=cause) is not None
+
+
+def test_a_uav_that_dropped_out_is_told_to_return_when_others_take_over(flight):
+    tern = flight.uavs[0]
+    offer = suggest(mission_id=flight.mission.pk, code="uav-out", cause={"uav": tern.pk})
+    worked_out(offer, Job.objects.get(parameters__offer=str(offer.pk)))
+    accept_offer(offer=ReplanOffer.objects.get(pk=offer.pk), actor=flight.author)
+    assert [command.kind for command in claim(tern)] == ["return"]
+    flying = Mission.objects.get(pk=flight.mission.pk)
+    assert flying.state == MissionState.ABORTED
+    assert not flying.targets.filter(state__in=["pending", "in-progress"]).exists()
