@@ -11,7 +11,7 @@ from channels.routing import ProtocolTypeRouter, URLRouter  # noqa: E402
 from channels.sessions import SessionMiddlewareStack  # noqa: E402
 
 from config.live import OriginCheck, upgrade_required  # noqa: E402
-from workspace.websocket_urls import websocket_urlpatterns  # noqa: E402
+from config.websocket_urls import websocket_urlpatterns  # noqa: E402
 
 application = ProtocolTypeRouter(
     {

@@ -368,14 +368,19 @@ COMMAND_RULES = CommandRules(
     stop_s=_float("SPANWISE_STOP_COMMAND_S", CommandRules.stop_s),
     upload_s=_float("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
     speed_s=_float("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
+    read_back_s=_float("SPANWISE_READ_BACK_S", CommandRules.read_back_s),
 )
 # The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
+GATEWAY_MOST_COMMANDS = int(_float("SPANWISE_GATEWAY_MOST_COMMANDS", 200))  # carried at once, above which speeds wait
 GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
 LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
+# The watch, which estimates where UAVs are between their reports.
+ESTIMATOR_NAME = os.environ.get("SPANWISE_ESTIMATOR_NAME", "")
+ESTIMATOR_MOST_UAVS = int(_float("SPANWISE_ESTIMATOR_MOST_UAVS", 1_000))  # that one watch holds at once
 TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
 # by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
 TAKE_OFF_HEIGHT_M = min(_float("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)

@@ -8,7 +8,20 @@ from django.db.models import QuerySet
 from django.http import HttpRequest
 
 from inspection.admin_map import GeoJSONField
-from missions.models import Base, InspectionTarget, Mission, MissionUav, Route, Uav, UavCredential, UavType, Waypoint
+from missions.models import (
+    Approval,
+    Base,
+    InspectionTarget,
+    Mission,
+    MissionUav,
+    Route,
+    Uav,
+    UavCommand,
+    UavCommandEvent,
+    UavCredential,
+    UavType,
+    Waypoint,
+)
 from workspace.admin import ReadOnlyAdmin
 from workspace.admin_history import HistoryAdmin
 from workspace.services import record_change
@@ -35,7 +48,7 @@ class UavAdmin(_FleetAdmin):
     list_filter = ["state", "link", "is_simulated", "allows_unsigned", "uav_type", "base_name", "end_action", "organisation"]
     list_select_related = ["uav_type", "organisation"]
     search_fields = ["name", "base_name", "serial_number", "uav_type__name"]
-    readonly_fields = ["revision", "created_at", "updated_at"]
+    readonly_fields = ["autopilot_return", "autopilot_return_read_at", "revision", "created_at", "updated_at"]
 
 
 @admin.register(UavType)
@@ -140,3 +153,45 @@ class WaypointAdmin(ReadOnlyAdmin):
 
     def get_queryset(self, request: HttpRequest) -> QuerySet[Waypoint]:
         return super().get_queryset(request).select_related("route__mission", "route__mission_uav")
+
+
+@admin.register(Approval)
+class ApprovalAdmin(ReadOnlyAdmin):
+    """The document itself is long: the API has it, and its hash names it."""
+
+    list_display = ["mission", "approved_by", "approved_at", "revoke_requested_at", "revoked_at", "content_sha256"]
+    list_filter = ["mission__organisation", ("revoked_at", admin.EmptyFieldListFilter)]
+    list_select_related = ["mission", "approved_by"]
+    search_fields = ["mission__name", "approved_by__username", "content_sha256"]
+    date_hierarchy = "approved_at"
+    exclude = ["document"]
+
+
+class UavCommandEventInline(_ReadOnlyInline):
+    model = UavCommandEvent
+    fields = ["recorded_at", "state", "attempt", "holder", "note"]
+    readonly_fields = ["recorded_at"]
+    show_change_link = False
+
+
+@admin.register(UavCommand)
+class UavCommandAdmin(ReadOnlyAdmin):
+    """Commands are given on the mission's page, and carried by the links alone."""
+
+    list_display = [
+        "created_at",
+        "uav",
+        "kind",
+        "state",
+        "mission",
+        "created_by",
+        "attempts",
+        "finished_at",
+        "outcome_code",
+        "organisation",
+    ]
+    list_filter = ["state", "kind", "link", "organisation"]
+    list_select_related = ["uav", "mission", "created_by", "organisation"]
+    search_fields = ["uav__name", "mission__name", "created_by__username", "outcome_code", "outcome"]
+    date_hierarchy = "created_at"
+    inlines = [UavCommandEventInline]

@@ -50,8 +50,11 @@ def axes_overtaken_by(kind: str) -> tuple[Axis, ...]:
 def may_overtake(kind: str, unfinished: str) -> bool:
     """Whether one of this kind takes the place of an unfinished one: of what makes a UAV safe only what does so as firmly.
 
-    An abort that waits for its link is not called off by a hold that is given after it.
+    An abort that waits for its link is not called off by a hold that is given after it. A pause is called off by going on, and by nothing
+    else that moves a UAV.
     """
+    if unfinished == "pause" and kind in SETS_IN_MOTION:
+        return kind == "resume"
     return SAFETY_RANKS.get(kind, 0) >= SAFETY_RANKS.get(unfinished, 0)
 
 
@@ -67,6 +70,7 @@ class CommandRules:
     stop_s: float = 600.0  # pause, hold, return, land, abort
     upload_s: float = 3_600.0
     speed_s: float = 60.0
+    read_back_s: float = 120.0  # by which a start or resume may be wanted longer, while what is on the UAV is read back before it
 
     def wanted_for_s(self, kind: str) -> float | None:
         if kind == "clear-mission":

@@ -62,3 +62,9 @@ def places_of_targets(uav_id: int, approval: Approval) -> frozenset[int]:
     """Of the targets on this UAV's route, as approved: their places in the mission's list."""
     (route,) = [route for route in approval.document["routes"] if route["uav"] == uav_id]
     return frozenset(waypoint["target"] for waypoint in route["route"]["waypoints"] if waypoint["target"] is not None)
+
+
+def number_of_flights(uav_id: int, approval: Approval) -> int:
+    """Of this UAV's route, as approved."""
+    (route,) = [route for route in approval.document["routes"] if route["uav"] == uav_id]
+    return len(route["flights"])

@@ -186,7 +186,7 @@ def route_letter(sequence: int) -> str:
 def _uavs(mission: Mission, changes: Sequence[UavChange]) -> list[StaleCause]:
     if mission.state == MissionState.DRAFT:
         return []
-    return [StaleCause("uav", uav_change_words(change), change.uav) for change in changes]
+    return [StaleCause("uav", uav_change_words(change), change.uav) for change in changes if change.concerns_plan]
 
 
 def _bases(mission: Mission) -> list[StaleCause]:

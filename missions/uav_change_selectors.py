@@ -20,7 +20,7 @@ DECIMALS = {"mass_kg": 3, "rotor_disk_m2": 3}
 MOST_DECIMALS = 6
 
 _COLUMNS = (
-    "mission", "sequence", "name", "uav", "max_range_m", "cruise_speed_mps", "performance", "sensors", "own_figures",
+    "mission", "sequence", "name", "uav", "max_range_m", "cruise_speed_mps", "performance", "sensors", "own_figures", "fleet_figures",
     "mission__state", "mission__plan_warnings",
 )  # fmt: skip
 
@@ -35,8 +35,20 @@ class FigureChange:
 
 
 @dataclass(frozen=True)
+class SaidFigure:
+    """A figure that is said for the mission alone, where the fleet's has changed since: as said, the fleet's then, the fleet's now."""
+
+    name: str
+    said: Any
+    then: Any
+    now: Any
+
+
+@dataclass(frozen=True)
 class UavChange:
     """A UAV of a mission that is no longer as the mission has it. `uav` is its place there, `uav_id` its key.
+
+    The plan counts on what the mission says itself, `said`, all the same.
 
     Sensors count where a target needs one of them. `state` is its present one where the plan counts on another; `fault` says why its
     present figures cannot be flown with.
@@ -48,6 +60,11 @@ class UavChange:
     figures: tuple[FigureChange, ...]
     state: UavState | None = None
     fault: str = ""
+    said: tuple[SaidFigure, ...] = ()
+
+    @property
+    def concerns_plan(self) -> bool:
+        return bool(self.figures or self.state is not None or self.fault)
 
 
 def uav_changes(mission: UUID) -> list[UavChange]:
@@ -58,7 +75,8 @@ def uav_changes(mission: UUID) -> list[UavChange]:
 def missions_with_other_uavs(missions: QuerySet[Mission] | Iterable[Mission]) -> frozenset[UUID]:
     """Those of the missions that have a plan to be flown which counts on UAVs as they are no more."""
     pks = missions.values("pk") if isinstance(missions, QuerySet) else [mission.pk for mission in missions]
-    return frozenset(_changes(Mission.objects.filter(pk__in=pks, state__in=TO_BE_FLOWN)))
+    changes = _changes(Mission.objects.filter(pk__in=pks, state__in=TO_BE_FLOWN))
+    return frozenset(pk for pk, own in changes.items() if any(change.concerns_plan for change in own))
 
 
 def uav_change_words(change: UavChange) -> str:
@@ -68,6 +86,7 @@ def uav_change_words(change: UavChange) -> str:
         told.append(_state_words()[change.state])
     if change.fault:
         told.append(_("its present figures cannot be flown with"))
+    told += [_("%(change)s in the fleet, but not in this mission") % {"change": _figure_words(figure)} for figure in of_fleet(change)]
     return f"{change.name}: {', '.join(told)}."
 
 
@@ -78,6 +97,7 @@ def uav_change_json(change: UavChange) -> dict[str, Any]:
         "name": change.name,
         "figures": [{"name": figure.name, "kept": figure.kept, "now": figure.now} for figure in change.figures],
         "state": change.state,
+        "said": [{"name": one.name, "said": one.said, "then": one.then, "now": one.now} for one in change.said],
         "message": uav_change_words(change),
     }
 
@@ -100,10 +120,28 @@ def _changes(missions: QuerySet[Mission]) -> dict[UUID, list[UavChange]]:
             if _those_of(count, kept["sensors"]) == _those_of(count, now["sensors"]):
                 names.remove("sensors")
         state = _unexpected_state(row, UavState(uavs[row["uav"]].state))
-        if names or state is not None or fault:
-            figures = () if now is None else tuple(FigureChange(name, kept[name], now[name]) for name in names)
-            found.setdefault(row["mission"], []).append(UavChange(row["sequence"], row["uav"], row["name"], figures, state, fault))
+        figures = () if now is None else tuple(FigureChange(name, kept[name], now[name]) for name in names)
+        change = UavChange(row["sequence"], row["uav"], row["name"], figures, state, fault, _said(row, kept, now))
+        if change.concerns_plan or change.said:
+            found.setdefault(row["mission"], []).append(change)
     return found
+
+
+def of_fleet(change: UavChange) -> list[FigureChange]:
+    """What has changed in the fleet of what the mission says itself."""
+    return [FigureChange(one.name, one.then, one.now) for one in change.said]
+
+
+def _said(row: dict[str, Any], kept: dict[str, Any], now: dict[str, Any] | None) -> tuple[SaidFigure, ...]:
+    """Only where the mission still says otherwise than the fleet."""
+    then = {name: value for name, value in row["fleet_figures"].items() if name in row["own_figures"]}
+    if now is None:
+        return ()
+    return tuple(
+        SaidFigure(name, kept[name], value, now[name])
+        for name, value in then.items()
+        if not _is_same(value, now[name]) and not _is_same(kept[name], now[name])
+    )
 
 
 def _present_figures(uav: Uav) -> tuple[dict[str, Any] | None, str]:

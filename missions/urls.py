@@ -10,6 +10,7 @@ from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
+from missions.views.returns import MissionReturns
 from missions.views.selections import SelectionDetail, SelectionList
 
 urlpatterns = [
@@ -36,6 +37,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/revoke", MissionRevoke.as_view(), name="api-mission-revoke"),
     path("missions/<uuid:mission_id>/dispatch", MissionDispatch.as_view(), name="api-mission-dispatch"),
     path("missions/<uuid:mission_id>/abort", MissionAbort.as_view(), name="api-mission-abort"),
+    path("missions/<uuid:mission_id>/returns", MissionReturns.as_view(), name="api-mission-returns"),
     path("missions/<uuid:mission_id>/commands", MissionCommands.as_view(), name="api-mission-commands"),
     path("missions/<uuid:mission_id>/replan-offers", MissionReplanOffers.as_view(), name="api-mission-replan-offers"),
     path("replan-offers/<uuid:offer_id>", ReplanOfferDetail.as_view(), name="api-replan-offer"),

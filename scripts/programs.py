@@ -121,6 +121,12 @@ def _gateway(places: Places) -> Program:
     return Program(name="gateway", stage=PROGRAM_STAGE, command=command, folder=places.process("gateway"), patience_s=12)
 
 
+def _estimator(places: Places) -> Program:
+    """Where UAVs are between their reports. Another one beside it takes over when it is gone."""
+    command = [sys.executable, str(PROJECT_DIR / "manage.py"), "run_estimator"]
+    return Program(name="estimator", stage=PROGRAM_STAGE, command=command, folder=places.process("estimator"), patience_s=12)
+
+
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
     live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
@@ -141,6 +147,7 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
         _worker(places, "data", 1),
         _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),
         _gateway(places),
+        _estimator(places),
         _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),
         Program(name="proxy", stage=PROGRAM_STAGE, command=nginx, folder=places.process("proxy")),
     ]

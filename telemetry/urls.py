@@ -3,7 +3,9 @@
 from django.urls import path, register_converter
 
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
+from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
+from telemetry.views.mission_record import MissionRecord, MissionRecordFile
 from telemetry.views.uav_link import UavAcknowledgements, UavResults, UavRoute, UavTelemetry
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
@@ -31,7 +33,10 @@ urlpatterns = [
     path("unknown-vehicles", UnknownVehicles.as_view(), name="api-unknown-vehicles"),
     path("unknown-vehicles/<int:vehicle_id>/adopt", UnknownVehicleAdoption.as_view(), name="api-unknown-vehicle-adoption"),
     path("unknown-vehicles/<int:vehicle_id>/ignore", UnknownVehicleIgnoring.as_view(), name="api-unknown-vehicle-ignoring"),
+    path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
+    path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
+    path("missions/<uuid:mission_id>/record.zip", MissionRecordFile.as_view(), name="api-mission-record-file"),
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),

@@ -2,13 +2,10 @@
 
 import asyncio
 from contextlib import suppress
-from importlib import import_module
 from typing import Any
 from uuid import UUID
 
-from channels.auth import get_user
 from channels.db import database_sync_to_async
-from channels.generic.websocket import AsyncWebsocketConsumer
 from channels.layers import get_channel_layer
 from django.conf import settings
 from django.core.serializers.json import DjangoJSONEncoder
@@ -17,50 +14,24 @@ from django.utils import translation
 from redis.exceptions import RedisError
 
 from workspace import selectors
-from workspace.authentication import bearer_token, user_of_token
 from workspace.live import job_group
 from workspace.models import Job, User
 from workspace.serializers import JobSerializer
+from workspace.sockets import CHECK_PERSON_EVERY_S, ENDED, NOTHING_TO_SAY, SIGNED_OUT, STILL_THERE_EVERY_S, SignedInSocket
 
 LOOK_EVERY_S = 1.0  # at the row, whether a word has come or not
 WORD_PAUSE_S = 0.1  # words that come close together are one look
-CHECK_PERSON_EVERY_S = 4.0
-STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is silent
 REDIS_PAUSE_S = 1.0
 
-ENDED, SIGNED_OUT, NOTHING_TO_SAY = 1000, 4401, 4400
 _encode = DjangoJSONEncoder(separators=(",", ":")).encode
 
 
-class JobConsumer(AsyncWebsocketConsumer):
+class JobConsumer(SignedInSocket):
     """`/ws/jobs/{id}`: the job as `GET /api/v1/jobs/{id}` shows it, at once and after every change, until it has ended.
 
-    Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "still-there"}`; nothing is to be sent here. For browsers by
-    their session, for programs by `Authorization: Bearer`. Closed with 4401 soon after whoever listens may not any more.
+    Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "still-there"}`; nothing is to be sent here. Closed
+    with 4401 soon after whoever listens may not any more.
     """
-
-    channel_layer_alias = "none"  # it listens by itself: a socket lives on while Redis is away
-
-    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
-        self._tasks: list[asyncio.Task[None]] = []
-        self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
-        try:
-            await asyncio.wait({spoken, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
-            if spoken.done():
-                return await spoken
-            spoken.cancel()
-            with suppress(asyncio.CancelledError):
-                await spoken
-            await send({"type": "websocket.close", "code": self._hung_up.result()})
-        finally:
-            for task in (spoken, *self._tasks):
-                task.cancel()
-
-    def _hang_up(self, code: int) -> None:
-        if not self._hung_up.done():
-            self._hung_up.set_result(code)
 
     async def connect(self) -> None:
         self._job_id: UUID = self.scope["url_route"]["kwargs"]["job_id"]
@@ -70,7 +41,8 @@ class JobConsumer(AsyncWebsocketConsumer):
             await self.close()  # before it is accepted: the handshake is refused with 403, whatever the reason
             return
         await self.accept()
-        self._tasks = [asyncio.create_task(self._listen()), asyncio.create_task(self._follow(user))]
+        self._start(self._listen())
+        self._start(self._follow(user))
 
     async def receive(self, text_data: str | None = None, bytes_data: bytes | None = None) -> None:
         self._hang_up(NOTHING_TO_SAY)
@@ -83,8 +55,8 @@ class JobConsumer(AsyncWebsocketConsumer):
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 if loop.time() - checked_s >= CHECK_PERSON_EVERY_S:
                     checked_s = loop.time()
-                    now = await self._user()
-                    if now is None or (now.pk, now.organisation_id) != (user.pk, user.organisation_id):
+                    now = await self._same_user(user)
+                    if now is None:
                         return self._hang_up(SIGNED_OUT)
                     user = now
                 version = await self._version(user)
@@ -119,18 +91,6 @@ class JobConsumer(AsyncWebsocketConsumer):
                     self._word.set()
             except (RedisError, OSError):
                 await asyncio.sleep(REDIS_PAUSE_S)
-
-    async def _user(self) -> User | None:
-        """Whoever listens, if they still may."""
-        token = bearer_token(self.scope)
-        if token is not None:
-            return await database_sync_to_async(user_of_token)(token)
-        key = await database_sync_to_async(lambda: self.scope["session"].session_key)()
-        if key is None:
-            return None
-        store = import_module(settings.SESSION_ENGINE).SessionStore
-        user = await get_user({"session": store(session_key=key)})  # a store of its own: the first one keeps what it has read
-        return user if isinstance(user, User) and user.is_active else None
 
     @database_sync_to_async
     def _version(self, user: User) -> tuple[Any, ...] | None:

@@ -1,35 +1,69 @@
-"""Word to open pages that a row has changed. A word that is lost costs nothing: whoever listens looks at the row by itself, too."""
+"""Word to open pages that rows have changed. A word that is lost costs nothing: whoever listens looks at the rows by itself, too."""
 
 import asyncio
 import logging
 import time
+from collections.abc import Callable
+from functools import lru_cache
 from uuid import UUID
 
 from asgiref.sync import async_to_sync
 from channels.layers import get_channel_layer
+from django.conf import settings
+from redis import Redis
+from redis.backoff import NoBackoff
 from redis.exceptions import RedisError
+from redis.retry import Retry
 
 logger = logging.getLogger(__name__)
 
 LOG_EVERY_S = 60.0
 DEADLINE_S = 1.0  # whoever has the word to say renews the job's lease, or answers a person
+LIVE_DEADLINE_S = 0.2  # that of telemetry, which is said many times a second
+LIVE_PAUSE_S = 2.0  # nothing is said for so long once Redis was away
 _quiet_until_s = 0.0
+_live_quiet_until_s = 0.0
 
 
 def job_group(job_id: UUID | str) -> str:
     return f"job.{job_id}"
 
 
+def live_channel(organisation_id: int | str) -> str:
+    """Redis' own channel: one a process listens to all of them, where a group of Channels would be one a socket. "*" stands for any."""
+    return f"spanwise-live.organisation.{organisation_id}"
+
+
 def publish_job(job_id: UUID | str) -> None:
     """Tell whoever follows the job that its row has changed. Without Redis nobody is told, and nothing fails."""
+    _unless_redis_is_away(lambda: async_to_sync(_send)(job_group(job_id)))
+
+
+def publish_live(organisation_id: int) -> None:
+    """Tell the organisation's live pages that something has changed: after the commit. Never fails, and waits for no Redis for long."""
+    global _live_quiet_until_s
+    if time.monotonic() < _live_quiet_until_s:
+        return
+    if not _unless_redis_is_away(lambda: _redis(settings.REDIS_URL).publish(live_channel(organisation_id), b"")):
+        _live_quiet_until_s = time.monotonic() + LIVE_PAUSE_S
+
+
+def _unless_redis_is_away(say: Callable[[], object]) -> bool:
     global _quiet_until_s
     try:
-        async_to_sync(_send)(job_group(job_id))
+        say()
     except (RedisError, OSError) as error:  # TimeoutError is an OSError
         if time.monotonic() >= _quiet_until_s:
             _quiet_until_s = time.monotonic() + LOG_EVERY_S
-            logger.warning("Redis is away, pages are not told of jobs: %r", error)
+            logger.warning("Redis is away, pages are not told of changes: %r", error)
+        return False
+    return True
 
 
 async def _send(group: str) -> None:
     await asyncio.wait_for(get_channel_layer().group_send(group, {"type": "job.changed"}), DEADLINE_S)
+
+
+@lru_cache(maxsize=4)
+def _redis(address: str) -> Redis:
+    return Redis.from_url(address, socket_connect_timeout=LIVE_DEADLINE_S, socket_timeout=LIVE_DEADLINE_S, retry=Retry(NoBackoff(), 1))

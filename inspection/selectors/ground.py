@@ -11,8 +11,9 @@ from inspection.graph.snapshot_file import LAYOUT
 from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Ground, NoFlyZone, TerrainTile, ZoneSet
 
 Extent_deg = tuple[float, float, float, float]  # west, south, east, north
+Edition = tuple[int, datetime | None]  # of the ground: its revision, and when that came about
 
-_extent: tuple[tuple[int, datetime | None], Extent_deg | None] | None = None
+_extent: tuple[Edition, Extent_deg | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ def held_ground_revision() -> int:
     return 0 if row is None else int(row[0])
 
 
-def ground_edition() -> tuple[int, datetime | None]:
+def ground_edition() -> Edition:
     """The revision and when it came about. Two databases may have the same revision, and one that was rolled back has it twice."""
     return Ground.objects.values_list("revision", "changed_at").first() or (0, None)
 

@@ -1,9 +1,8 @@
 """What a plan stands on, read at once: the newest graph, the edition of the ground, and the assets that it visits."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
-from functools import lru_cache
+from functools import lru_cache, partial
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -16,7 +15,8 @@ from inspection.graph.snapshot_file import LAYOUT
 from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind
 from inspection.selectors.graph import SnapshotRow, graph_for, network_for, zones_of_table
-from inspection.selectors.terrain import has_terrain, terrain_edition
+from inspection.selectors.ground import Edition
+from inspection.selectors.terrain import FloatArray, ground_heights_m, has_terrain, terrain_edition
 from inspection.selectors.zone_table import zone_table_of_edition
 from inspection.zones.reach import BoolArray, ZoneTable
 from workspace.prepared import prepared_rows
@@ -51,8 +51,6 @@ _ALL = f"""
     FROM (SELECT 1) AS one LEFT JOIN {_SNAPSHOT} AS snapshot ON true LEFT JOIN {_GROUND} AS ground ON true
     LEFT JOIN inspection_asset AS asset ON {_WANTED}"""  # noqa: S608 - no value of anybody's
 _GROUND_COLUMNS = 5  # of _ALL; then come longitude, latitude and the columns of an asset
-
-Edition = tuple[int, datetime | None]
 
 
 class PointAsset(NamedTuple):
@@ -124,6 +122,11 @@ def edition_now() -> Edition:
 def has_terrain_at(edition: Edition) -> bool:
     """Whether there is any terrain model. What brings one in, or takes it out, makes a new edition."""
     return has_terrain() if edition[1] is None else _had_terrain(edition)  # a ground never marked as changed has no edition
+
+
+def heights_at(edition: Edition) -> Callable[[FloatArray], FloatArray] | None:
+    """ground_heights_m over this edition of the ground, without asking for a newer one each time; None where no terrain model is."""
+    return partial(ground_heights_m, edition=edition) if has_terrain_at(edition) else None
 
 
 def terrain_at(edition: Edition) -> tuple[int | None, int]:

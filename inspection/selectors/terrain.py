@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import TerrainTile
-from inspection.selectors.ground import ground_edition
+from inspection.selectors.ground import Edition, ground_edition
 from inspection.terrain.height_grid import NO_WEIGHT, HeightGrid, unpacked
 
 TILES_IN_MEMORY = 256  # of 256 KiB each
@@ -50,19 +50,19 @@ def terrain_edition() -> tuple[int | None, int]:
     return tiles["newest"], tiles["number"]
 
 
-def ground_heights_m(positions: FloatArray) -> FloatArray:
+def ground_heights_m(positions: FloatArray, edition: Edition | None = None) -> FloatArray:
     """Height of the ground above sea level [m] at positions of shape (n, 2), lon lat [deg]; NaN where no terrain model tells.
 
-    Where models overlap the newest counts, and an older one fills its voids.
+    Where models overlap the newest counts, and an older one fills its voids. edition: of the ground that was just read; None: it is read.
     """
-    return ground_truth(positions).heights_m
+    return ground_truth(positions, edition).heights_m
 
 
-def ground_truth(positions: FloatArray) -> GroundTruth:
+def ground_truth(positions: FloatArray, edition: Edition | None = None) -> GroundTruth:
     """As ground_heights_m, with the model that each height is from."""
     positions = np.asarray(positions, dtype=np.float64).reshape(-1, 2)
     found = GroundTruth(np.full(len(positions), np.nan), np.full(len(positions), -1, dtype=np.int64))
-    index = _tile_index(ground_edition())
+    index = _tile_index(edition or ground_edition())
     if not len(index.keys) or not len(positions):
         return found
     inside = _sample(index, positions, found)
@@ -135,7 +135,7 @@ def _bridge(index: _TileIndex, positions: FloatArray, unmet: NDArray[np.intp], f
 
 
 @lru_cache(maxsize=2)
-def _tile_index(edition: object) -> _TileIndex:
+def _tile_index(edition: Edition) -> _TileIndex:
     """The tiles as they stand at this edition of the ground; what brings them in or takes them out makes a new one."""
     fields = ("pk", "data_import_id", "west_deg", "north_deg", "step_lon_deg", "step_lat_deg", "columns", "rows")
     rows = np.array(list(TerrainTile.objects.order_by("-pk").values_list(*fields)), dtype=np.float64).reshape(-1, len(fields))

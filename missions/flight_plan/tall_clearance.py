@@ -48,7 +48,7 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
         return set()
     frame = LocalFrame.around(*points.position.mean(axis=0).tolist())
     line, start, end = frame.to_metres(points.position), frame.to_metres(spans.start[near]), frame.to_metres(spans.end[near])
-    leg, span = _pairs(line, start, end)
+    leg, span = _pairs(line, start, end, BESIDE_M)
     is_flown = (points.kind[leg] != BASE) & (points.kind[leg + 1] != BASE)
     leg, span = leg[is_flown], span[is_flown]
     if not len(leg):
@@ -86,10 +86,58 @@ def spans_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
     return chosen
 
 
-def _pairs(line: FloatArray, start: FloatArray, end: FloatArray) -> tuple[IntArray, IntArray]:
-    """Legs and spans that come near each other across the ground."""
-    span, leg = shapely.STRtree(lines_between(line[:-1], line[1:])).query(lines_between(start, end), predicate="dwithin", distance=BESIDE_M)
-    return leg.astype(np.int64), span.astype(np.int64)
+@njit(cache=True, nogil=True)
+def _pairs(line: FloatArray, start: FloatArray, end: FloatArray, within_m: float) -> tuple[IntArray, IntArray]:
+    """Legs and spans that come so near each other across the ground; of each leg only spans that begin beside it in the west are tried."""
+    west = np.minimum(start[:, 0], end[:, 0])
+    order = np.argsort(west)
+    from_west = west[order]
+    widest = np.abs(end[:, 0] - start[:, 0]).max()
+    legs, spans = np.empty(64, dtype=np.int64), np.empty(64, dtype=np.int64)
+    count = 0
+    for leg in range(len(line) - 1):
+        low_x, high_x = min(line[leg, 0], line[leg + 1, 0]) - within_m, max(line[leg, 0], line[leg + 1, 0]) + within_m
+        low_y, high_y = min(line[leg, 1], line[leg + 1, 1]) - within_m, max(line[leg, 1], line[leg + 1, 1]) + within_m
+        for place in range(np.searchsorted(from_west, low_x - widest), len(order)):
+            span = order[place]
+            if west[span] > high_x:
+                break
+            if max(start[span, 0], end[span, 0]) < low_x or max(start[span, 1], end[span, 1]) < low_y:
+                continue
+            if min(start[span, 1], end[span, 1]) > high_y:
+                continue
+            if _apart_squared(line[leg], line[leg + 1], start[span], end[span]) > within_m * within_m:
+                continue
+            if count == len(legs):
+                legs, spans = np.concatenate((legs, legs)), np.concatenate((spans, spans))
+            legs[count], spans[count] = leg, span
+            count += 1
+    return legs[:count].copy(), spans[:count].copy()
+
+
+@njit(cache=True, nogil=True)
+def _apart_squared(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> float:
+    """Of the lines from a to b and from c to d, (2,) each, either of which may be a point."""
+    ways = _side(a, b, c) * _side(a, b, d), _side(c, d, a) * _side(c, d, b)
+    if ways[0] < 0.0 and ways[1] < 0.0:
+        return 0.0
+    return min(min(_beside_squared(a, c, d), _beside_squared(b, c, d)), min(_beside_squared(c, a, b), _beside_squared(d, a, b)))
+
+
+@njit(cache=True, nogil=True)
+def _side(start: FloatArray, end: FloatArray, place: FloatArray) -> float:
+    side: float = (end[0] - start[0]) * (place[1] - start[1]) - (end[1] - start[1]) * (place[0] - start[0])
+    return side
+
+
+@njit(cache=True, nogil=True)
+def _beside_squared(place: FloatArray, start: FloatArray, end: FloatArray) -> float:
+    along_x, along_y = end[0] - start[0], end[1] - start[1]
+    off_x, off_y = place[0] - start[0], place[1] - start[1]
+    squared = along_x * along_x + along_y * along_y
+    share = min(max((off_x * along_x + off_y * along_y) / squared, 0.0), 1.0) if squared > 0.0 else 0.0
+    squared_m: float = (off_x - share * along_x) ** 2 + (off_y - share * along_y) ** 2
+    return squared_m
 
 
 def lines_between(start: FloatArray, end: FloatArray) -> NDArray[np.object_]:

@@ -121,6 +121,10 @@ class Uav(models.Model):
     max_airspeed_mps = models.FloatField(null=True, blank=True, help_text="through the air; empty = its type's, else its cruise speed")
     heading_deg = models.FloatField(null=True, blank=True, help_text="degrees from true north, clockwise; empty = not known")
     battery_percent = models.FloatField(null=True, blank=True)
+    autopilot_return = models.JSONField(
+        default=dict, db_default={}, blank=True, help_text="parameters of its own return, as read from it; see mavlink/own_return.py"
+    )
+    autopilot_return_read_at = models.DateTimeField(null=True, blank=True)
     sensor = models.CharField(max_length=100, blank=True)
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
     created_at = models.DateTimeField(db_default=Now(), editable=False)

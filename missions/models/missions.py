@@ -116,6 +116,9 @@ class MissionUav(models.Model):
         blank=True,
         help_text="names of the figures that are said for this mission; the others were the UAV's when it was made",
     )
+    fleet_figures = models.JSONField(
+        default=dict, db_default={}, blank=True, help_text="of the own figures: what the UAV had for them when they were said"
+    )
     home = models.PointField(srid=4326, null=True, blank=True, help_text="where it took off, if it is in the air already; empty = at start")
     home_amsl_m = models.FloatField(null=True, blank=True, help_text="of the ground there; empty without terrain data")
 

@@ -12,6 +12,8 @@ from missions.routing.quantities import NO_WAY_M, Kind, classes_of, quantities_o
 
 _Told = tuple[Reason, str, float | None]  # with what is missing
 _THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
+RANGE_ALONE: _Told = (Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0)
+NOT_ON_ONE_ROUTE: _Told = (Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.", None)
 
 
 def needed_range_m(problem: Problem) -> FloatArray:
@@ -195,8 +197,8 @@ def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits:
         alone = "within range and battery" if has_range else "within what the battery may give"
         return Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets.", 0.0
     if has_range:
-        return Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0
-    return Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.", None
+        return RANGE_ALONE
+    return NOT_ON_ONE_ROUTE
 
 
 def _km(length_m: float) -> str:

@@ -8,7 +8,9 @@ from rest_framework import serializers
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import FASTEST_MPS
+from missions.serializers.shapes import WaypointSerializer
 from missions.services.hand_checks import MOST_WAYPOINTS, HandLook, HandPoint
+from missions.services.plan_json import column_to_json, timing_to_json, waypoints_to_json
 
 MOST_LEGS = 200
 HIGHEST_AGL_M = 10_000.0
@@ -50,6 +52,18 @@ class HandPointFlownSerializer(serializers.Serializer):
     )
 
 
+class HandRouteFlownSerializer(serializers.Serializer):
+    """Every waypoint of the route as it would be flown, over hills more than are wished; as in the routes of a plan."""
+
+    waypoints = WaypointSerializer(many=True)
+    departs_s = serializers.FloatField()
+    energy_wh = serializers.FloatField(allow_null=True)
+    battery_percent = serializers.FloatField(allow_null=True)
+    arrival_s = serializers.ListField(child=serializers.FloatField())
+    used_wh = serializers.ListField(child=serializers.FloatField(), allow_null=True)
+    battery_left_percent = serializers.ListField(child=serializers.FloatField(), allow_null=True)
+
+
 class HandLookSerializer(serializers.Serializer):
     """What keeping these waypoints would say."""
 
@@ -59,6 +73,7 @@ class HandLookSerializer(serializers.Serializer):
     energy_wh = serializers.FloatField(allow_null=True, help_text="null without a battery")
     battery_percent = serializers.FloatField(allow_null=True, help_text="left at the end")
     waypoints = HandPointFlownSerializer(many=True, help_text="one for each that is wished")
+    flown = HandRouteFlownSerializer(allow_null=True)
 
 
 def hand_look_json(look: HandLook) -> dict[str, Any]:
@@ -77,6 +92,9 @@ def hand_look_json(look: HandLook) -> dict[str, Any]:
             }
             for point in look.points
         ],
+        "flown": None
+        if flown is None or flown.waypoints is None
+        else {"waypoints": waypoints_to_json(flown.waypoints), **timing_to_json(flown, column_to_json)},
     }
 
 

@@ -35,6 +35,13 @@ class FigureChangeSerializer(serializers.Serializer):
     now = serializers.JSONField(allow_null=True, help_text="as it is in the fleet")
 
 
+class SaidFigureSerializer(serializers.Serializer):
+    name = serializers.ChoiceField(choices=FIGURES)
+    said = serializers.JSONField(allow_null=True, help_text="for this mission alone")
+    then = serializers.JSONField(allow_null=True, help_text="in the fleet when that was said")
+    now = serializers.JSONField(allow_null=True, help_text="in the fleet now")
+
+
 class UavChangeSerializer(serializers.Serializer):
     """A UAV that is no longer as the mission has it. Sent again in `uavs` without its figures, the mission takes the present ones."""
 
@@ -45,4 +52,5 @@ class UavChangeSerializer(serializers.Serializer):
     state = serializers.ChoiceField(
         choices=UavState.choices, allow_null=True, help_text="its present one, where the plan counts on another"
     )
+    said = SaidFigureSerializer(many=True, help_text="own figures of which the fleet's have changed; the plan stands all the same")
     message = serializers.CharField()

@@ -8,7 +8,7 @@ from rest_framework import serializers
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
-from workspace.stored_words import in_words
+from missions.stored_outcomes import outcome_in_words
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100
@@ -36,6 +36,7 @@ class FlightsSerializer(serializers.Serializer):
     uav = serializers.IntegerField(help_text="its place in the mission")
     flights = serializers.IntegerField(help_text="in how many it flies its route")
     flown = serializers.IntegerField()
+    has_failed = serializers.BooleanField(help_text="a flight of it failed: it is not set in motion again in this mission")
 
 
 class MissionApprovalSerializer(ApprovalSerializer):
@@ -185,5 +186,5 @@ def command_json(command: UavCommand) -> dict[str, Any]:
         "finished_at": command.finished_at,
         "progress": command.progress,
         "outcome_code": command.outcome_code,
-        "outcome": str(OUTCOMES.get(command.outcome_code) or in_words(command.outcome)),
+        "outcome": str(OUTCOMES.get(command.outcome_code) or outcome_in_words(command.outcome)),
     }

@@ -225,7 +225,7 @@ class OptionsSerializer(KnownFieldsSerializer):
         allow_null=True,
         min_value=LEAST_CHARGING_W,
         max_value=LARGEST_POWER_W,
-        help_text="power of charging at towers on the way; null: there is none",
+        help_text="power of charging at towers on the way, of UAVs that fly once; null: there is none",
     )
 
     lost_link = LostLinkSerializer(required=False, allow_null=True)
@@ -297,6 +297,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
             "sensors": [],
         }
         own: list[str] = []
+        figures: dict[str, Any] = {}
     else:
         figures = figures_of(stored)
         known = {"name": stored.name, "position": stored.location.coords, "end_action": stored.end_action} | figures
@@ -314,6 +315,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
         performance=performance_from_json({name: values[name] for name in PERFORMANCE_KEYS if name in values}),
         sorties=values.get("sorties", 1),
         own_figures=tuple(name for name in FIGURES if name in own),
+        fleet_figures={name: figures[name] for name in FIGURES if name in own and name in figures},
     )
 
 

@@ -91,6 +91,7 @@ def _approval(mission: Mission) -> dict[str, Any] | None:
                 "uav": route.mission_uav.sequence,
                 "flights": 1 + sum(waypoint.kind == WaypointKind.BASE for waypoint in route.waypoints.all()),
                 "flown": route.flights_flown,
+                "has_failed": route.has_failed,
             }
             for route in mission.routes.all()
             if route.geometry is not None

@@ -233,6 +233,9 @@ class LastStopSerializer(LastTargetSerializer):
 class LastRouteSerializer(serializers.Serializer):
     uav = serializers.CharField(help_text="name")
     uav_id = serializers.IntegerField(allow_null=True)
+    start = PositionField(required=False, help_text="missing, as end_action and base, in what was remembered before these were")
+    end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    base = serializers.CharField(required=False, allow_null=True, help_text="the base at which it lands, where it ends at one")
     length_m = serializers.FloatField()
     duration_s = serializers.FloatField()
     stops = LastStopSerializer(many=True)

@@ -4,6 +4,7 @@ A revocation counts at once while nothing of the mission has left. Later it wait
 without it: until then the approval is in force, so that no UAV flies what nobody answers for.
 """
 
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -31,9 +32,11 @@ from missions.services.approval_document import approval_document, content_sha25
 from missions.services.missions import MissionChanged, note
 from missions.services.outbox import end_commands, queue_command
 from missions.services.refused import refuse, refuse_for
+from workspace.live import publish_live
 from workspace.models import User
 
 REVOKED = "revoked"
+OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 
 
 def approve_mission(*, mission: Mission, actor: User, expected_revision: int | None = None, longest_leg_m: float | None = None) -> Approval:
@@ -55,7 +58,7 @@ def approve_mission(*, mission: Mission, actor: User, expected_revision: int | N
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))
         approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
         held.ground_revision = checked_revision  # which the routes have just been checked against
-        held.targets.update(state=TargetState.PENDING)
+        held.targets.update(state=TargetState.PENDING, state_at=None, state_reason="")
         held.routes.update(flights_flown=0, has_failed=False)
         facts = {"approval": str(approval.pk), "sha256": approval.content_sha256}
         facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}
@@ -130,8 +133,13 @@ def held_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
 
 
 def change_state(held: Mission, state: MissionState, actor: User | None, action: str, facts: dict[str, Any]) -> None:
-    """With its entry in the history; the caller holds the row."""
+    """With its entry in the history, and word to live pages after the commit; the caller holds the row."""
     before = {"state": str(held.state), "revision": held.revision}
+    if state == MissionState.ACTIVE and held.started_at is None:
+        held.started_at = timezone.now()
+    if state in OVER and held.state not in OVER:
+        held.ended_at = timezone.now()
     held.state, held.revision = state, held.revision + 1
-    held.save(update_fields=["state", "revision", "ground_revision", "updated_at"])
+    held.save(update_fields=["state", "revision", "ground_revision", "started_at", "ended_at", "updated_at"])
+    transaction.on_commit(partial(publish_live, held.organisation_id))
     note(held, actor, action, before=before, after={"state": str(state), "revision": held.revision, **facts})

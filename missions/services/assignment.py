@@ -84,7 +84,7 @@ def assignment(
                 asked.cruise_speed_mps,
                 asked.most_targets,
                 own_ready_s,
-                usable_wh=_usable_wh(asked, usable_share.get(uav), request.charging_w),
+                usable_wh=_usable_wh(asked, usable_share.get(uav), may_charge=request.may_charge(uav)),
                 sorties=asked.sorties,
                 turnaround_s=turnaround_s,
             )
@@ -118,10 +118,10 @@ def _cannot_end(request: PlanRequest, uavs: Sequence[int], visits: Sequence[Visi
     return np.array([visit.target in no_landing for visit in visits], dtype=bool)[:, None] & lands
 
 
-def _usable_wh(asked: UavRequest, share: float | None, charging_w: float | None) -> float | None:
+def _usable_wh(asked: UavRequest, share: float | None, *, may_charge: bool) -> float | None:
     """What the search may count on; where a UAV charges on the way, and nothing has shown yet that it cannot, as much as it likes."""
     usable_wh = asked.performance.usable_wh
-    if usable_wh is not None and charging_w is not None and share is None and asked.sorties == 1:
+    if usable_wh is not None and may_charge and share is None:
         return CHARGED_WH
     return None if usable_wh is None else usable_wh * (1.0 if share is None else share) * (1.0 - COUNTED_CLOSE)
 

@@ -1,7 +1,7 @@
 """One answer to a request on one set of zones: what can be flown there, who does what, and how it is drawn."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from missions.flight_plan.duration import target_s
 from missions.flight_plan.heights import GroundHeights, inspection_agl_m
@@ -46,16 +46,10 @@ class Attempt:
         return [flown.get(uav, PlannedRoute(end_action=request.end_action(uav))) for uav in range(len(request.uavs))]
 
     def drawn_alone(self, uav: int, order: Sequence[int], ground: GroundHeights | None) -> PlannedRoute | None:
-        """One flight of one UAV, by its number in the request, over these visits; None where the wind over the ground stops it.
-
-        Who may fly several times is not reckoned with as charging.
-        """
+        """One flight of one UAV, by its number in the request, over these visits; None where the wind over the ground stops it."""
         alone = [[order] if other == uav else [] for other in self.uavs]
-        drawing = self.drawing
-        if drawing.request.uavs[uav].sorties > 1:
-            drawing = replace(drawing, request=replace(drawing.request, charging_w=None))
         try:
-            return drawing.routes(self.uavs, alone, ground)[uav]
+            return self.drawing.routes(self.uavs, alone, ground)[uav]
         except InvalidRequest:
             return None
 

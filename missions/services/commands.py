@@ -19,9 +19,11 @@ from missions.services.outbox import (
     note_acknowledged,
     note_failed,
     note_progress,
+    note_read_back,
     note_released,
     note_sent,
     queue_command,
+    release_claims_of_others,
     renew_claims,
 )
 
@@ -33,9 +35,11 @@ __all__ = [
     "note_applied",
     "note_failed",
     "note_progress",
+    "note_read_back",
     "note_released",
     "note_sent",
     "queue_command",
+    "release_claims_of_others",
     "renew_claims",
 ]
 

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from inspection.geodesy import LonLat
-from inspection.selectors import ground_heights_m
 from inspection.selectors.node_ground import node_ground_m
-from inspection.selectors.planning import has_terrain_at, terrain_at
+from inspection.selectors.planning import heights_at, terrain_at
 from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
 from missions.flight_plan.ways_taken import FlightClass, NodeGround
 from missions.models import EndAction
@@ -47,14 +46,17 @@ def counted(laid_out: LaidOut, uavs: Sequence[int]) -> FlightCosts:
         hold_s=[laid_out.places[visit.target].task.hold_s for visit in laid_out.visits],
         conditions=request.conditions,
         rules=scene.flight,
-        ground=_ground(scene, starts, [uav.returns_to for uav in asked], laid_out) if has_terrain_at(scene.edition) else None,
+        ground=_ground(scene, starts, [uav.returns_to for uav in asked], laid_out),
     )
 
 
-def _ground(scene: Scene, starts: Sequence[LonLat], homes: Sequence[LonLat], laid_out: LaidOut) -> NodeGround:
-    """Under the network, and under the sources and sinks of the ways in their order."""
+def _ground(scene: Scene, starts: Sequence[LonLat], homes: Sequence[LonLat], laid_out: LaidOut) -> NodeGround | None:
+    """Under the network, and under the sources and sinks of the ways in their order; None where no terrain model is."""
+    heights = heights_at(scene.edition)
+    if heights is None:
+        return None
     entries, exits = [course[0] for course in laid_out.courses], [course[-1] for course in laid_out.courses]
     sources = [*starts, *exits]
     sinks = [*entries, *homes, *(base.position for base in laid_out.bases)]
-    heights_m = ground_heights_m(np.array([*sources, *sinks], dtype=np.float64).reshape(-1, 2))
+    heights_m = heights(np.array([*sources, *sinks], dtype=np.float64).reshape(-1, 2))
     return NodeGround(node_ground_m(scene.graph, terrain_at(scene.edition)), heights_m[: len(sources)], heights_m[len(sources) :])

@@ -82,7 +82,7 @@ class Drawing(LaidOut):
             raise InvalidRequest({"conditions": _("The wind is too strong for %(uav)s on its route.") % {"uav": asked.name}}) from error
         stops: tuple[ChargingStop, ...] = ()
         lacks_wh = 0.0
-        if self.request.charging_w is not None and len(drawn) == 1:
+        if self.request.may_charge(uav):
             try:
                 stops = self._charging(uav, waypoints, clock)
                 clock = with_stops(clock, stops, asked.performance.battery_wh or math.inf)

@@ -5,14 +5,18 @@ after a mission has ended, changes nothing.
 """
 
 from enum import StrEnum
+from functools import partial
 from uuid import UUID
 
 from django.db import transaction
+from django.db.models import QuerySet
+from django.db.models.functions import Now
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
 from missions.selectors import approval_in_force
-from missions.services.approval import change_state, held_mission
+from missions.services.approval import change_state
 from missions.services.missions import note
+from workspace.live import publish_live
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
@@ -27,7 +31,7 @@ class FlightEnd(StrEnum):
 def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
     """A UAV flies its part. Returns whether the mission became active by it."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state != MissionState.DISPATCHED:
             return False
         change_state(held, MissionState.ACTIVE, None, "start", {"uav": uav_id})
@@ -37,7 +41,7 @@ def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
 def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> None:
     """A UAV is at a waypoint of its route, by its place in it: the target there is in progress, those before it are done."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state not in ON_ITS_WAY:
             return
         rows = Route.objects.filter(mission=held, mission_uav__uav=uav_id, continued_by=None, waypoints__kind=WaypointKind.TARGET)
@@ -46,17 +50,18 @@ def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> No
         to_come = {target for sequence, target in visits if sequence > waypoint}
         before = {target for sequence, target in visits if sequence < waypoint} - here - to_come
         targets = InspectionTarget.objects.filter(mission=held)
-        targets.filter(pk__in=here, state=TargetState.PENDING).update(state=TargetState.IN_PROGRESS)
-        targets.filter(pk__in=before, state__in=UNDECIDED).update(state=TargetState.COMPLETE)
+        _put(held, targets.filter(pk__in=here, state=TargetState.PENDING), TargetState.IN_PROGRESS)
+        _put(held, targets.filter(pk__in=before, state__in=UNDECIDED), TargetState.COMPLETE)
 
 
 def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
     """What a UAV reports of a target, by its place in the mission, is the last word on it: complete, skipped or failed."""
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state in {MissionState.DRAFT, MissionState.PLANNED, MissionState.APPROVED}:
             return False
-        return bool(InspectionTarget.objects.filter(mission=held, sequence=target).update(state=state))
+        found = InspectionTarget.objects.filter(mission=held, sequence=target)
+        return _put(held, found.exclude(state=state), state) or found.exists()
 
 
 def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:
@@ -67,7 +72,7 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
     those on one that failed have failed. A route that another mission continues has ended by that. Returns the mission's state.
     """
     with transaction.atomic():
-        held = held_mission(mission_id, None)
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         route = Route.objects.select_for_update().filter(mission=held, mission_uav__uav=uav_id, geometry__isnull=False).first()
         if held.state not in ON_ITS_WAY or route is None or route.has_failed or route.continued_by_id is not None:
             return MissionState(held.state)
@@ -75,13 +80,13 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
         if end is FlightEnd.FAILED:
             route.has_failed = True
             route.save(update_fields=["has_failed"])
-            _settle(route, TargetState.FAILED)
+            _settle(held, route, TargetState.FAILED)
             note(held, None, "fail-route", before=None, after={"uav": uav_id, "flight": flight})
         elif flight > route.flights_flown:
             route.flights_flown = flight
             route.save(update_fields=["flights_flown"])
         if not route.has_failed and route.flights_flown >= flights.get(uav_id, 1):
-            _settle(route, TargetState.COMPLETE)
+            _settle(held, route, TargetState.COMPLETE)
         _end_with_the_last(held, flights)
         return MissionState(held.state)
 
@@ -107,10 +112,18 @@ def _end_with_the_last(held: Mission, flights: dict[int, int]) -> None:
         change_state(held, MissionState.COMPLETED, None, "complete", {})
 
 
-def _settle(route: Route, state: TargetState) -> None:
+def _settle(held: Mission, route: Route, state: TargetState) -> None:
     on_route = route.waypoints.filter(kind=WaypointKind.TARGET).values("target")
     reason = FLIGHT_FAILED if state == TargetState.FAILED else ""
-    InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED).update(state=state, state_reason=reason)
+    _put(held, InspectionTarget.objects.filter(pk__in=on_route, state__in=UNDECIDED), state, reason)
+
+
+def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState, reason: str = "") -> bool:
+    """Whether there were any. Live pages are told after the commit."""
+    if not targets.update(state=state, state_at=Now(), state_reason=reason):
+        return False
+    transaction.on_commit(partial(publish_live, held.organisation_id))
+    return True
 
 
 def _flights(mission: Mission) -> dict[int, int]:

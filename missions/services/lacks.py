@@ -5,13 +5,14 @@ from dataclasses import replace
 
 from missions.flight_plan.heights import GroundHeights
 from missions.routing.problem import End, Reason
+from missions.routing.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
 from missions.services.assignment import route_end
 from missions.services.attempts import Attempt
 from missions.services.battery import KEPT_BACK
 from missions.services.least_lacks import IsClear, Lack, LeastLacks
 from missions.services.over_wires import NO_PATH, barred_text
 from missions.services.refusals import LeftOut
-from missions.services.requests import PlanRequest
+from missions.services.requests import PlanRequest, UavRequest
 from missions.services.unreached import LOCKED
 
 OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
@@ -34,7 +35,10 @@ def with_lacks(request: PlanRequest, found: Attempt, ground: GroundHeights | Non
 
 
 def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[LeftOut]:
-    """What another plan leaves out as out of reach, too, may lack less on its ways; who has the range on one way lacks the battery."""
+    """What another plan leaves out as out of reach, too, may lack less on its ways, nothing where it could be done alone on these.
+
+    Who has the range on one way lacks the battery.
+    """
     theirs = {item.target: item for item in other if item.missing is not None}
 
     def least(item: LeftOut) -> LeftOut:
@@ -43,6 +47,8 @@ def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[Lef
             return item
         if item.missing is None:
             return same
+        if item.missing == 0.0 or same.missing == 0.0:
+            return item if item.missing == 0.0 else same
         if item.reason != same.reason:
             return item if item.reason == Reason.BEYOND_ENERGY.value else same
         return item if item.missing <= same.missing else same
@@ -67,8 +73,18 @@ def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
         return replace(anyhow, missing=None)
     told = replace(item, reason=Reason.BEYOND_ENERGY.value)
     if least.missing <= 0.0:
-        return replace(told, message=item.message if item.message == KEPT_BACK else ALONE, missing=0.0)
+        if item.message == KEPT_BACK:
+            return replace(told, missing=0.0)
+        return _alone(item.target, request.uavs[least.uav])
     return replace(told, message=_message(least, request), missing=least.missing)
+
+
+def _alone(target: int, uav: UavRequest) -> LeftOut:
+    """What keeps it from the route of a UAV that could do it alone."""
+    if uav.performance.usable_wh is not None:
+        return LeftOut(target, Reason.BEYOND_ENERGY.value, ALONE, 0.0)
+    reason, message, _missing = NOT_ON_ONE_ROUTE if uav.max_range_m is None else RANGE_ALONE
+    return LeftOut(target, reason.value, message, 0.0)
 
 
 def _message(lack: Lack, request: PlanRequest) -> str:

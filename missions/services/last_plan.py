@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from inspection.geodesy import distance_m
-from missions.models import InspectionTarget, Mission, Route, Waypoint, WaypointKind
+from missions.models import EndAction, InspectionTarget, Mission, Route, Waypoint, WaypointKind
 
 OFF_NETWORK = {WaypointKind.START, WaypointKind.END}
 
@@ -17,7 +17,7 @@ def summary_of_plan(*, mission: Mission) -> dict[str, Any] | None:
         return None
     targets = {target.pk: target for target in mission.targets.all()}
     routes = mission.routes.select_related("mission_uav").prefetch_related("waypoints").order_by("mission_uav__sequence")
-    summaries = [_route(route, targets) for route in routes]
+    summaries = [_route(mission, route, targets) for route in routes]
     return {
         "planned_at": mission.planned_at.isoformat(),
         "objective": mission.objective,
@@ -31,12 +31,15 @@ def summary_of_plan(*, mission: Mission) -> dict[str, Any] | None:
     }
 
 
-def _route(route: Route, targets: dict[int, InspectionTarget]) -> dict[str, Any]:
+def _route(mission: Mission, route: Route, targets: dict[int, InspectionTarget]) -> dict[str, Any]:
     waypoints = sorted(route.waypoints.all(), key=lambda waypoint: waypoint.sequence)
     along_m = _along_m(waypoints, route.length_m)
     return {
         "uav": route.mission_uav.name,
         "uav_id": route.mission_uav.uav_id,
+        "start": list(route.mission_uav.start.coords),
+        "end_action": EndAction.RETURN if mission.return_to_start else route.mission_uav.end_action,
+        "base": route.base_name or None,
         "length_m": route.length_m,
         "duration_s": route.duration_s,
         "stops": [

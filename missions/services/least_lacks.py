@@ -95,7 +95,7 @@ class LeastLacks:
     def _ways(self, target: int) -> list[tuple[float, int, tuple[int, ...]]]:
         """For each UAV that has the range, by its number in the request, the visits of the least route; and what it is counted to lack.
 
-        Of one that charges on the way no lack is counted, and it comes by others only where it has to.
+        Of one that charges on the way no lack is counted, and it comes by others only where it has to; of one without a battery none is.
         """
         ways = []
         for start, uav in enumerate(self.found.uavs):
@@ -103,15 +103,19 @@ class LeastLacks:
             if not may_do(asked, self.request.targets[target]):
                 continue
             limit_m, usable_wh = self.found.problem.uavs[start].limit_m, asked.performance.usable_wh
-            charges = self.request.charging_w is not None and asked.sorties == 1
+            charges = self.request.may_charge(uav)
             for visit in self._visits[self._number[target]]:
+                if usable_wh is None:
+                    shortest = self._metres.route(start, visit)
+                    ways += [(-math.inf, uav, shortest.order)] if shortest.amount <= min(limit_m, NO_WAY_M) else []
+                    continue
                 least = (routes.route(start, visit).order for routes in (self._wh, self._metres))
                 orders = ((visit,), *least) if charges else tuple(least)
                 for order in [order for order in orders if self._metres_of(start, order) <= min(limit_m, NO_WAY_M)][:1]:
                     counted_wh = self.found.problem.route_wh(start, order)
                     if counted_wh is not None and math.isfinite(counted_wh):
-                        lacks_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - (usable_wh or 0.0)
-                        ways.append((-math.inf if charges or usable_wh is None else lacks_wh, uav, order))
+                        lacks_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - usable_wh
+                        ways.append((-math.inf if charges else lacks_wh, uav, order))
         return ways
 
     def _metres_of(self, start: int, order: tuple[int, ...]) -> float:

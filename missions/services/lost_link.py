@@ -8,10 +8,10 @@ from django.conf import settings
 
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
-from inspection.selectors import ground_heights_m
 from inspection.selectors.graph import zones_of_table
-from inspection.selectors.planning import has_terrain_at, planning_read
+from inspection.selectors.planning import heights_at, planning_read
 from inspection.zones.reach import ZoneTable
+from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.lost_link import LostLink, LostLinkPlan, checked_returns
 from missions.flight_plan.zone_facts import zones_near
 from missions.models import Mission
@@ -23,20 +23,20 @@ from missions.zone_selectors import zone_margins
 
 
 def lost_link_check(
-    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, network: Network, *, has_terrain: bool
+    request: PlanRequest, routes: Sequence[PlannedRoute], table: ZoneTable, network: Network, heights: GroundHeights | None
 ) -> dict[str, Any]:
     """The wish, and every waypoint from which it fails, in the shape of the API; who goes on flies what was checked already.
 
     highest_m: for each route at which height above its start a UAV returns where it returns highest, but not too high.
 
-    What stands and hangs on the network is in the way.
+    What stands and hangs on the network is in the way. heights: of the terrain model; None: there is none.
     """
     wished = request.lost_link
     failed: list[dict[str, Any]] = []
     highest_m: list[float | None] = [None] * len(routes)
     if wished.behaviour is not LostLink.GO_ON:
         for number, route in enumerate(routes):
-            own, highest_m[number] = _checked(request, number, route, table, network, has_terrain=has_terrain)
+            own, highest_m[number] = _checked(request, number, route, table, network, heights)
             failed += own
     in_zones = [] if wished.behaviour is LostLink.GO_ON else _rally_points_in_zones(request, table)
     return {**lost_link_to_json(wished), "failed": failed, "highest_m": highest_m, "rally_points_in_zones": in_zones}
@@ -63,11 +63,11 @@ def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any
     if routes is None:
         return None
     ground = planning_read().ground()
-    return lost_link_check(request, routes, ground.table, ground.network(), has_terrain=has_terrain_at(ground.edition))
+    return lost_link_check(request, routes, ground.table, ground.network(), heights_at(ground.edition))
 
 
 def _checked(
-    request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, network: Network, *, has_terrain: bool
+    request: PlanRequest, number: int, route: PlannedRoute, table: ZoneTable, network: Network, heights: GroundHeights | None
 ) -> tuple[list[dict[str, Any]], float | None]:
     if route.waypoints is None or route.timing is None:
         return [], None
@@ -87,7 +87,7 @@ def _checked(
         zones=facts,
         margins=margins,
         departs_s=departs_s,
-        ground_heights_m=ground_heights_m if has_terrain and not route.is_flat else None,
+        ground_heights_m=None if route.is_flat else heights,
         spans=spans_of(network),
         home=asked.home,
     )

@@ -17,6 +17,7 @@ from missions.models import EndAction, InspectionTarget, Mission, MissionState, 
 from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
 from missions.services.lost_link import lost_link_of_stored
+from missions.services.own_figures import as_said_before
 from missions.services.places import places_of
 from missions.services.requests import (
     InvalidRequest,
@@ -142,8 +143,9 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
         elif targets is not None:
             locked.locks = []
         if change.uavs is not None:
+            said_before = request_of_mission(mission=locked).uavs
             locked.mission_uavs.all().delete()
-            _store_uavs(locked, change.uavs)
+            _store_uavs(locked, tuple(as_said_before(uav, said_before) for uav in change.uavs))
         if targets is not None:
             locked.targets.all().delete()
             _store_targets(locked, targets)
@@ -240,6 +242,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 sorties=row.sorties,
                 home=None if row.home is None else LonLat(*row.home.coords),
                 own_figures=tuple(row.own_figures),
+                fleet_figures=row.fleet_figures,
             )
             for row in mission.mission_uavs.all()
         ),
@@ -318,6 +321,7 @@ def _store_uavs(mission: Mission, uavs: tuple[UavRequest, ...]) -> None:
             sorties=uav.sorties,
             home=None if uav.home is None else Point(*uav.home, srid=4326),
             own_figures=list(uav.own_figures),
+            fleet_figures=dict(uav.fleet_figures),
         )
         for sequence, uav in enumerate(uavs)
     )

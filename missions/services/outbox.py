@@ -4,15 +4,16 @@ All times are the database's, so that the clocks of those who carry do not matte
 once another one has taken it over, or it has ended, nothing that the first one writes meets a row.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from datetime import timedelta
+from functools import partial
 from typing import Any
 from uuid import UUID
 
 from django.conf import settings
 from django.db import connection, transaction
-from django.db.models import Max, Q, QuerySet
-from django.db.models.functions import Coalesce, Now
+from django.db.models import F, Max, Q, QuerySet
+from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
 
 from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
@@ -29,6 +30,7 @@ from missions.models import (
     UavCommandEvent,
 )
 from missions.services.refused import refuse
+from workspace.live import publish_live
 from workspace.models import User
 from workspace.services import record_change
 
@@ -104,6 +106,7 @@ def queue_command(
             },
         )  # fmt: skip
         _tell(uav.pk)
+        _tell_pages([uav.organisation_id])
     return command
 
 
@@ -142,6 +145,14 @@ def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
     return attempts
 
 
+def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
+    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many."""
+    if not uav_ids:
+        return 0
+    held = UavCommand.objects.filter(uav__in=uav_ids, link=LinkKind.MAVLINK, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+    return held.exclude(holder__in=["", holder]).update(lease_expires_at=None)
+
+
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
     still_wanted = Q(expires_at=None) | Q(expires_at__gt=Now())
@@ -159,7 +170,23 @@ def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
 
 def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
     """So many items of an upload are over."""
-    return bool(_held(command_id, attempt, holder).update(progress={"done": done, "total": total}))
+    with transaction.atomic():
+        if not _held(command_id, attempt, holder).update(progress={"done": done, "total": total}):
+            return False
+        _tell_pages([_organisation_of(command_id)])
+    return True
+
+
+def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
+    """So many items of what is on board were read, before it is sent: from now on it is wanted as long as it was when it was given.
+
+    That is put off by `read_back_s` at most. False once nobody wants it any more.
+    """
+    rules = settings.COMMAND_RULES
+    latest = F("created_at") + timedelta(seconds=rules.motion_s + rules.read_back_s)
+    put_off = Greatest(F("expires_at"), Least(Now() + timedelta(seconds=rules.motion_s), latest))
+    held = _held(command_id, attempt, holder).filter(sent_at=None, expires_at__gt=Now())
+    return bool(held.update(progress={"done": done, "total": total}, expires_at=put_off))
 
 
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
@@ -218,6 +245,7 @@ def _note(
         if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
             return False
         UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
+        _tell_pages([_organisation_of(command_id)])
     return True
 
 
@@ -231,6 +259,7 @@ def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: 
         UavCommandEvent(command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=words)
         for command in found
     )
+    _tell_pages({command.organisation_id for command in found})
     return len(found)
 
 
@@ -238,3 +267,13 @@ def _tell(uav_id: int) -> None:
     """Whoever listens hears it once the transaction is committed, and not at all if it is not."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_notify(%s, %s)", [CHANNEL, str(uav_id)])
+
+
+def _tell_pages(organisations: Iterable[int]) -> None:
+    """Once the transaction is committed."""
+    for organisation_id in organisations:
+        transaction.on_commit(partial(publish_live, organisation_id))
+
+
+def _organisation_of(command_id: UUID) -> int:
+    return UavCommand.objects.values_list("organisation_id", flat=True).get(pk=command_id)

@@ -1,18 +1,20 @@
 """Routes that would have to be flown over what they cannot be flown over, and what becomes of them."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from django.conf import settings
+from numpy.typing import NDArray
 
-from inspection.geodesy import distance_m
+from inspection.geodesy import LonLat, distance_m
 from inspection.graph.network import Network
 from inspection.graph.spans import BESIDE_M, spans_of
 from inspection.graph.walls import index_of_walls, walls_along
 from inspection.graph.zone_index import ZoneIndex
 from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.tall_clearance import spans_too_near
+from missions.flight_plan.waypoints import FloatArray
 from missions.routing.problem import Reason
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
@@ -35,39 +37,62 @@ def spans_in_the_way(routes: Sequence[PlannedRoute], network: Network, ground: G
     return found
 
 
-def walls_of_spans(network: Network, numbers: Collection[int]) -> ZoneIndex:
-    """Around wires but for their ends; around all of what is too short for that."""
+def walls_of_spans(network: Network, numbers: Collection[int], closed: Collection[int], terminals: Sequence[LonLat]) -> ZoneIndex:
+    """Around wires but for their ends; around all of what is too short for that, and of `closed` but for ends at a terminal."""
     spans, rows = spans_of(network), np.array(sorted(numbers), dtype=np.int64)
     start, end = spans.start[rows], spans.end[rows]
     length_m = np.maximum(distance_m(start, end), 1e-3)
-    cut = np.where(length_m > 3.0 * FREE_AT_ENDS_M, FREE_AT_ENDS_M / length_m, 0.0)[:, None]
-    is_round = np.broadcast_to(cut == 0.0, (len(rows), 2))
-    return index_of_walls(walls_along(start + cut * (end - start), end - cut * (end - start), is_round))
+    cut = np.where(length_m > 3.0 * FREE_AT_ENDS_M, FREE_AT_ENDS_M / length_m, 0.0)[:, None].repeat(2, axis=1)
+    is_closed = np.isin(rows, sorted(closed))
+    for side, place in enumerate((start, end)):
+        cut[is_closed & ~_near_any(place, np.array(terminals)), side] = 0.0
+    walls = walls_along(start + cut[:, :1] * (end - start), end - cut[:, 1:] * (end - start), cut == 0.0)
+    return index_of_walls(walls)
 
 
-def targets_barred(
-    found: Attempt, in_the_way: Collection[int], network: Network, ground: GroundHeights | None
-) -> dict[int, frozenset[int]]:
+def _near_any(places: FloatArray, terminals: FloatArray) -> NDArray[np.bool_]:
+    """(k,): whether a terminal, (n, 2), is within FREE_AT_ENDS_M of each place, (k, 2)."""
+    away_m = distance_m(places.repeat(len(terminals), axis=0), np.tile(terminals, (len(places), 1)))
+    return np.asarray((away_m.reshape(len(places), -1) <= FREE_AT_ENDS_M).any(axis=1))
+
+
+def targets_barred(found: Attempt, in_the_way: Collection[int], ground: GroundHeights | None) -> dict[int, frozenset[int]]:
     """Of these UAVs, by their numbers: targets to which, alone, there is no way but past what cannot be flown over."""
-    barred = {}
-    for uav in in_the_way:
-        visits = [visit for order in found.solution.sorties[found.uavs.index(uav)] for visit in order]
-        alone = [(visit, found.drawn_alone(uav, [visit], ground)) for visit in visits]
-        barred[uav] = frozenset(
-            found.drawing.places[found.problem.visits[visit].target].target
-            for visit, route in alone
-            if route is not None and spans_in_the_way([route], network, ground)
-        )
-    return {uav: targets for uav, targets in barred.items() if targets}
+
+    def barred(uav: int, order: Sequence[int]) -> list[int]:
+        return [visit for visit in order if _is_barred(found, uav, [visit], ground)]
+
+    return _targets_of(found, in_the_way, barred)
 
 
-def told_of_wires(request: PlanRequest, left_out: Sequence[LeftOut], barred: Mapping[int, Collection[int]]) -> list[LeftOut]:
-    """The reasons for what was kept from UAVs so, unless others lack the range for it."""
-    names = {target: request.uavs[uav].name for uav, targets in barred.items() for target in targets}
+def targets_barred_after_others(found: Attempt, in_the_way: Collection[int], ground: GroundHeights | None) -> dict[int, frozenset[int]]:
+    """Of these UAVs: targets to which there is no other way than that from those before them on the flight, without what is barred so."""
+
+    def barred(uav: int, order: Sequence[int]) -> list[int]:
+        kept: list[int] = []
+        for visit in order:
+            if not _is_barred(found, uav, [*kept, visit], ground):
+                kept.append(visit)
+        return [visit for visit in order if visit not in kept]
+
+    return _targets_of(found, in_the_way, barred)
+
+
+def _targets_of(found: Attempt, uavs: Collection[int], barred: Callable[[int, Sequence[int]], list[int]]) -> dict[int, frozenset[int]]:
+    visits = {uav: [visit for order in found.solution.sorties[found.uavs.index(uav)] for visit in barred(uav, order)] for uav in uavs}
+    target_of = {visit: found.drawing.places[found.problem.visits[visit].target].target for own in visits.values() for visit in own}
+    return {uav: frozenset(target_of[visit] for visit in own) for uav, own in visits.items() if own}
+
+
+def _is_barred(found: Attempt, uav: int, order: Sequence[int], ground: GroundHeights | None) -> bool:
+    route = found.drawn_alone(uav, order, ground)
+    return route is not None and bool(spans_in_the_way([route], found.scene.network, ground))
+
+
+def told_of_wires(left_out: Sequence[LeftOut], why: Mapping[int, str]) -> list[LeftOut]:
+    """With the reasons for what was kept from UAVs for wires, unless others lack the range for it."""
     return [
-        LeftOut(item.target, NO_PATH, barred_text(names[item.target]))
-        if item.target in names and item.reason == Reason.BEYOND_ENERGY.value
-        else item
+        LeftOut(item.target, NO_PATH, why[item.target]) if item.target in why and item.reason == Reason.BEYOND_ENERGY.value else item
         for item in left_out
     ]
 
@@ -75,6 +100,11 @@ def told_of_wires(request: PlanRequest, left_out: Sequence[LeftOut], barred: Map
 def barred_text(uav: str) -> str:
     """Why a target is left out to which that UAV could fly but for wires."""
     return f"{uav} would have to pass a mast or wires that cannot be flown over."
+
+
+def barred_after_others_text(uav: str) -> str:
+    """The same where the UAV could fly to it alone."""
+    return f"From its other targets {uav} would have to pass a mast or wires that cannot be flown over."
 
 
 def without_routes_barred(

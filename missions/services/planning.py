@@ -1,6 +1,5 @@
 """One plan from request to answer: on which zones it stands, the attempts on them, and the last look before it leaves."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,8 +10,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from inspection.graph.walls import at_all_heights, with_walls
 from inspection.graph.zone_index import ZoneIndex
-from inspection.selectors import ground_heights_m
-from inspection.selectors.planning import PlanningGround, edition_now, has_terrain_at, planning_read, terrain_at
+from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
 from missions.flight_plan.separation import Separation
 from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
@@ -20,14 +18,14 @@ from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
-from missions.services.battery import battery_overruns, not_lasting_for, without_overruns
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, unheard
+from missions.services.drawn_attempts import DrawnAttempts, Shown
 from missions.services.lacks import OUT_OF_REACH, least_missing, with_lacks
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
-from missions.services.over_wires import spans_in_the_way, targets_barred, told_of_wires, walls_of_spans, without_routes_barred
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_json import PlannedRoute, plan_to_json
+from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
 from missions.services.unreached import WIND
@@ -147,63 +145,44 @@ class _Planner:
 
     def _is_out_of_reach(self, plan: Finished) -> bool:
         """Whether a target is left out for which another way might do."""
-        reasons = {item.reason for item in plan.found.left_out}
-        return not reasons.isdisjoint(OUT_OF_REACH | {WIND})
+        return any(item.reason in OUT_OF_REACH | {WIND} or item.missing == 0.0 for item in plan.found.left_out)
 
     def _drawn(
         self, ground: PlanningGround, choice: ZoneChoice, chosen: BoolArray, share: float, walls: ZoneIndex | None, *, is_by_length: bool
     ) -> Finished:
-        """An attempt on preferred or on shortest ways. Where a route takes more of its battery than the search had counted, it counts on so
-        much less that this route is out of the question, and tries again; and what cannot be flown over is gone round from then on. In
-        the end the UAV stays on the ground."""
-        scene = scene_on(ground, chosen, walls, is_by_length=is_by_length)
-        has_terrain = has_terrain_at(ground.edition)
-        terrain = ground_heights_m if has_terrain else None
-        usable_share: dict[int, float] = {}
-        kept_from: dict[int, frozenset[int]] = {}
-        wired: dict[int, frozenset[int]] = {}
-        barred: frozenset[int] = frozenset()
-        for number in range(MOST_TRIES):
+        """Attempts on preferred or on shortest ways, until one can be flown as it is drawn."""
+        terrain = heights_at(ground.edition)
+
+        def scene_with(more: ZoneIndex | None) -> Scene:
+            both = walls if more is None else more if walls is None else with_walls(walls, more)
+            return scene_on(ground, chosen, both, is_by_length=is_by_length)
+
+        def attempt_on(scene: Scene, shown: Shown, part: float) -> Attempt:
             found = attempt(
                 self.request, self.places, self.gone, scene,
                 stop=self.stop, on_progress=self.on_progress, seed=self.seed,
-                search_s=self.search_s * share / 2**number, usable_share=usable_share, kept_from=kept_from,
+                search_s=self.search_s * share * part, usable_share=shown.usable_share, kept_from=shown.kept_from,
             )  # fmt: skip
             self.on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
-            alone = found.routes(self.request, terrain)
-            over = battery_overruns(self.request, found, alone)
-            in_the_way = spans_in_the_way(alone, scene.network, terrain)
-            if not over and not in_the_way:
-                break
-            if number == MOST_TRIES - 1:
-                found, alone = without_overruns(self.request, found, alone, over)
-                found, alone = without_routes_barred(self.request, found, alone, in_the_way)
-            if in_the_way:
-                spans = frozenset().union(*in_the_way.values())
-                if spans <= barred:  # walls do not help: what is to be inspected lies there
-                    for uav, targets in targets_barred(found, in_the_way, scene.network, terrain).items():
-                        wired[uav] = wired.get(uav, frozenset()) | targets
-                        kept_from[uav] = kept_from.get(uav, frozenset()) | targets
-                barred |= spans
-                wires = walls_of_spans(scene.network, barred)
-                scene = scene_on(ground, chosen, wires if walls is None else with_walls(walls, wires), is_by_length=is_by_length)
-            if number < MOST_TRIES - 2:
-                for uav, targets in not_lasting_for(self.request, found, alone, over, terrain).items():
-                    kept_from[uav] = kept_from.get(uav, frozenset()) | targets
-                    over.pop(uav)
-            for uav, share_left in over.items():
-                usable_share[uav] = min(usable_share.get(uav, math.inf), share_left if number < MOST_TRIES - 2 else min(share_left, 1.0))
+            return found
+
+        drawn = DrawnAttempts(self.request, terrain, self._positions(), scene_with, attempt_on).last()
         on_all = (chosen == choice.widest).all()
         is_clear = None if on_all else lambda route: not keys_of_zones_met([route], self.request.departs_at, choice.table)
-        found = replace(found, left_out=told_of_wires(self.request, found.left_out, wired))
-        found = replace(found, left_out=with_lacks(self.request, found, terrain, is_clear))
+        found = replace(drawn.found, left_out=with_lacks(self.request, drawn.found, terrain, is_clear))
+        routes, separation, others, met = self._kept_apart(drawn.routes, choice)
+        return Finished(found, routes, separation, others, terrain is not None, met, worth_of(self.request, found, routes), drawn.is_first)
+
+    def _kept_apart(
+        self, alone: Sequence[PlannedRoute], choice: ZoneChoice
+    ) -> tuple[list[PlannedRoute], Separation, OtherFlights, frozenset[int]]:
+        """The routes put off or higher where others are too near, and the zones, by their keys, that they meet so."""
         routes, separation, others = self._apart(alone, choice)
         met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
         if met and any(separation.layers_m):  # higher and put off, a route may meet what higher alone it does not
             routes, separation, others = self._apart(alone, choice, may_raise=False)
             met = keys_of_zones_met(routes, self.request.departs_at, choice.table)
-        is_whole = not usable_share and not kept_from and not barred  # a wall bars more than what was in the way
-        return Finished(found, routes, separation, others, has_terrain, met, worth_of(self.request, found, routes), is_whole)
+        return routes, separation, others, met
 
     def _apart(
         self, alone: Sequence[PlannedRoute], choice: ZoneChoice, *, may_raise: bool = True
@@ -258,7 +237,7 @@ def make_plan(
         ground_revision=ground.edition[0],
         has_terrain=plan.has_terrain,
         separation=separation_json(plan.separation, plan.others.untimed),
-        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, has_terrain=plan.has_terrain),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, heights_at(ground.edition)),
         quality=_quality(request, plan, freest),
         as_text=as_text,
     )

@@ -116,10 +116,8 @@ def _no_landing(scene: Scene, flights: Sequence[Flight]) -> np.ndarray | None:
 
 def _may_charge(request: PlanRequest, starting: Sequence[_Start]) -> bool:
     """Whether a flight may charge at towers on its way; with a charger that gives more than the UAV takes while it stands."""
-    uavs = [request.uavs[start.uav] for start in starting]
-    return request.charging_w is not None and any(
-        uav.sorties == 1 and uav.performance.battery_wh is not None and request.charging_w > uav.performance.avionics_w for uav in uavs
-    )
+    uavs = [request.uavs[start.uav].performance for start in starting if request.may_charge(start.uav)]
+    return any(uav.battery_wh is not None and (request.charging_w or 0.0) > uav.avionics_w for uav in uavs)
 
 
 def _in_box(found: Reach, box: Box) -> np.ndarray:

@@ -1,5 +1,6 @@
 """What is asked of the planner, as plain values; stored as JSON while a job waits."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -29,6 +30,7 @@ class UavRequest:
     sorties: int = 1  # flights that it makes at most; several only where it returns
     home: LonLat | None = None  # where it took off and returns to, of one that is in the air already; else that is its position
     own_figures: tuple[str, ...] = field(default=(), compare=False)  # of a stored UAV: those that are said for this mission
+    fleet_figures: Mapping[str, Any] = field(default_factory=dict, compare=False)  # of the own figures: what the stored UAV has instead
 
     @property
     def returns_to(self) -> LonLat:
@@ -101,6 +103,10 @@ class PlanRequest:
     lost_link: LostLinkRequest = GO_ON
     organisation: int | None = None
     mission: str | None = None
+
+    def may_charge(self, uav: int) -> bool:
+        """Whether this UAV, by its number, charges at towers: who flies several times takes a full battery at the base instead."""
+        return self.charging_w is not None and self.uavs[uav].sorties == 1
 
     def end_action(self, uav: int) -> EndAction:
         """What the UAV does in the end: the wish that all return comes first."""

@@ -147,4 +147,5 @@ def _is_stopped_by_wind(problem: Problem, visits: Sequence[int]) -> bool:
         return False
     uavs = tuple(replace(uav, usable_wh=None) for uav in problem.uavs)
     calm = replace(problem, uavs=uavs, objective=Objective.TOTAL, seconds=None, wh=None)
-    return bool(np.isfinite(needed_range_m(calm)[:, list(visits)]).any())
+    in_wind, without = (bool(np.isfinite(needed_range_m(one)[:, list(visits)]).any()) for one in (problem, calm))
+    return without and not in_wind

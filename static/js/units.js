@@ -195,3 +195,9 @@ export function momentTyped(typed) {
   const isThere = asUtc - minutesAheadOfUtc(moment) * 60_000 === moment;
   return new Date(isThere ? moment : Math.max(guess, moment)).toISOString();
 }
+
+/** "12 s ago", "4 min ago", then the time. */
+export function agoText(seconds, iso) {
+  if (seconds < 60) return t("{count} s ago", { count: Math.max(0, Math.round(seconds)) });
+  return seconds < 3_600 ? t("{count} min ago", { count: Math.round(seconds / 60) }) : whenText(iso);
+}

@@ -8,14 +8,14 @@ import asyncio
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from django.conf import settings
 
-from missions.mavlink.content import FlightLoad
+from missions.mavlink.content import FlightLoad, MissionType
 from missions.models import CommandKind, UavCommand
-from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_released, note_sent
+from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_read_back, note_released, note_sent
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import CannotCarry, Task, reason_not_to, task_of
@@ -27,7 +27,7 @@ from telemetry.ground_station.command_keeper import CommandKeeper
 from telemetry.ground_station.ends import Ends
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
 from telemetry.ground_station.mission_keeper import MissionKeeper
-from telemetry.services.loads import Carried, begin_loading, end_loading, fail_loading
+from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 from telemetry.services.mission_alerts import tell_of_mission
 
 logger = logging.getLogger(__name__)
@@ -69,6 +69,8 @@ class Carriage:
         try:
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
+                if task.take_off is not None:
+                    self.session.own_return.ask_anew(time.monotonic())
                 task = await self._reason_against(task) or await self._beyond_limits(task) or task
             if isinstance(task, CannotCarry):
                 await self._refuse(task)
@@ -100,7 +102,7 @@ class Carriage:
 
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
-        if task.aboard is not None and not await self._is_aboard(task.aboard):
+        if task.aboard is not None and not await self._is_aboard(task.aboard, task.before):
             return
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
@@ -125,13 +127,29 @@ class Carriage:
         else:
             await self._end(note_released)
 
-    async def _is_aboard(self, load: FlightLoad) -> bool:
-        """Whether the vehicle holds the list that it is about to fly, by reading it now. What is not so ends the command."""
-        reading = await read_aboard(self.session, load, lambda: self.is_ours)
+    async def _is_aboard(self, load: FlightLoad, before: Loaded | None) -> bool:
+        """Whether the vehicle holds the list that it is about to fly, by reading it now. What is not so ends the command.
+
+        Its time runs from the end of the reading; as long as that goes on, it is not over.
+        """
+        total, read, noted_s = sum(len(load.of(kind)) for kind in MissionType), 0, time.monotonic()
+
+        def advance(done: int) -> None:
+            nonlocal read, noted_s
+            if done > read and time.monotonic() - noted_s >= PROGRESS_EVERY_S:
+                read, noted_s = done, time.monotonic()
+                self._note(note_read_back, self.command.pk, done=done, total=total, **self._fence)
+
+        reading = await read_aboard(self.session, load, before.beside if before else {}, lambda: self.is_ours, advance)
+        await asyncio.gather(*self._notes, return_exceptions=True)
         if reading is None:
             await self._end(note_released)
         elif reading.is_aboard:
-            return True
+            if before is not None:
+                await self._surely(confirm_loaded, self.carried, before)
+            if await self._surely(note_read_back, self.command.pk, done=total, total=total, **self._fence):
+                return True
+            await self._end(note_released)
         elif reading.code in UNHEARD:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words)
         else:
@@ -183,7 +201,9 @@ class Carriage:
         if outcome.state is KeeperState.READY:
             warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
             told = " ".join(filter(None, [outcome.left_alone, warnings]))
-            await self._end_with(end_loading, task.wanted, note=outcome.words, warnings=told)
+            beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
+            wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
+            await self._end_with(end_loading, wanted, note=outcome.words, warnings=told)
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)
         elif self.is_closing or (outcome.code in UNHEARD and not outcome.is_critical):

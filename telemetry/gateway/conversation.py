@@ -57,7 +57,7 @@ class Conversation:
     def _hear(self, message: Message, now_s: float) -> None:
         if self.keeper.outcome is None and self.is_wanted():
             self.session.send(self.keeper.receive(message, now_s))
-            self._heard.set()
+        self._heard.set()
 
     async def _wait(self) -> None:
         wake_at_s = self.keeper.wake_at_s

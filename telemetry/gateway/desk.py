@@ -11,6 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from django.conf import settings
+
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
@@ -24,7 +26,6 @@ logger = logging.getLogger(__name__)
 
 LOOK_EVERY_S = 1.0
 HEARD_WITHIN_S = 5.0  # else its commands wait for it, or for another gateway
-MOST_AT_ONCE = 200  # above which speeds wait
 MOST_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
@@ -74,7 +75,7 @@ class Desk:
         if served:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
             await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
-            await self._claim(served, CommandAxis.SPEED, MOST_AT_ONCE - len(self._carriages))
+            await self._claim(served, CommandAxis.SPEED, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
         self._begin()
 
     async def _claim(self, served: dict[int, Session], axis: CommandAxis, room: int) -> None:

@@ -1,4 +1,7 @@
-"""A log for each flight: begun when a vehicle arms, ended when it disarms."""
+"""A log for each flight: begun when a vehicle arms, ended some seconds after it disarms.
+
+One that arms and disarms all the time keeps to one file, and no disk is waited for in the loop.
+"""
 
 import asyncio
 import logging
@@ -15,6 +18,7 @@ from telemetry.services.flight_logs import begin_flight_log, end_flight_log
 logger = logging.getLogger(__name__)
 
 SYNC_EVERY_S = 2.0
+DISARMED_FOR_S = 2.0
 FORGOTTEN_AFTER_S = 1_800.0  # a flight that ended unheard
 ROWS_WAITING = 1_000
 
@@ -23,6 +27,7 @@ ROWS_WAITING = 1_000
 class Flights:
     options: Options
     _open: dict[int, tuple[Session, FlightRecorder, str]] = field(default_factory=dict)  # by system id
+    _disarmed_s: dict[int, float] = field(default_factory=dict)  # since when
     _rows: list[Callable[[], None]] = field(default_factory=list)
 
     def watch(self, session: Session, now_s: float) -> None:
@@ -30,27 +35,39 @@ class Flights:
         is_open = session.log is not None
         if session.state.is_armed and not is_open:
             self._begin(session, now_s)
+        elif is_open and session.state.is_armed:
+            self._disarmed_s.pop(session.uav.system, None)
         elif is_open and session.state.is_armed is False:
-            self.end(session, now_s)
+            self._disarmed_s.setdefault(session.uav.system, now_s)
 
     def end(self, session: Session, now_s: float) -> None:
         found = self._open.pop(session.uav.system, None)
+        self._disarmed_s.pop(session.uav.system, None)
         session.log = None
         if found is None:
             return
         _, recorder, path = found
-        recorder.close()
         ended_at = datetime.fromtimestamp(now_s, UTC)
-        self._later(lambda: end_flight_log(path=path, ended_at=ended_at))
+
+        def close() -> None:
+            recorder.close()
+            end_flight_log(path=path, ended_at=ended_at)
+
+        self._later(close)
 
     def end_all(self, now_s: float) -> None:
-        for session, _, _ in list(self._open.values()):
+        """Nothing else is to be done any more: the files are closed at once."""
+        for session, recorder, _ in list(self._open.values()):
             self.end(session, now_s)
+            recorder.close()
 
     async def sync(self, now_s: float) -> None:
         for session, recorder, _ in list(self._open.values()):
             await asyncio.to_thread(recorder.sync)
-            if now_s - session.heard_s > FORGOTTEN_AFTER_S:
+            disarmed_s = self._disarmed_s.get(session.uav.system)
+            if disarmed_s is not None and abs(now_s - disarmed_s) >= DISARMED_FOR_S:
+                self.end(session, disarmed_s)
+            elif now_s - session.heard_s > FORGOTTEN_AFTER_S:
                 self.end(session, session.heard_s)
 
     async def write_rows(self, database: DatabaseThread) -> None:

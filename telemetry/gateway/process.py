@@ -17,6 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, message_of
 from missions.services.credentials import note_mavlink_key_use
+from missions.services.own_return import note_own_return
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
@@ -33,6 +34,7 @@ from telemetry.services.alerts import tell_of_second_sender
 from telemetry.services.flown import note_flown
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
+from telemetry.services.loads import doubt_loaded
 from telemetry.services.sightings import Sighting
 
 logger = logging.getLogger(__name__)
@@ -162,6 +164,8 @@ class Gateway:
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
             "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
             "flown": self._every(FLOWN_EVERY_S, self._tell_flown),
+            "returns": self._every(FLOWN_EVERY_S, self._tell_own_returns),
+            "doubts": self._every(FLOWN_EVERY_S, self._tell_doubts),
             "keys": self._every(KEYS_EVERY_S, self._note_keys),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
         }
@@ -312,6 +316,22 @@ class Gateway:
                 except Exception:
                     logger.exception("what %s has flown could not be told: %s", session.uav.name, flown)
                 session.flown.pop(0)
+
+    async def _tell_own_returns(self) -> None:
+        for session in list(self.sessions.values()):
+            told = session.own_return.news(session.state)
+            if told is not None:
+                uav_id = session.uav.uav_id
+                await self.telling.run(note_own_return, uav_id=uav_id, autopilot=told.autopilot, parameters=told.parameters)
+                session.own_return.note(told)
+
+    async def _tell_doubts(self) -> None:
+        for session in list(self.sessions.values()):
+            while session.lists.found:
+                doubt, at_s = session.lists.found[0]
+                await self.telling.run(doubt_loaded, uav_id=session.uav.uav_id, doubt=doubt, ago_s=time.monotonic() - at_s)
+                if session.lists.found[:1] == [(doubt, at_s)]:
+                    session.lists.found.pop(0)
 
     async def _note_keys(self) -> None:
         signed = [session for session in self.sessions.values() if session.has_signed]

@@ -3,7 +3,7 @@
 Somebody else may have put another list on it since it was loaded, and it may have booted elsewhere.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from django.conf import settings
@@ -18,7 +18,7 @@ from telemetry.ground_station.flavour import RESTARTS, Flavour
 from telemetry.ground_station.home_reading import HomeReading
 from telemetry.ground_station.parameters import ParameterReading
 from telemetry.ground_station.transfer import TransferState
-from telemetry.ground_station.wire import held_list
+from telemetry.ground_station.wire import held_list, held_sha256
 
 READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
 
@@ -32,17 +32,22 @@ class Reading:
     words: str = ""
 
 
-async def read_aboard(session: Session, load: FlightLoad, is_wanted: Callable[[], bool]) -> Reading | None:
-    """None once it is not wanted any more. A fence or rally points that the load has none of are not asked for."""
+async def read_aboard(
+    session: Session, load: FlightLoad, beside: Mapping[str, str], is_wanted: Callable[[], bool], on_item: Callable[[int], None]
+) -> Reading | None:
+    """None once it is not wanted any more. `on_item` is told how many items were read of all lists.
+
+    `beside` names lists of the vehicle's own that were left there, and told, when the load was brought.
+    """
+    before = 0
     for kind in MissionType:
-        if not load.of(kind):
-            continue
         for _ in range(READINGS):
-            reading = await _read(session, load, kind, is_wanted)
+            reading = await _read(session, load, kind, beside, is_wanted, lambda done, before=before: on_item(before + done))
             if reading is None or reading.is_aboard:
                 break
         if reading is None or not reading.is_aboard:
             return reading
+        before += len(load.of(kind))
     return Reading(True)
 
 
@@ -57,17 +62,28 @@ async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -
         await Conversation(session, keeper, is_wanted).run(on_change=lambda: None)
 
 
-async def _read(session: Session, load: FlightLoad, kind: MissionType, is_wanted: Callable[[], bool]) -> Reading | None:
+async def _read(
+    session: Session,
+    load: FlightLoad,
+    kind: MissionType,
+    beside: Mapping[str, str],
+    is_wanted: Callable[[], bool],
+    on_item: Callable[[int], None],
+) -> Reading | None:
     download = Download(kind, Ends(session.uav.system), settings.TRANSFER_RULES)
-    outcome = await Conversation(session, download, is_wanted).run(on_change=lambda: None)
+    most = len(load.of(kind))
+    outcome = await Conversation(session, download, is_wanted).run(on_change=lambda: on_item(min(download.items_done, most)))
     if outcome is None:
         return None
     name = kind.name.lower()
+    if outcome.code == "unsupported" and not load.of(kind):
+        return Reading(True)  # it has no such list
     if outcome.state is not TransferState.DONE:
         return Reading(False, outcome.code, f"Nothing was sent: the {name} on the vehicle could not be read.")
     flavour = session.flavour or Flavour.OTHER
-    found = differences(load.of(kind), held_list(download.read, kind, flavour), flavour)
-    if not found:
+    held = held_list(download.read, kind, flavour)
+    found = differences(load.of(kind), held, flavour)
+    if not found or (not load.of(kind) and beside.get(name) == held_sha256(held)):
         return Reading(True)
     more = f" and {len(found) - 1} more" if len(found) > 1 else ""
     return Reading(False, "other-list", f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more}).")

@@ -19,10 +19,12 @@ from telemetry.decoding.report import Flown, Reporter, is_place, is_vehicle
 from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
 from telemetry.gateway.fleet import KnownUav
+from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
+from telemetry.gateway.own_return import OwnReturn
 from telemetry.gateway.peers import Peer
 from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flavour import MISSION_MODES, Flavour
 from telemetry.ground_station.flown import FlightWatch
 from telemetry.ground_station.flown import Flown as FlownItem
 from telemetry.ground_station.limits import PARAMETERS
@@ -36,6 +38,7 @@ MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
 SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
 ASK_AGAIN_S = 5.0  # for positions that do not come; for what is told once after ever longer
 ASK_SELDOM_S = 60.0
+GREET_AGAIN_S = 1.0
 LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
@@ -66,6 +69,8 @@ class Session:
     is_unsaved: bool = False
     has_signed: bool = False  # since somebody asked last
     limit_questions_left: int = LIMIT_QUESTIONS
+    own_return: OwnReturn = field(default_factory=OwnReturn)
+    lists: ListWatch = field(default_factory=ListWatch)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _check: SignatureCheck | None = field(default=None, repr=False)
@@ -119,6 +124,7 @@ class Session:
         """From now on, with what the gateway before has left. `waiting` is for the caller to receive again."""
         self.lease, self.held_until_s = lease, held_until_s
         self.losses = Counter(lease.losses)
+        self._flight.has_flown_list |= lease.mode_in_air in MISSION_MODES  # and may be down by now
         if not self.time.boots:
             self.time = VehicleTime.from_json(lease.boots)
         if self._check is not None and lease.signing.get("credential") == self.uav.credential_id:
@@ -141,8 +147,9 @@ class Session:
         return self.lease is not None and time.monotonic() < self.held_until_s
 
     def is_served(self, now_s: float, within_s: float) -> bool:
-        """Whether it is ours and there, and has said what it is."""
-        return self.is_held and now_s - self.heard_s <= within_s and self.state.flavour is not None
+        """Whether it is ours and there, and says how it is: after an outage it may have been armed, or be another one."""
+        is_here = _is_within(self.heard_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
+        return self.is_held and is_here and self.state.flavour is not None
 
     def unsettled_until_s(self, settling_s: float) -> float | None:
         """Until when what was sent before may still arrive; monotonic."""
@@ -162,6 +169,7 @@ class Session:
                 self.log(raw, message.get_msgId(), now_s)
             if self.peer is not None:
                 self.peer.send(raw)
+            self.lists.note_sent(message, time.monotonic())
         self.is_unsaved |= bool(messages)
 
     def tick(self, now_s: float) -> None:
@@ -171,14 +179,15 @@ class Session:
             return
         self._send([greeting.heartbeat()], now_s)  # tells it to do nothing, and without it a vehicle may think that it is left alone
         flavour = self.state.flavour
-        is_here = now_s - self.heard_s < SENDER_SILENT_S
+        is_here = _is_within(self.heard_s, now_s, SENDER_SILENT_S)
         if flavour is None or not is_here:
             return
-        if now_s - self._position_s > POSITIONS_MISSING_S and now_s - self._asked_s >= ASK_AGAIN_S:
+        if not _is_within(self._position_s, now_s, POSITIONS_MISSING_S) and not _is_within(self._asked_s, now_s, ASK_AGAIN_S):
             self._asked_s = now_s
             self.send(greeting.requests(self.uav.system, flavour), now_s)
+        self.send(self.own_return.questions(self.state, time.monotonic()), now_s)
         questions = self._questions()
-        if questions and now_s - self._questioned_s >= self._question_again_s:
+        if questions and not _is_within(self._questioned_s, now_s, self._question_again_s):
             self._questioned_s = now_s
             self._question_again_s = min(2 * self._question_again_s, ASK_SELDOM_S)
             self.limit_questions_left -= self.may_ask_limits
@@ -243,14 +252,14 @@ class Session:
 
     def _second_sender(self, peer: Peer, now_s: float) -> str | None:
         """Without signatures a system id is whose who had it first, until that one is silent."""
-        if self.peer is None or peer == self.peer or now_s - self.heard_s > SENDER_SILENT_S:
+        if self.peer is None or peer == self.peer or not _is_within(self.heard_s, now_s, SENDER_SILENT_S):
             return None
         self.second_sender = (peer.name, now_s)
         return SECOND_SENDER
 
     def _greet_late_clock(self, peer: Peer, now_s: float) -> None:
         """Whoever knows the key but not the time sets its clock by a signed frame of ours."""
-        if now_s - self._greeted_s >= 1.0:
+        if not _is_within(self._greeted_s, now_s, GREET_AGAIN_S):
             self._greeted_s = now_s
             peer.send(self._writer.frame_of(greeting.heartbeat(), now_s))
 
@@ -269,6 +278,7 @@ class Session:
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
             self._note_flown(self._flight.look(self.state, kind))
+            self.lists.look(message, self.state, monotonic_s)
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)
@@ -284,7 +294,11 @@ class Session:
 
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None
-        return self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
+        if self.time.boots:
+            self.lists.look_at_boot(self.time.boots[-1].key, time.monotonic())
+        stamp = self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
+        self.lists.look_at_boot(self.time.boots[-1].key, time.monotonic())
+        return stamp
 
     def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:
         state = self.state
@@ -304,6 +318,11 @@ class Session:
     @property
     def flavour(self) -> Flavour | None:
         return self.state.flavour
+
+
+def _is_within(at_s: float, now_s: float, span_s: float) -> bool:
+    """Also where our clock of the day was set back since: what seems to lie ahead is no reason to wait for it."""
+    return abs(now_s - at_s) < span_s
 
 
 def _tells_no_place(message: Message) -> bool:

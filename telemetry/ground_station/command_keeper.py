@@ -6,15 +6,19 @@ from telemetry.ground_station.command import CommandEnd, CommandMachine, Command
 from telemetry.ground_station.ends import Ends, Message, Messages
 from telemetry.ground_station.orders import CannotOrder, Order, OrderPlan, plan_of
 from telemetry.ground_station.rules import CommandRules
-from telemetry.ground_station.steps import Course, Steps
+from telemetry.ground_station.steps import Course, Pause, Steps
 from telemetry.ground_station.vehicle_state import VehicleState
+
+STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUSE})
+UNDONE_ROUNDS = 3
 
 
 class CommandKeeper:
     """Drives an order to its goal. `state` is to have taken each message before the keeper gets it.
 
     Where the vehicle is already so, it ends at once as applied, and nothing is sent. That is told by its last heartbeat; it must be younger
-    than `fresh_s` and, where something else was sent to the vehicle shortly before, received after `unsettled_until_s`.
+    than `fresh_s` and, where something else was sent to the vehicle shortly before, received after `unsettled_until_s`. What makes a UAV
+    safe must still show then: a start that was sent before it, and arrives after it, would take it back.
     """
 
     def __init__(
@@ -71,8 +75,16 @@ class CommandKeeper:
                 return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
             if self._is_already(plan):
                 return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
+            if plan.goal is None and self._unsettled_until_s is not None:
+                yield Pause(self._unsettled_until_s)  # else a late yes to an earlier one would be taken for the answer
             outcome = yield from self._tried(plan)
             done += 1
+            if outcome.state is CommandEnd.APPLIED and self.order in STOPS and self._unsettled_until_s is not None:
+                yield Pause(self._unsettled_until_s)
+                if plan.goal is not None and not plan.goal(self._state):
+                    if done < UNDONE_ROUNDS:
+                        continue
+                    return CommandOutcome(CommandEnd.FAILED, "undone", "The vehicle did it, and left it again.")
             if outcome.state is CommandEnd.APPLIED or outcome.code == "silent" or done >= plan.rounds:
                 return outcome
 

@@ -48,6 +48,9 @@ RESTARTS = "MIS_RESTART"  # ArduPilot: unless 0, each change to AUTO begins the 
 COPTER_RETURNING = frozenset({6, 21, 27})
 
 
+MISSION_MODES = frozenset({PX4_AUTO_NAMES[PX4_SUB_MODES[Mode.MISSION]], COPTER_NAMES[COPTER_MODES[Mode.MISSION]]})  # by their names
+
+
 def px4_mode(custom_mode: int) -> tuple[int, int]:
     """Main mode and sub mode."""
     return custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF

@@ -32,14 +32,14 @@ class Flown:
 class FlightWatch:
     """Asked after each message that the vehicle's state has taken. One flight lasts from being seen in the air until it is down."""
 
-    _has_flown_list: bool = False
+    has_flown_list: bool = False  # also as the gateway before has seen it
     _reached: int = -1
 
     def look(self, state: VehicleState, kind: str) -> list[Flown]:
         """kind: the message's type."""
         if state.is_armed and state.is_in_air and state.is_in(Mode.MISSION):
-            self._has_flown_list = True
-        if not self._has_flown_list:
+            self.has_flown_list = True
+        if not self.has_flown_list:
             return []
         offset = 1 if state.flavour is Flavour.ARDUPILOT else 0
         if kind == "MISSION_ITEM_REACHED" and state.reached_item is not None and state.reached_item >= offset:
@@ -50,7 +50,7 @@ class FlightWatch:
         return []
 
     def _ended(self, current: int) -> list[Flown]:
-        reached, self._reached, self._has_flown_list = self._reached, -1, False
+        reached, self._reached, self.has_flown_list = self._reached, -1, False
         if max(reached, current) < 0:
             return []
         return [Flown(reached, is_down=True) if reached >= current else Flown(current, is_reached=False, is_down=True)]

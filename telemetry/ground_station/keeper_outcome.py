@@ -1,6 +1,7 @@
 """What became of bringing a load onto a vehicle."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from missions.mavlink.content import MissionType
@@ -28,7 +29,8 @@ class KeeperOutcome:
     """`code` names why it failed; `sha256` is of the load that the vehicle holds, empty unless it is ready.
 
     `mixes` tells of every mixed list that was found on the way, those that were put right among them; `is_critical` whether one is still
-    there, or may be. `left_alone` says in words what of the vehicle's own was kept beside the load.
+    there, or may be. `left_alone` says in words what of the vehicle's own was kept beside the load, `left_sha256` names these
+    lists, by kind (see wire.held_sha256).
     """
 
     state: KeeperState
@@ -39,6 +41,7 @@ class KeeperOutcome:
     mixes: tuple[Mix, ...] = ()
     differences: tuple[Difference, ...] = ()
     left_alone: str = ""
+    left_sha256: Mapping[MissionType, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from telemetry.ground_station.steps import Course, Machine, Steps
 from telemetry.ground_station.transfer import TransferState
 from telemetry.ground_station.upload import REQUESTS, Upload
 from telemetry.ground_station.vehicle_state import VehicleState
-from telemetry.ground_station.wire import Held, held_list, sent_list
+from telemetry.ground_station.wire import Held, held_list, held_sha256, sent_list
 
 ORDER = (MissionType.FENCE, MissionType.MISSION, MissionType.RALLY)  # never a new mission under an old fence
 SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "restoring"
@@ -133,7 +133,9 @@ class MissionKeeper:
                 return (yield from self._give_up())
         held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
         words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
-        return KeeperOutcome(KeeperState.READY, "", words, self.load.content_sha256, mixes=tuple(self.mixes), left_alone=left)
+        lists = {kind: held_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
+        sha256, mixes = self.load.content_sha256, tuple(self.mixes)
+        return KeeperOutcome(KeeperState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
 
     def _cannot_begin(self) -> KeeperOutcome | None:
         state = self._state

@@ -26,6 +26,25 @@ class Machine(Protocol):
     def tick(self, now_s: float) -> Messages: ...
 
 
+class Pause:
+    """Nothing is sent until a time; `outcome` is True then."""
+
+    def __init__(self, until_s: float) -> None:
+        self.outcome: bool | None = None
+        self.wake_at_s: float | None = until_s
+
+    def start(self, now_s: float) -> Messages:
+        return self.tick(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        return self.tick(now_s)
+
+    def tick(self, now_s: float) -> Messages:
+        if self.wake_at_s is not None and now_s >= self.wake_at_s:
+            self.outcome, self.wake_at_s = True, None
+        return []
+
+
 Course = Generator[Machine, None, Result]
 
 

@@ -55,6 +55,7 @@ class VehicleState:
     heartbeat_at_s: float | None = None
     landed_at_s: float | None = None
     parameters: dict[str, float] = field(default_factory=dict)
+    parameters_at_s: dict[str, float] = field(default_factory=dict)
     texts: list[tuple[float, int, str]] = field(default_factory=list)
 
     def receive(self, message: Message, now_s: float) -> None:
@@ -162,6 +163,7 @@ def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
         value = float(struct.unpack("<i", struct.pack("<f", value))[0])
     if math.isfinite(value) and (message.param_id in state.parameters or len(state.parameters) < MOST_PARAMETERS):
         state.parameters[message.param_id] = value
+        state.parameters_at_s[message.param_id] = now_s
 
 
 def _text(state: VehicleState, message: Message, now_s: float) -> None:

@@ -1,5 +1,8 @@
 """Lists of items as they go over the wire, with home in front where the flavour wants it."""
 
+import hashlib
+import math
+import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -40,6 +43,18 @@ def sent_list(items: Sequence[MissionItem], kind: MissionType, flavour: Flavour)
 def held_list(read: Held, kind: MissionType, flavour: Flavour) -> Held:
     """What was read, without home."""
     return read[1:] if has_home(kind, flavour) else read
+
+
+def held_sha256(held: Held) -> str:
+    """Names exactly what was read; figures as they are on the wire, where all NaN are one."""
+    rows = [
+        (
+            there.item.command, there.item.frame, there.item.longitude_e7, there.item.latitude_e7, there.goes_on,
+            *(None if math.isnan(value) else struct.pack("<f", value).hex() for value in (*there.item.parameters, there.item.altitude_m)),
+        )
+        for there in held
+    ]  # fmt: skip
+    return hashlib.sha256(repr(rows).encode()).hexdigest()
 
 
 def item_message(item: MissionItem, sequence: int, kind: MissionType, ends: Ends) -> Message:

@@ -38,6 +38,9 @@ class UavLink(models.Model):
         blank=True,
         help_text="why it may hold something else by now; empty = nothing says so",
     )
+    loaded_beside = models.JSONField(
+        default=dict, db_default={}, blank=True, help_text="SHA-256 of lists of its own that were left beside it: fence, rally"
+    )
     clock_offset_s = models.FloatField(null=True, blank=True, help_text="server's time at the vehicle's time since boot of 0")
     clock_rate = models.FloatField(null=True, blank=True, help_text="vehicle's seconds a second; a simulation may run faster")
     boots = models.JSONField(

@@ -9,6 +9,7 @@ from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
+from telemetry.services.loads import Doubt
 
 
 class UnknownVehicleSerializer(serializers.Serializer):
@@ -81,6 +82,10 @@ class UavConnectionSerializer(serializers.Serializer):
     waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route that it flies to, or is at")
     loaded_approval = serializers.UUIDField(allow_null=True, help_text="of the mission that is on it, as it was seen")
     loaded_flight = serializers.IntegerField(allow_null=True)
+    loaded_read_at = serializers.DateTimeField(allow_null=True, help_text="when that was last read back from it")
+    loaded_doubt = serializers.ChoiceField(
+        choices=[(doubt.value, doubt.value) for doubt in Doubt], allow_blank=True, help_text="why it may hold something else by now"
+    )
     server_time = serializers.DateTimeField(help_text="to tell an age by, whatever the reader's clock says")
 
 
@@ -100,5 +105,7 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "waypoint_sequence": link.waypoint_sequence,
         "loaded_approval": link.loaded_approval,
         "loaded_flight": link.loaded_flight,
+        "loaded_read_at": link.loaded_read_at,
+        "loaded_doubt": link.loaded_doubt,
         "server_time": now,
     }

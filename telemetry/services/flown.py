@@ -4,17 +4,20 @@ from missions.models import Approval
 from missions.services.dispatch import DamagedApproval, approved_load
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_waypoint_reached
 from telemetry.ground_station.flown import Flown
-from telemetry.services.loads import loaded_on
+from telemetry.services.loads import Doubt, loaded_on
+
+OTHERS = frozenset({Doubt.OTHER_STATION, Doubt.OTHER_LENGTH})
 
 
 def note_flown(*, uav_id: int, flown: Flown) -> None:
-    """Of the flight that was last read back from the vehicle; of anything else it may have flown nothing is known.
+    """Of the flight that was last read back from the vehicle; of anything else it may have flown nothing is known, and nothing once
+    another list may have been put on it.
 
     Safe to call again. A flight that was broken off is neither flown nor failed: it can be started again.
     """
     loaded = loaded_on(uav_id)
     approval = None if loaded is None else Approval.objects.filter(pk=loaded.approval, revoked_at=None).first()
-    if loaded is None or approval is None:
+    if loaded is None or approval is None or loaded.doubt in OTHERS:
         return
     try:
         approved = approved_load(approval, uav_id=uav_id, flight=loaded.flight)

@@ -4,6 +4,7 @@ from datetime import datetime
 
 from django.utils import timezone
 
+from missions.models import LinkKind, Uav
 from missions.services.flying import mark_waypoint_reached
 from telemetry.models import UavLink
 from telemetry.selectors.log import newest_of
@@ -22,9 +23,12 @@ def note_heard_over_http(*, uav_id: int, address: str) -> None:
 
 
 def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:
-    """After reports that came at this time were stored: the newest of all says how the UAV does, unless it came before."""
+    """After reports that came at this time were stored: the newest of all says how the UAV does, unless it came before.
+
+    Of a UAV that is reached by MAVLink the gateway says so.
+    """
     newest = newest_of(uav_id)
-    if newest is None or newest.received_at != received_at:
+    if newest is None or newest.received_at != received_at or not Uav.objects.filter(pk=uav_id, link=LinkKind.HTTP).exists():
         return
     waypoint = newest.waypoint_sequence
     before = UavLink.objects.filter(uav_id=uav_id).values_list("waypoint_sequence", flat=True).first()

@@ -1,8 +1,10 @@
 """The log's one way in: records of any link, in bulk, each stored once."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
+from functools import partial
 from uuid import UUID
 
 import numpy as np
@@ -12,7 +14,9 @@ from inspection.selectors import ground_heights_m
 from missions.models import MissionState
 from missions.services.reports import ReportedPosition, note_reported_positions
 from telemetry.decoding.measurement import Measurement, believable
+from telemetry.services.latest import note_latest
 from telemetry.services.waypoints import LoadedList, lists_on
+from workspace.live import publish_live
 
 FUTURE_S = 60.0  # findings: stored, but never shown as the latest
 FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
@@ -57,28 +61,32 @@ class _Row:
 @transaction.atomic
 def store_records(records: Sequence[NewRecord]) -> StoredCount:
     """Stores what is new, in the order given, and moves the UAVs' reported positions forward. Safe to call again with the same records."""
-    known = _missions_of_known({record.uav_id for record in records})
+    known, organisations = _known_with_missions({record.uav_id for record in records})
     lists = lists_on({record.uav_id for record in records if record.measurement.mission_item is not None})
     kept = [_attributed(record, known[record.uav_id], lists.get(record.uav_id)) for record in records if record.uav_id in known]
     if not kept:
         return StoredCount(of_unknown_uavs=len(records))
-    rows = _flagged(kept, _newest_measured(kept))
+    rows = _flagged(_with_heights_above_ground(kept), _newest_measured(kept))
     stored = _insert(rows)
-    note_reported_positions(reports=_newest_positions(rows))
+    note_reported_positions(reports=_newest_positions(stored))
+    note_latest(row.record for row in stored if not row.is_from_future)
+    for organisation_id in organisations:
+        transaction.on_commit(partial(publish_live, organisation_id))
     return StoredCount(
         stored=len(stored),
-        from_future=sum(is_from_future for is_from_future, _ in stored),
-        late=sum(is_late for _, is_late in stored),
+        from_future=sum(row.is_from_future for row in stored),
+        late=sum(row.is_late for row in stored),
         duplicates=len(kept) - len(stored),
         of_unknown_uavs=len(records) - len(kept),
     )
 
 
-def _missions_of_known(uav_ids: set[int]) -> dict[int, UUID | None]:
-    """The UAVs that exist, held against deletion until the transaction ends, each with the mission that it flies."""
+def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set[int]]:
+    """The UAVs that exist, held against deletion until the transaction ends, each with the mission that it flies; and whose they are."""
     with connection.cursor() as cursor:
-        cursor.execute("SELECT id FROM missions_uav WHERE id = ANY(%s) ORDER BY id FOR KEY SHARE", [sorted(uav_ids)])
-        known: dict[int, UUID | None] = {uav_id: None for (uav_id,) in cursor.fetchall()}
+        cursor.execute("SELECT id, organisation_id FROM missions_uav WHERE id = ANY(%s) ORDER BY id FOR KEY SHARE", [sorted(uav_ids)])
+        found = cursor.fetchall()
+        known: dict[int, UUID | None] = {uav_id: None for uav_id, _ in found}
         cursor.execute(
             """
             SELECT DISTINCT ON (mission_uav.uav_id) mission_uav.uav_id, mission.id
@@ -89,7 +97,7 @@ def _missions_of_known(uav_ids: set[int]) -> dict[int, UUID | None]:
             [list(known), list(FLYING), list(FLYING)],
         )
         known.update(dict(cursor.fetchall()))
-    return known
+    return known, {organisation_id for _, organisation_id in found}
 
 
 def _attributed(record: NewRecord, flies_mission: UUID | None, loaded: LoadedList | None) -> NewRecord:
@@ -101,6 +109,23 @@ def _attributed(record: NewRecord, flies_mission: UUID | None, loaded: LoadedLis
     if measurement is record.measurement and mission_id == record.mission_id:
         return record
     return replace(record, measurement=measurement, mission_id=mission_id)
+
+
+def _with_heights_above_ground(records: Sequence[NewRecord]) -> list[NewRecord]:
+    """As measured, else above the terrain model where there is one."""
+    nan = float("nan")
+    place = ("longitude_deg", "latitude_deg", "altitude_amsl_m")
+    told = np.array(
+        [[nan if (value := getattr(record.measurement, name)) is None else value for name in place] for record in records], dtype=np.float64
+    )
+    above = np.full(len(told), nan)
+    asked = np.isfinite(told).all(axis=1) & [record.measurement.altitude_agl_m is None for record in records]
+    if asked.any():
+        above[asked] = told[asked, 2] - ground_heights_m(told[asked, :2])
+    return [
+        record if math.isnan(height) else replace(record, measurement=replace(record.measurement, altitude_agl_m=height))
+        for record, height in zip(records, above.tolist(), strict=True)
+    ]
 
 
 def _newest_measured(records: Sequence[NewRecord]) -> dict[int, datetime]:
@@ -146,23 +171,6 @@ def _newest_positions(rows: Sequence[_Row]) -> list[ReportedPosition]:
     return list(newest.values())
 
 
-def _agl_m(records: Sequence[NewRecord]) -> list[float | None]:
-    """As measured, else above the terrain model where there is one."""
-    nan = float("nan")
-    place = ("longitude_deg", "latitude_deg", "altitude_amsl_m")
-    told = np.array(
-        [[nan if (value := getattr(record.measurement, name)) is None else value for name in place] for record in records], dtype=np.float64
-    )
-    above = np.full(len(told), nan)
-    whole = np.isfinite(told).all(axis=1)
-    if whole.any():
-        above[whole] = told[whole, 2] - ground_heights_m(told[whole, :2])
-    return [
-        record.measurement.altitude_agl_m if record.measurement.altitude_agl_m is not None else None if np.isnan(height) else float(height)
-        for record, height in zip(records, above, strict=True)
-    ]
-
-
 _TYPES = {
     "mode": "text", "is_armed": "bool", "is_in_air": "bool", "gps_fix": "int2", "satellites": "int2",
     "mission_item": "int4", "waypoint_sequence": "int4",
@@ -182,12 +190,12 @@ SELECT stream, sequence, uav_id, mission_id, measured_at, received_at, is_from_f
 FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS r({", ".join(_COLUMNS)})
 ORDER BY number
 ON CONFLICT (stream_id, sequence) DO NOTHING
-RETURNING is_from_future, is_late
+RETURNING stream_id, sequence
 """  # noqa: S608 (names of columns, all from here)
 
 
-def _insert(rows: Sequence[_Row]) -> list[tuple[bool, bool]]:
-    """What was stored, as (is_from_future, is_late)."""
+def _insert(rows: Sequence[_Row]) -> list[_Row]:
+    """Those that were stored."""
     records = [row.record for row in rows]
     streams = _stream_ids({(record.uav_id, record.link, record.stream) for record in records})
     columns: dict[str, list[object]] = {name: [getattr(record.measurement, name) for record in records] for name in _MEASURED}
@@ -196,10 +204,11 @@ def _insert(rows: Sequence[_Row]) -> list[tuple[bool, bool]]:
     columns |= {name: [getattr(row, name) for row in rows] for name in ("is_from_future", "is_late")}
     columns["number"] = list(range(len(rows)))
     columns["stream"] = [streams[record.uav_id, record.link, record.stream] for record in records]
-    columns["altitude_agl_m"] = list(_agl_m(records))
     with connection.cursor() as cursor:
         cursor.execute(_INSERT, [columns[name] for name in _COLUMNS])
-        return list(cursor.fetchall())
+        stored = set(cursor.fetchall())
+    first = {(stream, row.record.sequence): row for stream, row in zip(reversed(columns["stream"]), reversed(rows), strict=True)}
+    return [row for key, row in first.items() if key in stored]
 
 
 def _stream_ids(streams: set[tuple[int, str, str]]) -> dict[tuple[int, str, str], int]:

@@ -1,7 +1,8 @@
 """Which gateway serves which UAV, and what it knows of the vehicle.
 
 A gateway holds a UAV by a lease. Another may take it when the lease is out, when the holder has not heard the vehicle for a while, or when
-it bears the same name: it is the same gateway, started again.
+it bears the same name and the lease was not renewed for a while: it is the same gateway, started again. Two that run under one name, by
+mistake, do not take UAVs from each other.
 """
 
 import json
@@ -11,14 +12,19 @@ from typing import Any
 
 from django.db import connection
 
+from missions.services.commands import release_claims_of_others
 from telemetry.services.waypoints import lists_on
 
+NAMESAKE_S = 2.5  # a gateway that runs renews its leases more often
 UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
 
 
 @dataclass(frozen=True)
 class Lease:
-    """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink."""
+    """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink.
+
+    `mode_in_air` is the one in which it saw the vehicle last, armed and in the air; empty: it did not.
+    """
 
     uav_id: int
     signing: dict[str, Any]
@@ -26,6 +32,7 @@ class Lease:
     losses: dict[str, int]
     loaded_sha256: str
     limits: dict[str, float] = field(default_factory=dict)
+    mode_in_air: str = ""
 
 
 @dataclass(frozen=True)
@@ -58,27 +65,29 @@ class LinkState:
 
 TAKE = """
 INSERT INTO telemetry_uavlink
-    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, loaded_doubt, boots, signing, losses, limits)
-SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '', '[]', '{}', '{}', '{}'
+    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses, limits)
+SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}', '{}'
 FROM missions_uav uav WHERE uav.id = ANY(%(uav_ids)s) ORDER BY uav.id
 ON CONFLICT (uav_id) DO UPDATE SET holder = excluded.holder, lease_expires_at = excluded.lease_expires_at
 WHERE telemetry_uavlink.holder IN ('', excluded.holder)
-    OR split_part(telemetry_uavlink.holder, '/', 1) = split_part(excluded.holder, '/', 1)
+    OR (split_part(telemetry_uavlink.holder, '/', 1) = split_part(excluded.holder, '/', 1)
+        AND telemetry_uavlink.lease_expires_at < now() + make_interval(secs => %(lease_s)s - %(namesake_s)s))
     OR telemetry_uavlink.lease_expires_at IS NULL OR telemetry_uavlink.lease_expires_at < now()
     OR telemetry_uavlink.heard_at < now() - make_interval(secs => %(unheard_s)s)
-RETURNING uav_id, signing, boots, losses, loaded_sha256, limits
+RETURNING uav_id, signing, boots, losses, loaded_sha256, limits, CASE WHEN is_armed AND is_in_air THEN mode ELSE '' END
 """
 
 
 def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> list[Lease]:
-    """Those of the UAVs that the gateway may serve from now on. holder: "name/run"."""
-    values = {"uav_ids": sorted(uav_ids), "holder": holder, "lease_s": lease_s, "unheard_s": UNHEARD_S}
+    """Those of the UAVs that the gateway may serve from now on, and whose commands nobody else carries any more. holder: "name/run"."""
+    values = {"uav_ids": sorted(uav_ids), "holder": holder, "lease_s": lease_s, "unheard_s": UNHEARD_S, "namesake_s": NAMESAKE_S}
     with connection.cursor() as cursor:
         cursor.execute(TAKE, values)
         rows = cursor.fetchall()
+    release_claims_of_others(uav_ids=[uav_id for uav_id, *_ in rows], holder=holder)
     return [
-        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits))
-        for uav_id, signing, boots, losses, sha256, limits in rows
+        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits), mode)
+        for uav_id, signing, boots, losses, sha256, limits, mode in rows
     ]
 
 

@@ -1,6 +1,9 @@
 """What a vehicle holds, as far as it was read back: written together with the end of the command that brought it there."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import timedelta
+from enum import StrEnum
 from uuid import UUID
 
 from django.db import transaction
@@ -13,11 +16,13 @@ from telemetry.models import UavLink
 
 @dataclass(frozen=True)
 class Loaded:
-    """`sha256` is a FlightLoad's."""
+    """`sha256` is a FlightLoad's. `beside` names lists of the vehicle's own that were left beside it, by kind: fence or rally."""
 
     sha256: str
     approval: UUID
     flight: int
+    beside: Mapping[str, str] = field(default_factory=dict, compare=False)
+    doubt: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
@@ -38,7 +43,27 @@ def loaded_on(uav_id: int) -> Loaded | None:
     link = UavLink.objects.filter(uav=uav_id).exclude(loaded_sha256="").first()
     if link is None or link.loaded_approval is None or link.loaded_flight is None:
         return None
-    return Loaded(link.loaded_sha256, link.loaded_approval, link.loaded_flight)
+    return Loaded(link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_beside, link.loaded_doubt)
+
+
+class Doubt(StrEnum):
+    """Why a vehicle may hold something else than what was read back from it."""
+
+    REBOOTED = "rebooted"
+    OTHER_STATION = "other-station"  # it has spoken with another one about its lists
+    OTHER_LENGTH = "other-length"  # its list has another number of items
+
+
+def doubt_loaded(*, uav_id: int, doubt: Doubt, ago_s: float) -> None:
+    """Something was heard so many seconds ago; nothing that was read back since is doubted. A reboot says less than the others."""
+    doubted = UavLink.objects.filter(uav=uav_id, loaded_read_at__lt=Now() - timedelta(seconds=ago_s)).exclude(loaded_approval=None)
+    weaker = {"", Doubt.REBOOTED} if doubt is not Doubt.REBOOTED else {""}
+    doubted.filter(loaded_doubt__in=weaker).update(loaded_doubt=doubt)
+
+
+def confirm_loaded(carried: Carried, loaded: Loaded) -> None:
+    """It was read back once more, and is still there."""
+    UavLink.objects.filter(uav=carried.uav_id, loaded_sha256=loaded.sha256).update(loaded_read_at=Now(), loaded_doubt="")
 
 
 def begin_loading(carried: Carried) -> bool:
@@ -71,7 +96,7 @@ def fail_loading(carried: Carried, before: Loaded | None, code: str, words: str)
 def _write(uav_id: int, loaded: Loaded | None) -> None:
     link = UavLink.objects.filter(uav=uav_id)
     if loaded is None:
-        link.update(loaded_sha256="", loaded_approval=None, loaded_flight=None, loaded_read_at=None, loaded_doubt="")
+        link.update(loaded_sha256="", loaded_approval=None, loaded_flight=None, loaded_read_at=None, loaded_doubt="", loaded_beside={})
     else:
         named = {"loaded_sha256": loaded.sha256, "loaded_approval": loaded.approval, "loaded_flight": loaded.flight}
-        link.update(**named, loaded_read_at=Now(), loaded_doubt="")
+        link.update(**named, loaded_read_at=Now(), loaded_doubt="", loaded_beside=dict(loaded.beside))

@@ -9,8 +9,8 @@ from uuid import UUID
 from django.db import transaction
 from django.db.models.functions import Least
 
-from missions.given_selectors import approvals_given_to, places_of_targets
-from missions.models import Approval, InspectionTarget, LinkKind, TargetState
+from missions.given_selectors import approvals_given_to, number_of_flights, places_of_targets
+from missions.models import Approval, InspectionTarget, LinkKind, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
 from telemetry.models import InspectionResult, TelemetryStream
 
@@ -57,14 +57,19 @@ def take_results(
     places = {key: places_of_targets(uav_id, approval) for key, approval in given.items()}
     own = [result for result in results if result.place in places.get(result.approval_id, ())]
     stored = _store(uav_id, stream, own, given, received_at) if own else 0
+    numbers = {key: number_of_flights(uav_id, approval) for key, approval in given.items()}
+    if not Uav.objects.filter(pk=uav_id, link=LinkKind.HTTP).exists():
+        numbers = {}  # how its flights end is seen by the gateway
     for flight in flights:
-        if flight.approval_id in given and given[flight.approval_id].revoked_at is None:
+        if flight.flight > numbers.get(flight.approval_id, 0):
+            continue
+        if given[flight.approval_id].revoked_at is None:
             mark_flight_ended(mission_id=given[flight.approval_id].mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
     return TakenResults(
         stored=stored,
         known=len(own) - stored,
         refused_results=[place for place, result in enumerate(results) if result.place not in places.get(result.approval_id, ())],
-        refused_flights=[place for place, flight in enumerate(flights) if flight.approval_id not in given],
+        refused_flights=[place for place, flight in enumerate(flights) if flight.flight > numbers.get(flight.approval_id, 0)],
     )
 
 

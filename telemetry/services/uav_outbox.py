@@ -76,7 +76,7 @@ def _note(uav_id: int, told: Acknowledgement) -> Noted:
     elif told.state == CommandState.FAILED:
         words = told.reason or "The UAV gave no reason."
         noted = note_failed(command.pk, REFUSED, words, **holding)
-        _hold(command, None)
+        _hold(command, None, is_known=False)
     elif command.kind == CommandKind.UPLOAD_MISSION:
         noted, words = _note_upload(command, told, holding)
     else:
@@ -103,11 +103,11 @@ def _note_upload(command: UavCommand, told: Acknowledgement, holding: dict[str, 
     return noted, words
 
 
-def _hold(command: UavCommand, load: ApprovedLoad | None) -> None:
-    """What the UAV holds now; after a failure nobody knows."""
+def _hold(command: UavCommand, load: ApprovedLoad | None, *, is_known: bool = True) -> None:
+    """What the UAV holds now; after a failure nobody knows, and what was told of it stays."""
     if command.kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION}:
         return
-    if load is not None or command.kind == CommandKind.CLEAR_MISSION:
+    if load is not None or (is_known and command.kind == CommandKind.CLEAR_MISSION):
         close_alert(uav=command.uav, code=HOLDS_OTHER)
     UavLink.objects.update_or_create(
         uav_id=command.uav_id,

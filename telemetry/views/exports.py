@@ -78,10 +78,14 @@ class UavTelemetryFile(APIView):
         return _file(records_that_match(request.user.organisation, wanted), kind, uav.name)
 
 
+def file_stem(name: str) -> str:
+    """A file's name begins so."""
+    return UNSAFE.sub("-", name).strip("-") or "flight"
+
+
 def _file(records: QuerySet[TelemetryRecord], kind: str, name: str) -> StreamingHttpResponse:
     wanted = KINDS[kind]
     response = StreamingHttpResponse(wanted.pieces(logged(records, *wanted.order), name), content_type=wanted.media_type)
-    stem = UNSAFE.sub("-", name).strip("-") or "flight"
-    response["Content-Disposition"] = f'attachment; filename="{stem}-telemetry.{kind}"'
+    response["Content-Disposition"] = f'attachment; filename="{file_stem(name)}-telemetry.{kind}"'
     response["Cache-Control"] = "private, no-cache"
     return response

@@ -20,6 +20,43 @@ test("what is approved and after that is frozen", () => {
   assert.deepEqual(frozen, ["approved", "dispatched", "active", "completed", "aborted", "failed"]);
 });
 
+test("what would be refused is not offered: nothing moves without a mission on its way", () => {
+  const why = (kind, now, commands = []) => flying.whyNotMoved(kind, now, flying.flyersOf(now)[0], commands);
+  const flights = [{ uav: 0, flights: 1, flown: 0, has_failed: true }];
+  const { approval } = mission("active");
+  for (const kind of ["arm", "take-off", "start", "resume"]) {
+    assert.equal(why(kind, mission("approved")), "UAV 7 has no mission.");
+    assert.equal(why(kind, mission("active", { approval: { ...approval, revoke_requested_at: "2027-05-04T10:00:00Z" } })), "The approval is being taken back.");
+    assert.match(why(kind, mission("active", { approval: { ...approval, flights } })), /has failed/);
+  }
+  assert.equal(why("arm", mission("dispatched")), "");
+  assert.equal(why("take-off", mission("active")), "");
+  assert.match(why("resume", mission("active")), /not started/);
+  assert.match(why("resume", mission("dispatched"), [command("start", "sent", { sent_at: "2027-05-04T09:00:00Z" })]), /not started/);
+  assert.equal(why("resume", mission("active"), [command("start", "applied", { sent_at: "2027-05-04T09:00:00Z" })]), "");
+  for (const kind of ["hold", "return", "land", "abort", "pause", "change-speed"]) assert.equal(why(kind, mission("approved")), "");
+});
+
+test("what is on board is as old as its reading, and may not be there any more", () => {
+  const upload = command("upload-mission", "applied", { finished_at: "2027-05-04T09:00:00Z" });
+  const link = { loaded_approval: "a", loaded_read_at: "2027-05-04T09:00:00Z", loaded_doubt: "", server_time: "2027-05-04T09:03:10Z" };
+  const { words: seen, level } = flying.boardWords(upload, link);
+  assert.deepEqual([seen, level], ["On the UAV: what was approved, read back 3 min ago", "good"]);
+  const doubted = flying.boardWords(upload, { ...link, loaded_doubt: "other-station" });
+  assert.equal(doubted.level, "warning");
+  assert.match(doubted.words, /not known now: another ground station/);
+  const gone = { ...link, loaded_approval: null };
+  assert.match(flying.boardWords(upload, gone).words, /not known what is on the UAV/);
+  const [flyer] = flying.flyersOf(mission("dispatched"));
+  assert.deepEqual([flying.flightToSend(flyer, [upload], link), flying.flightToSend(flyer, [upload], gone)], [null, 1]);
+  assert.equal(flying.flightToSend(flyer, [upload], { ...gone, server_time: "2027-05-04T08:59:00Z" }), null); // asked before it was there
+});
+
+test("a start that waits for the reading says how far that is", () => {
+  const start = command("start", "queued", { progress: { done: 34, total: 200 } });
+  assert.equal(flying.commandWords(start).words, "Start: reading back what is on board, 34 of 200 items");
+});
+
 test("UAVs that fly no route are not told anything", () => {
   const [first, second] = flying.flyersOf(mission("approved", { plan: { routes: [route(7, { geometry: null }), route(8)] } }));
   assert.deepEqual([first.place, first.letter, first.uav, first.flights], [1, "B", 8, 2]);

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { firstDetail } from "../../static/js/api.js";
-import { endingOf, endingsOf, inPlanOrder, isPlanCurrent, isUnsaved, placesOf, sentenceOf, unreachedOf } from "../../static/js/mission/plan_view.js";
+import { endingOf, endingsOf, inPlanOrder, isPlanCurrent, isUnsaved, placesOf, sentenceOf, shownRoute, unreachedOf } from "../../static/js/mission/plan_view.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";
 
 const target = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [id, 50] });
@@ -85,4 +85,18 @@ test("the first fault is found in nested details", () => {
   assert.equal(firstDetail({ targets: { 1: { asset: ["There is no asset 99."] } } }), "targets 1 asset: There is no asset 99.");
   assert.equal(firstDetail({ non_field_errors: ["Too many."] }), "Too many.");
   assert.equal(firstDetail(null), "");
+});
+
+test("the route that is changed by hand is shown as it would be flown, whichever is the longest or chosen", () => {
+  const original = [{ position: [0, 0], altitude_agl_m: 60, speed_mps: null, was: 0, kind: "start" }];
+  const moved = [{ ...original[0], altitude_agl_m: 80 }];
+  const flown = { waypoints: [{ position: [0, 0], altitude_amsl_m: 280 }], arrival_s: [0] };
+  const look = { length_m: 20_000, duration_s: 1_700, flown };
+  const shown = (hand) => shownRoute({ plan, lookedAt: null, chosenRoute: 1, hand });
+  assert.equal(shown(null).name, "Kite");
+  assert.deepEqual([shown({ sequence: 0, original, points: original, look }).name, shown({ sequence: 0, original, points: original, look }).length_m], ["Heron", 19_100]);
+  const wished = shown({ sequence: 0, original, points: moved, look });
+  assert.deepEqual([wished.name, wished.length_m, wished.isWished], ["Heron", 20_000, true]);
+  assert.equal(wished.waypoints, flown.waypoints); // the same while the server has said nothing new
+  assert.equal(shown({ sequence: 0, original, points: moved, look: { ...look, flown: null } }).length_m, 19_100);
 });

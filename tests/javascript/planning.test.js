@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { counterpart, isSamePlan, movesBetween, profileOfSummary, summaryOfPlan } from "../../static/js/mission/compare.js";
+import { counterpart, endsBetween, isSamePlan, movesBetween, profileOfSummary, summaryOfPlan } from "../../static/js/mission/compare.js";
 import { canFly, choicesOf, isAskedFor, standingUavs } from "../../static/js/mission/fleet.js";
 import { partsOf } from "../../static/js/mission/panels/why_route.js";
 import { fullUavs, reasonWords } from "../../static/js/mission/panels/why_target.js";
@@ -76,6 +76,15 @@ const idle = { uav: "Kite", uav_id: 2, length_m: 0, duration_s: 0, waypoints: []
 test("planning the same again is no other plan", () => {
   assert.ok(isSamePlan(summaryOfPlan(planOf(route, idle)), summaryOfPlan(planOf({ ...route }, idle))));
   assert.ok(!isSamePlan(summaryOfPlan(planOf(route, idle)), summaryOfPlan(planOf({ ...route, length_m: 4000 }, idle))));
+});
+
+test("another start and another end of a flight are told, though it is as long", () => {
+  const [before, after] = [{ ...route, end_action: "hover", base: null }, { ...route, end_action: "base", base: "Depot", waypoints: [at(10.001), ...route.waypoints.slice(1)] }].map((one) => summaryOfPlan(planOf(one)).routes[0]);
+  const { moved_m, from, to } = endsBetween(before, after);
+  assert.deepEqual([Math.round(moved_m), from.end_action, to], [85, "hover", { end_action: "base", base: "Depot" }]);
+  assert.deepEqual(endsBetween(before, { ...before, stops: [] }), { moved_m: 0, from: null, to: null });
+  assert.deepEqual(endsBetween({ ...before, start: undefined, end_action: undefined }, after), { moved_m: 0, from: null, to: null });
+  assert.ok(!isSamePlan({ routes: [before] }, { routes: [{ ...before, end_action: "land" }] }));
 });
 
 test("a target that changes hands is named with both UAVs, and one that came or went as well", () => {

@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 import { factsOfUav } from "../../static/js/mission/fleet.js";
 import { basisOf, EMPTY, requestOf, storedBasisOf } from "../../static/js/mission/selection.js";
-import { changeWords, openChanges, saidInMission, withPresentFigures } from "../../static/js/mission/uav_changes.js";
+import { changeWords, openChanges, saidInMission, withFleetFigures, withPresentFigures } from "../../static/js/mission/uav_changes.js";
 
 const kite = { id: 7, name: "Kite", position: [9, 49], max_range_m: null, cruise_speed_mps: 10, battery_wh: 56.6, mass_kg: 1.545, reserve_percent: 20, max_airspeed_mps: null, sensors: ["RGB"], own_figures: [] };
 const picked = { ...EMPTY, uavs: [kite] };
@@ -48,4 +48,14 @@ test("a row says the battery that counts in the mission, else the fleet's", () =
   assert.match(factsOfUav(kite, true), /56\.6\u00a0Wh/);
   assert.match(factsOfUav({ ...kite, battery_wh: undefined, usual: { battery_wh: 40 } }, true), /40\u00a0Wh/);
   assert.doesNotMatch(factsOfUav({ ...kite, battery_wh: null, usual: { battery_wh: 40 } }, true), /Wh/);
+});
+
+test("what the mission says itself is told when the fleet's changes, until the fleet's is taken or another is said", () => {
+  const own = { ...picked, uavs: [{ ...kite, cruise_speed_mps: 7, own_figures: ["cruise_speed_mps"] }] };
+  const told = { uav: 0, id: 7, name: "Kite", state: null, figures: [], said: [{ name: "cruise_speed_mps", said: 7, then: 10, now: 9 }] };
+  assert.equal(changeWords(openChanges(own, [told])[0]), "Kite: speed 10 → 9\u00a0m/s in the fleet, but not in this mission.");
+  const taken = withFleetFigures(own, openChanges(own, [told]));
+  assert.deepEqual([taken.uavs[0].cruise_speed_mps, taken.uavs[0].own_figures], [9, []]);
+  assert.deepEqual(openChanges(taken, [told]), []);
+  assert.deepEqual(openChanges({ ...own, uavs: [{ ...own.uavs[0], cruise_speed_mps: 6 }] }, [told]), []);
 });

@@ -67,6 +67,8 @@ def _wrong_routes(request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
             yield f"{uav.name} flies {flown_m:.0f} m, not {route['length_m']:.0f} m"
         if route["end_action"] != request.end_action(number):
             yield f"{uav.name} does not end as it should"
+        if route["charging"] and uav.sorties > 1:
+            yield f"{uav.name} charges at towers, though it may take a full battery at its base"
         if not places:
             continue
         is_one = all(point["kind"] != "base" for point in points)

@@ -14,8 +14,10 @@ from missions.flight_plan.performance import Performance
 from missions.models import EndAction
 from missions.routing.problem import Objective, Priority
 from missions.services import TargetRequest, make_plan
+from missions.services.lacks import least_missing
+from missions.services.refusals import LeftOut
 from missions.services.requests import UavRequest
-from tests.missions.worlds import request, uav, world
+from tests.missions.worlds import island, request, uav, world
 
 pytestmark = pytest.mark.django_db
 
@@ -238,6 +240,42 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     assert reasons(plan) == {0: "beyond_energy"}
     said = f"it takes {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the battery of Tern may give."
     assert plan["unassigned"][0]["message"] == f"Over the ground and what stands tall {said}"
+
+
+def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path: Path) -> None:
+    """Not even for what only the drawn route takes, over the ridge: what a refusal says to be missing counts on no charging, either."""
+    here = world()
+    ridge(tmp_path)
+    drawn_wh = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
+    small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN, sorties=2)
+    (item,) = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=300.0))["unassigned"]
+    assert item["message"].endswith("there and back, 0.7 Wh more than the battery of Tern may give.")
+
+
+MID_WAY = (10.16, 56.0)  # from here a UAV reaches the line of the world, or the island; from the one to the other it does not
+
+
+@pytest.mark.parametrize("max_range_m", [None, 20_000.0])
+def test_what_a_uav_without_a_battery_could_do_alone_lacks_no_battery(max_range_m: float | None) -> None:
+    here, far = world(), island()
+    gull = uav(MID_WAY, name="Gull", max_range_m=max_range_m)
+    plan = make_plan(request=request(here.towers[2], far[0], uavs=(gull, iris(battery_wh=1.0))))
+    (item,) = plan["unassigned"]
+    assert [len(route["targets"]) for route in plan["routes"]] == [1, 0]
+    assert item["reason"] == ("no_path" if max_range_m is None else "beyond_range")
+    assert "Wh" not in item["message"]
+
+
+def test_what_is_not_on_one_route_with_others_is_not_put_down_to_the_wind() -> None:
+    here, far = world(), island()
+    breeze = Conditions((WindLayer(10.0, 2.0, 200.0),), 10.0)
+    (item,) = make_plan(request=request(here.towers[2], far[0], uavs=(uav(MID_WAY),), conditions=breeze))["unassigned"]
+    assert (item["reason"], "not on one route" in item["message"]) == ("no_path", True)
+
+
+def test_what_can_be_done_alone_on_other_ways_is_told_so() -> None:
+    by_battery, alone = LeftOut(0, "beyond_energy", "It takes 9 Wh more", 9.0), LeftOut(0, "beyond_range", "It is within range alone", 0.0)
+    assert least_missing([by_battery], [alone]) == least_missing([alone], [by_battery]) == [alone]
 
 
 def test_of_targets_that_are_come_to_one_from_the_other_the_farther_is_left_out_if_charging_does_not_suffice() -> None:

@@ -109,6 +109,15 @@ def test_what_makes_a_uav_safe_is_called_off_by_nothing_less(waiting: CommandKin
     assert claim(uav) == [first]
 
 
+@pytest.mark.parametrize("later", [CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START])
+def test_a_pause_is_called_off_by_nothing_that_moves_a_uav_but_going_on(later: CommandKind) -> None:
+    uav = a_uav()
+    pause = give(uav, CommandKind.PAUSE)
+    with pytest.raises(Refused):
+        give(uav, later)
+    assert claim(uav) == [pause]
+
+
 def test_once_it_is_done_the_uav_goes_on() -> None:
     uav = a_uav()
     give(uav, CommandKind.HOLD)

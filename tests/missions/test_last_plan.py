@@ -39,6 +39,8 @@ def test_a_plan_that_is_replaced_is_remembered_in_short(here: World, client: Cli
     assert [stop["asset"] for stop in route["stops"]] == [here.towers[1].pk, here.towers[4].pk]
     first_m, second_m = (stop["at_m"] for stop in route["stops"])
     assert 0 < first_m < second_m <= route["length_m"] + 0.1
+    assert route["start"] == before["routes"][0]["waypoints"][0]["position"]
+    assert (route["end_action"], route["base"]) == (before["routes"][0]["end_action"], None)
     assert route["off_network"][0][0] == 0.0  # from where it stands to the line
     assert [target["position"] for target in last["unassigned"]] == [[10.0, 56.3]]
 

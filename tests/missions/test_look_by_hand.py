@@ -53,6 +53,17 @@ def test_what_is_told_while_it_is_dragged_is_what_is_kept(here: World, client: C
     assert (told["length_m"] > before["length_m"] + 100, told["battery_percent"] < before["battery_percent"]) == (True, True)
 
 
+def test_the_route_as_it_would_be_flown_is_told_as_it_is_kept(here: World, client: Client) -> None:
+    mission = planned_with(here, client)
+    wished = as_wished(mission)
+    wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
+    flown = look(client, mission, wished)["flown"]
+    kept = put(client, mission, wished).json()["plan"]["routes"][0]
+    assert flown == {name: kept[name] for name in flown}
+    again = client.get(f"/api/v1/missions/{mission['id']}").json()
+    assert look(client, again, [*as_wished(again), wished[1]])["flown"] is None  # the end is not the last any more
+
+
 def test_against_the_wind_the_true_speed_is_told(here: World, client: Client) -> None:
     wind = {"wind": [{"altitude_agl_m": 50, "speed_mps": 6, "from_deg": 90}], "temperature_c": 15}
     mission = planned_with(here, client, conditions=wind)

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from inspection.geodesy import distance_m
+from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
 from missions.flight_plan.performance import Performance
 from missions.models import EndAction
-from missions.services import make_plan
+from missions.services import TargetRequest, make_plan
 from tests.inspection import ground
 from tests.inspection.terrain.tiffs import write_geotiff
 from tests.missions.ground_judge import Hills
@@ -199,3 +199,38 @@ def test_lines_of_the_highest_voltages_are_taken_to_be_taller_and_their_towers_t
     inspecting = make_plan(request=request(towers[0], uavs=(tern,)))
     (at_tower,) = [waypoint for waypoint in inspecting["routes"][0]["waypoints"] if waypoint["kind"] == "target"]
     assert at_tower["altitude_agl_m"] == least_m
+
+
+def slope(path: Path) -> None:
+    """Ground that rises by 1 in 7 to the east."""
+    step = 0.0005
+    lons = 9.985 + step * (np.arange(90) + 0.5)
+    heights = 100.0 + 9_000.0 * (lons - 9.985)
+    import_terrain(path=write_geotiff(path, np.tile(heights, (90, 1)).astype("f4"), srid=9707, origin=(9.985, 56.02), step=step))
+
+
+def test_a_tower_too_tall_on_its_slope_between_two_targets_is_gone_round(tmp_path: Path) -> None:
+    """Each of them can be flown to alone, without passing it."""
+    here = world()
+    slope(tmp_path / "slope.tif")
+    here.towers[2].height_m = 104.9
+    here.towers[2].save()
+    rebuild()
+    plan = make_plan(request=request(here.towers[1], here.towers[3]))
+    assert plan["unassigned"] == []
+    assert WireJudge(ground_heights_m).faults(plan) == []
+
+
+def test_a_uav_keeps_to_its_first_targets_where_the_way_on_leads_over_what_is_too_tall(tmp_path: Path) -> None:
+    """What is inspected right beside the tower keeps it from being gone round."""
+    here = world()
+    slope(tmp_path / "slope.tif")
+    here.towers[2].height_m = 104.9
+    here.towers[2].save()
+    rebuild()
+    beside = TargetRequest(None, LonLat(10.008, 56.0004))
+    plan = make_plan(request=request(here.towers[1], here.towers[3], beside))
+    said = {item["target"]: item["message"] for item in plan["unassigned"]}
+    assert plan["routes"][0]["targets"] == [0]
+    assert said[1] == "From its other targets Tern would have to pass a mast or wires that cannot be flown over."
+    assert WireJudge(ground_heights_m).faults(plan) == []

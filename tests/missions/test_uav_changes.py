@@ -127,6 +127,31 @@ def test_figures_of_this_mission_alone_are_its_own_whatever_becomes_of_the_uav(h
     assert figures(now(client, as_it_is)) == {"cruise_speed_mps": (10.0, 9.0)}
 
 
+def test_a_figure_of_this_mission_alone_is_told_when_the_fleets_changes(here: World, client: Client, kite: int) -> None:
+    """The plan stands all the same; and sent again as it was, it is not said anew."""
+    mission = made(client, here, {"id": kite, "cruise_speed_mps": 7.0}, plan=True)
+    assert now(client, mission)["uav_changes"] == []
+    change(client, kite, {"cruise_speed_mps": 9.0})
+    found = now(client, mission)
+    told = [{"name": "cruise_speed_mps", "said": 7.0, "then": 10.0, "now": 9.0}]
+    assert [(change["said"], change["figures"]) for change in found["uav_changes"]] == [(told, [])]
+    assert found["uav_changes"][0]["message"] == "Kite: speed 10 → 9 m/s in the fleet, but not in this mission."
+    assert (found["is_stale"], found["stale_causes"]) == (False, [])
+    patch(client, f"missions/{mission['id']}", {"uavs": found["uavs"]})
+    assert [change["said"] for change in now(client, mission)["uav_changes"]] == [told]
+    copy = post(client, f"missions/{mission['id']}/duplicate").json()
+    assert [change["said"] for change in copy["uav_changes"]] == [told]
+
+
+def test_a_figure_that_is_said_anew_or_as_in_the_fleet_by_now_is_not_told(here: World, client: Client, kite: int) -> None:
+    mission = made(client, here, {"id": kite, "cruise_speed_mps": 7.0})
+    change(client, kite, {"cruise_speed_mps": 9.0})
+    patch(client, f"missions/{mission['id']}", {"uavs": [{"id": kite, "cruise_speed_mps": 6.0}]})
+    assert now(client, mission)["uav_changes"] == []
+    change(client, kite, {"cruise_speed_mps": 6.0})
+    assert now(client, mission)["uav_changes"] == []
+
+
 def test_a_page_that_sends_the_kept_figures_again_does_not_make_them_its_own(here: World, client: Client, kite: int) -> None:
     """What "undo" sends after the present figures were taken: the notice is back."""
     mission = made(client, here, {"id": kite})

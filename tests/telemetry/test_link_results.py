@@ -4,13 +4,13 @@ from typing import Any
 
 import pytest
 
-from missions.models import Approval, CommandKind, Mission, MissionState, TargetState
+from missions.models import Approval, CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
 from missions.services.approval import revoke_approval
 from missions.services.outbox import queue_command
-from telemetry.models import InspectionResult
+from telemetry.models import InspectionResult, UavLink
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.worlds import World, world
-from tests.telemetry.uav_clients import UavClient, linked_uav, seconds_ago
+from tests.telemetry.uav_clients import UavClient, linked_uav, report, seconds_ago
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
@@ -133,3 +133,24 @@ def test_a_mission_is_complete_when_its_last_flight_is_flown(mission: Mission, k
     assert kite.get("route").status_code == 204
     tell(kite, flights=[flight])
     assert Mission.objects.get().state == MissionState.COMPLETED
+
+
+def test_a_flight_that_was_never_approved_ends_no_mission(mission: Mission, kite: UavClient) -> None:
+    kite.get("route")
+    flight = {"approval": str(Approval.objects.get().pk), "flight": 2, "outcome": "flown"}
+    assert tell(kite, flights=[flight])["refused_flights"] == [0]
+    mission.refresh_from_db()
+    assert (mission.state, mission.routes.get().flights_flown) == (MissionState.DISPATCHED, 0)
+
+
+def test_a_computer_beside_an_autopilot_does_not_say_how_its_flights_end(mission: Mission, kite: UavClient) -> None:
+    """Its token may be left from before; the gateway sees the flights."""
+    kite.get("route")
+    Uav.objects.update(link=LinkKind.MAVLINK)
+    flight = {"approval": str(Approval.objects.get().pk), "flight": 1, "outcome": "failed"}
+    told = tell(kite, result(1, 0), flights=[flight])
+    assert (told["stored"], told["refused_flights"]) == (1, [0])
+    assert not mission.routes.get().has_failed
+    UavLink.objects.filter(uav=kite.uav).update(mode="AUTO", is_in_air=True)
+    assert kite.report(report(1, mode="Standby", is_in_air=False)).status_code == 200
+    assert UavLink.objects.values_list("mode", "is_in_air").get(uav=kite.uav) == ("AUTO", True)

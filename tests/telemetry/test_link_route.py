@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
@@ -263,3 +264,22 @@ def test_what_is_changed_on_the_ground_afterwards_changes_nothing_of_what_was_ap
 )  # fmt: skip
 def test_what_is_no_acknowledgement_is_refused(kite: UavClient, body: dict[str, Any]) -> None:
     assert kite.post("acknowledgements", body).status_code == 400
+
+
+def test_what_was_handed_over_and_not_answered_is_not_handed_over_when_its_time_is_over(kite: UavClient) -> None:
+    """Its answer was lost: a start that came half a minute later would come when nobody expects it."""
+    lost, here = give(kite, CommandKind.HOLD), give(kite, CommandKind.CHANGE_SPEED, parameters={"speed_mps": 5.0})
+    assert len(kite.get("route").json()["commands"]) == 2
+    acknowledge(kite, here.pk, "acknowledged")
+    UavCommand.objects.update(expires_at=datetime.now(UTC) - timedelta(seconds=1))
+    assert [command["id"] for command in kite.get("route").json()["commands"]] == [str(here.pk)]
+    assert acknowledge(kite, lost.pk, "applied")["noted"], "it did arrive"
+
+
+def test_a_mission_that_was_not_dropped_stays_an_alert(here: World, person: User, kite: UavClient) -> None:
+    mission = dispatched(person, [kite.uav], [here.towers[2]])
+    acknowledge(kite, kite.get("route").json()["route"]["command"], "applied", content_sha256="0" * 64)
+    revoke_approval(mission=Mission.objects.get(pk=mission.pk), actor=person, reason="other")
+    (clear,) = kite.get("route").json()["commands"]
+    acknowledge(kite, clear["id"], "failed", reason="It is flying it.")
+    assert Alert.objects.get().closed_at is None

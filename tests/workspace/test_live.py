@@ -2,36 +2,24 @@
 
 import asyncio
 import json
-import os
-import shutil
 import socket
 import subprocess
-import tempfile
 import threading
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Iterator
 from datetime import timedelta
-from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 from uuid import uuid4
 
 import pytest
 from asgiref.sync import async_to_sync
-from django.conf import settings
-from django.db import connection
 from django.utils import timezone
-from websocket import WebSocket, WebSocketBadStatusException, create_connection
+from websocket import WebSocket, WebSocketBadStatusException
 
-from scripts.places import Places
-from scripts.programs import web_programs
-from scripts.proxy import configuration
-from scripts.system_packages import find_program
-from tests.workspace.people import client_of, somebody
+from tests.workspace.front_door import PATIENCE_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
+from tests.workspace.people import somebody
 from workspace import live as words
 from workspace.consumers import ENDED, JobConsumer
 from workspace.models import ApiToken, Job, Organisation, User
@@ -39,118 +27,25 @@ from workspace.services import cancel_job, create_api_token, create_job, finish_
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
-PATIENCE_S = 30.0
-
-
-@dataclass(frozen=True)
-class Door:
-    """The one port, and the Redis behind it."""
-
-    port: int
-    redis: Path
-
-    def open(self, job: Job, *, user: User | None = None, token: str = "", origin: str | None = "") -> WebSocket:
-        headers = []
-        if user is not None:
-            headers.append(f"Cookie: {settings.SESSION_COOKIE_NAME}={client_of(user).cookies[settings.SESSION_COOKIE_NAME].value}")
-        if token:
-            headers.append(f"Authorization: Bearer {token}")
-        return create_connection(
-            f"ws://127.0.0.1:{self.port}/ws/jobs/{job.pk}",
-            timeout=PATIENCE_S,
-            header=headers,
-            origin=f"http://127.0.0.1:{self.port}" if origin == "" else origin,
-            suppress_origin=origin is None,
-        )
-
-
-@contextmanager
-def running(command: list[str], **environment: str) -> Iterator[subprocess.Popen[bytes]]:
-    process = subprocess.Popen(command, cwd=settings.BASE_DIR, env=os.environ | environment)  # noqa: S603
-    try:
-        yield process
-    finally:
-        process.terminate()
-        process.wait()
-
-
-def redis_at(path: Path) -> list[str]:
-    """A Redis that keeps nothing."""
-    return [
-        find_program("redis-server") or "redis-server",
-        "--port",
-        "0",
-        "--unixsocket",
-        str(path),
-        "--save",
-        "",
-        "--logfile",
-        "/dev/null",
-    ]
-
-
-def wait_until(is_so: Callable[[], bool]) -> None:
-    end_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < end_s, "it never came"
-        time.sleep(0.05)
-
 
 @pytest.fixture(scope="module")
-def folder() -> Iterator[Path]:
-    """Short enough for sockets."""
-    path = Path(tempfile.mkdtemp(prefix="sw-", dir="/tmp"))
-    yield path
-    shutil.rmtree(path)
-
-
-def _status(port: int) -> int:
-    """Of a plain request to where websockets are; 0 while nobody listens."""
-    try:
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/ws/jobs/{Job().pk}", timeout=PATIENCE_S) as answer:
-            return int(answer.status)
-    except urllib.error.HTTPError as error:
-        return error.code
-    except OSError:
-        return 0
-
-
-@pytest.fixture(scope="module")
-def door(folder: Path, django_db_setup: None, django_db_blocker: Any) -> Iterator[Door]:
-    nginx = find_program("nginx")
-    if nginx is None:
-        pytest.skip("nginx is not installed; ./run installs it")
-    places, redis = Places(folder), folder / "redis.sock"
-    places.process("proxy").mkdir(parents=True)
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    (folder / "nginx.conf").write_text(configuration(places, folder, port))
-    live = next(program for program in web_programs(places, folder) if program.name == "live")
-    with django_db_blocker.unblock():
-        at = connection.settings_dict
-    who = quote(at["USER"], safe="") + (f":{quote(at['PASSWORD'], safe='')}" if at["PASSWORD"] else "")
-    environment = {
-        "DATABASE_URL": f"postgis://{who}@{quote(at['HOST'], safe='')}{':' + str(at['PORT']) if at['PORT'] else ''}/{at['NAME']}",
-        "REDIS_URL": f"unix://{redis}",
-        "SPANWISE_VAR": str(folder),
-        "SPANWISE_SECRET_KEY": settings.SECRET_KEY,
-    }
-    with running([nginx, "-e", "stderr", "-c", str(folder / "nginx.conf")]), running(live.command, **environment):
-        wait_until(lambda: _status(port) == 426)
-        yield Door(port, redis)
+def door(django_db_setup: None) -> Iterator[Door]:
+    with front_door() as door, door.serves_live():
+        wait_until(lambda: door.is_open)
+        yield door
 
 
 @pytest.fixture
 def here(door: Door, settings: Any) -> Iterator[Door]:
     """With a Redis of its own, which the tests' own words go through as well."""
-    layer = settings.CHANNEL_LAYERS["default"]
-    settings.CHANNEL_LAYERS = {
-        "default": layer | {"CONFIG": layer["CONFIG"] | {"hosts": [{"address": f"unix://{door.redis}", "socket_connect_timeout": 1}]}}
-    }
+    through_its_redis(door, settings)
     with running(redis_at(door.redis)):
         wait_until(door.redis.exists)
         yield door
+
+
+def at(job: Job) -> str:
+    return f"/ws/jobs/{job.pk}"
 
 
 def running_job(user: User) -> Job:
@@ -171,18 +66,10 @@ def told(live: WebSocket) -> dict[str, Any]:
             return job
 
 
-def close_code(live: WebSocket) -> int:
-    """After what is still on its way."""
-    while True:
-        opcode, data = live.recv_data()
-        if opcode == 8:
-            return int.from_bytes(data[:2], "big")
-
-
 def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Door) -> None:
     user = somebody()
     job = running_job(user)
-    live = here.open(job, user=user)
+    live = here.open(at(job), user=user)
     first = told(live)
     assert (first["id"], first["state"], first["message"]) == (str(job.pk), "running", "Planning")
     report_progress(job=job, progress=0.5, message="half way", best={"value": 7.0, "bound": 6.0})
@@ -198,7 +85,7 @@ def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Doo
 def test_a_program_listens_with_its_token(here: Door, origin: str | None) -> None:
     user = somebody()
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
-    assert told(here.open(running_job(user), token=token, origin=origin))["state"] == "running"
+    assert told(here.open(at(running_job(user)), token=token, origin=origin))["state"] == "running"
 
 
 def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
@@ -218,19 +105,19 @@ def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
     ]
     for who in refused:
         with pytest.raises(WebSocketBadStatusException) as caught:
-            here.open(job, **who)
+            here.open(at(job), **who)
         assert caught.value.status_code == 403, who
     with pytest.raises(WebSocketBadStatusException):
-        here.open(Job(organisation=user.organisation), user=user)  # is not there
+        here.open(at(Job(organisation=user.organisation)), user=user)  # is not there
 
 
 def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_moved(here: Door) -> None:
     user = somebody()
     job = running_job(user)
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
-    by_session, by_token = here.open(job, user=user), here.open(job, token=token)
+    by_session, by_token = here.open(at(job), user=user), here.open(at(job), token=token)
     moved = somebody()
-    of_old_organisation = here.open(running_job(moved), user=moved)
+    of_old_organisation = here.open(at(running_job(moved)), user=moved)
     told(by_session), told(by_token), told(of_old_organisation)
     ended_s = time.monotonic()
     User.objects.filter(pk=user.pk).update(session_generation=1)
@@ -242,7 +129,7 @@ def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_
 
 def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
     user = somebody()
-    live = here.open(running_job(user), user=user)
+    live = here.open(at(running_job(user)), user=user)
     told(live)
     live.send("x" * 100_000)
     assert close_code(live) == 4400
@@ -251,13 +138,13 @@ def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
 def test_a_dead_redis_delays_word_and_comes_back(door: Door, here: Door) -> None:
     user = somebody()
     job = running_job(user)
-    live = here.open(job, user=user)
+    live = here.open(at(job), user=user)
     told(live)
     subprocess.run(["redis-cli", "-s", str(door.redis), "shutdown", "nosave"], check=False)  # noqa: S603, S607
     wait_until(lambda: not door.redis.exists())
     report_progress(job=job, progress=0.3, message="without Redis")
     assert told(live)["message"] == "without Redis"
-    other = here.open(job, user=user)  # a page that is opened meanwhile
+    other = here.open(at(job), user=user)  # a page that is opened meanwhile
     assert told(other)["progress"] == 0.3
     with running(redis_at(door.redis)):
         wait_until(door.redis.exists)
@@ -305,11 +192,11 @@ def test_plain_http_is_told_to_upgrade(here: Door) -> None:
     assert json.loads(caught.value.read())["error"]["code"] == "upgrade_required"
 
 
-def test_without_the_program_the_door_says_try_again(folder: Path, here: Door) -> None:
-    (folder / "live.sock").rename(folder / "away.sock")
+def test_without_the_program_the_door_says_try_again(here: Door) -> None:
+    (here.folder / "live.sock").rename(here.folder / "away.sock")
     try:
         with pytest.raises(urllib.error.HTTPError) as caught:
             urllib.request.urlopen(f"http://127.0.0.1:{here.port}/ws/jobs/{Job().pk}", timeout=PATIENCE_S)
         assert (caught.value.code, int(caught.value.headers["Retry-After"]) > 0) == (503, True)
     finally:
-        (folder / "away.sock").rename(folder / "live.sock")
+        (here.folder / "away.sock").rename(here.folder / "live.sock")

@@ -3,17 +3,11 @@
 import { get } from "../api.js";
 import { h } from "../dom.js";
 import { t } from "../text.js";
-import { percentText, whenText } from "../units.js";
+import { agoText, percentText } from "../units.js";
 import { LINKS } from "./words.js";
 
 const ASKED_EVERY_MS = 5_000;
 const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
-
-/** "12 s ago", "4 min ago", then the time. */
-export function agoText(seconds, iso) {
-  if (seconds < 60) return t("{count} s ago", { count: Math.max(0, Math.round(seconds)) });
-  return seconds < 3_600 ? t("{count} min ago", { count: Math.round(seconds / 60) }) : whenText(iso);
-}
 
 /** Of an answer of the API: one sentence, and whether it is heard at present. */
 export function heardWords({ heard_at, heard_by, server_time }) {
@@ -26,9 +20,24 @@ export function heardWords({ heard_at, heard_by, server_time }) {
 const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
 const flightWords = ({ is_in_air, is_armed }) => (is_in_air ? t("in the air") : is_armed ? t("armed") : is_armed === false ? t("disarmed") : "");
 
+const DOUBTS = {
+  rebooted: t("not known since it has booted"),
+  "other-station": t("not known since another ground station has changed its lists"),
+  "other-length": t("not known since its list has another length"),
+};
+
+/** "flight 1 of an approved mission, read back 3 min ago". */
+export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server_time }) {
+  const what = t("flight {number} of an approved mission", { number: loaded_flight });
+  if (!loaded_read_at) return what;
+  const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1_000, loaded_read_at);
+  const said = t("{what}, read back {ago}", { what, ago });
+  return loaded_doubt ? `${said}; ${DOUBTS[loaded_doubt]}` : said;
+}
+
 function drawing(connection) {
   const { words, isHeard } = heardWords(connection);
-  const { mode, autopilot, firmware, battery_percent, loaded_approval, loaded_flight } = connection;
+  const { mode, autopilot, firmware, battery_percent, loaded_approval } = connection;
   return [
     h("p", { class: isHeard ? "" : "quiet-text" }, words),
     h(
@@ -38,7 +47,7 @@ function drawing(connection) {
       term(t("Mode"), [mode, flightWords(connection)].filter(Boolean).join(", ")),
       term(t("Charge now"), battery_percent === null ? "" : percentText(battery_percent)),
       term(t("Autopilot"), [autopilot, firmware].filter(Boolean).join(" ")),
-      term(t("On it"), loaded_approval ? t("flight {number} of an approved mission", { number: loaded_flight }) : ""),
+      term(t("On it"), loaded_approval ? loadedText(connection) : ""),
     ),
   ];
 }

@@ -4,7 +4,7 @@ import { ApiError, get, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
-import { agoText } from "./connection.js";
+import { agoText } from "../units.js";
 
 const ASKED_EVERY_MS = 15_000;
 const NEW = "";

@@ -1,7 +1,7 @@
 /** Two plans of one mission against each other: what each UAV flies more or less, and which targets changed hands. */
 
 import { keyOf, wishesOf } from "./selection.js";
-import { profileOf } from "./span_strip.js";
+import { distance_m, profileOf } from "./span_strip.js";
 
 /** A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer. */
 export function summaryOfPlan({ result, targets }) {
@@ -16,6 +16,9 @@ export function summaryOfPlan({ result, targets }) {
       return {
         uav: route.uav,
         uav_id: route.uav_id,
+        start: route.waypoints[0]?.position ?? null,
+        end_action: route.end_action,
+        base: route.base ?? null,
         length_m: route.length_m,
         duration_s: route.duration_s,
         stops: profile.targets.filter(({ target }) => targets[target]).map(({ target, at }) => ({ ...pickOf(targets[target]), at_m: at })),
@@ -33,9 +36,14 @@ const isSameUav = (a, b) => (a.uav_id !== null && b.uav_id !== null ? a.uav_id =
 /** Whether two plans fly the same: planning again what has not changed is not another plan. */
 export function isSamePlan(a, b) {
   const essence = ({ routes }) => JSON.stringify(routes.map(({ uav, length_m, stops }) => [uav, Math.round(length_m), stopsOf(stops).map(keyOf)]));
-  return essence(a) === essence(b);
+  const beginsAndEndsAlike = (route) => {
+    const { moved_m, to } = endsBetween(counterpart(route, a), route);
+    return moved_m === 0 && to === null;
+  };
+  return essence(a) === essence(b) && b.routes.every(beginsAndEndsAlike);
 }
 
+const LEAST_MOVED_M = 1;
 const PRIORITIES = ["high", "normal", "low"];
 const AS_GOOD = 0.05; // metres or seconds, as they are rounded in a plan
 
@@ -90,6 +98,15 @@ export function movesBetween(before, now) {
 /** The route of the same UAV in another plan, or null. */
 export function counterpart(route, plan) {
   return plan?.routes.find((other) => isSameUav(other, route)) ?? null;
+}
+
+/** What differs of where a route begins and how it ends from the same UAV's in another plan: { moved_m, from, to }; from and to are
+ * { end_action, base }, null where they are the same. Of plans that are remembered without these, nothing differs. */
+export function endsBetween(old, now) {
+  const moved_m = old?.start && now.start ? distance_m(old.start, now.start) : 0;
+  const isSame = !old?.end_action || (old.end_action === now.end_action && old.base === now.base);
+  const [from, to] = isSame ? [null, null] : [old, now].map(({ end_action, base }) => ({ end_action, base }));
+  return { moved_m: moved_m < LEAST_MOVED_M ? 0 : moved_m, from, to };
 }
 
 /** A route in short, as the drawing of a strip takes it. */

@@ -4,7 +4,7 @@ import { post } from "../api.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import * as picks from "./selection.js";
-import { openChanges, withPresentFigures } from "./uav_changes.js";
+import { openChanges, withFleetFigures, withPresentFigures } from "./uav_changes.js";
 
 /** context: see actions.js. */
 export function createFleetActions({ store, selection, change }) {
@@ -42,8 +42,15 @@ export function createFleetActions({ store, selection, change }) {
     toast(t("The present figures are taken."), { label: t("Undo"), act: () => change(before) });
   }
 
+  function takeFleetFigures() {
+    const before = selection();
+    change(withFleetFigures(before, openChanges(before, store.state.mission?.uav_changes)));
+    toast(t("The fleet's figures are taken."), { label: t("Undo"), act: () => change(before) });
+  }
+
   return {
     takePresentFigures,
+    takeFleetFigures,
     addUav, addUavOfFleet, addUavsOfFleet,
     removeUav: (sequence) => change(picks.withoutUavAt(selection(), sequence)),
     moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),

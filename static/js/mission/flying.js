@@ -2,7 +2,7 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t } from "../text.js";
-import { clockText } from "../units.js";
+import { agoText, clockText } from "../units.js";
 
 export const KINDS = {
   "upload-mission": t("Send the mission"),
@@ -35,11 +35,11 @@ export const isOnItsWay = (mission) => ON_ITS_WAY.includes(mission.state);
 export const isOpen = ({ state }) => ["queued", "sent", "acknowledged"].includes(state);
 const isOfMission = ({ kind }) => kind === "upload-mission" || kind === "clear-mission";
 
-/** UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown }]. */
+/** UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown, hasFailed }]. */
 export function flyersOf(mission) {
   const flights = new Map((mission.approval?.flights ?? []).map((entry) => [entry.uav, entry]));
   return (mission.plan?.routes ?? [])
-    .map((route, place) => ({ place, letter: routeLetter(place), name: route.uav, uav: route.uav_id, flights: flights.get(place)?.flights ?? 1, flown: flights.get(place)?.flown ?? 0, route }))
+    .map((route, place) => ({ place, letter: routeLetter(place), name: route.uav, uav: route.uav_id, flights: flights.get(place)?.flights ?? 1, flown: flights.get(place)?.flown ?? 0, hasFailed: flights.get(place)?.has_failed ?? false, route }))
     .filter(({ route }) => route.geometry);
 }
 
@@ -56,8 +56,23 @@ export function flightOf(commands, uav) {
 /** A mix is what nobody approved: it is said loudest. */
 export const isMixed = ({ state, outcome_code }) => state === "failed" && outcome_code.includes("mix");
 
+const DOUBTS = {
+  rebooted: t("it has booted since"),
+  "other-station": t("another ground station has changed its lists since"),
+  "other-length": t("its list has another length since"),
+};
+
+/** Whether what was brought by this upload is what was read back from the UAV last; `connection` is null while that is not known here. */
+const isSeenThere = ({ approval, finished_at }, connection) => !connection || Date.parse(connection.server_time) < Date.parse(finished_at) || connection.loaded_approval === approval;
+
+/** "read back 3 min ago", and what speaks for something else by now: { words, isDoubted }. */
+function readBack({ loaded_read_at, loaded_doubt, server_time }) {
+  const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1000, loaded_read_at);
+  return loaded_doubt ? { words: t("read back {ago}; not known now: {why}", { ago, why: DOUBTS[loaded_doubt] }), isDoubted: true } : { words: t("read back {ago}", { ago }), isDoubted: false };
+}
+
 /** What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way. */
-export function boardWords(command) {
+export function boardWords(command, connection = null) {
   if (!command) return { words: t("Not sent yet"), image: "circle-dashed" };
   const { kind, state, progress, outcome, parameters } = command;
   const why = outcome || STATES[state].words;
@@ -69,7 +84,11 @@ export function boardWords(command) {
   if (isMixed(command)) return { words: t("Mixed mission on the UAV – {why}", { why }), image: "octagon-alert", level: "critical" };
   if (state === "applied") {
     const flight = parameters.flight ?? 1;
-    const words = flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved");
+    const what = flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved");
+    if (!isSeenThere(command, connection)) return { words: t("It is not known what is on the UAV: send it again."), image: "triangle-alert", level: "warning" };
+    const read = connection?.loaded_read_at ? readBack(connection) : null;
+    const words = read ? t("{what}, {read}", { what, read: read.words }) : what;
+    if (read?.isDoubted) return { words: outcome ? `${words} – ${outcome}` : words, image: "triangle-alert", level: "warning" };
     return outcome ? { words: `${words} – ${outcome}`, image: "triangle-alert", level: "warning" } : { words, image: "circle-check", level: "good" };
   }
   if (state === "failed" || state === "expired") return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
@@ -82,6 +101,10 @@ export function commandWords(command) {
   const { words, image } = STATES[command.state];
   const at = command.finished_at ?? command.acknowledged_at ?? command.sent_at ?? command.created_at;
   const said = t("{kind}: {state} {time}", { kind: KINDS[command.kind], state: words, time: clockText(at) });
+  const { progress } = command;
+  if (command.state === "queued" && progress?.total && !isOfMission(command)) {
+    return { words: t("{kind}: reading back what is on board, {done} of {total} items", { kind: KINDS[command.kind], ...progress }), image: "loader-circle", level: null };
+  }
   const level = command.state === "failed" ? "critical" : command.state === "expired" ? "warning" : null;
   return { words: command.outcome && command.state !== "applied" ? `${said} – ${command.outcome}` : said, image, level };
 }
@@ -92,9 +115,23 @@ export function timesOf({ created_at, sent_at, acknowledged_at, finished_at, sta
   return steps.filter(([, at]) => at).map(([word, at]) => `${word} ${timeText(at)}`).join(", ");
 }
 
+const IN_MOTION = ["arm", "take-off", "start", "resume"];
+
+/** Why a UAV is not set in motion by this command; empty where it is, and for commands that stop it or bring it back. */
+export function whyNotMoved(kind, mission, { uav, name, hasFailed }, commands) {
+  if (!IN_MOTION.includes(kind)) return "";
+  if (!isOnItsWay(mission) || !mission.approval) return t("{name} has no mission.", { name });
+  if (mission.approval.revoke_requested_at) return t("The approval is being taken back.");
+  if (hasFailed) return t("A flight of {name} has failed: it does not fly on in this mission.", { name });
+  const wasStarted = commands.some((command) => command.kind === "start" && command.uav.id === uav && command.sent_at && command.approval === mission.approval.id);
+  return kind === "resume" && !(mission.state === "active" && wasStarted) ? t("{name} has not started its mission: there is nothing to go on with.", { name }) : "";
+}
+
 /** Why a UAV cannot be started; empty where it can. */
-export function whyNoStart(mission, { uav, name, flown }, commands) {
-  if (mission.approval?.revoke_requested_at) return t("The approval is being taken back.");
+export function whyNoStart(mission, flyer, commands) {
+  const { uav, name, flown } = flyer;
+  const unmoved = whyNotMoved("start", mission, flyer, commands);
+  if (unmoved) return unmoved;
   const board = boardOf(commands, uav);
   if (board?.kind !== "upload-mission" || board.state !== "applied") return t("{name} does not have its mission yet.", { name });
   const flight = board.parameters.flight ?? 1;
@@ -104,11 +141,11 @@ export function whyNoStart(mission, { uav, name, flown }, commands) {
 }
 
 /** What could be sent to a UAV now: the number of a flight, null where nothing is to be sent. */
-export function flightToSend({ uav, flights, flown }, commands) {
+export function flightToSend({ uav, flights, flown }, commands, connection = null) {
   const board = boardOf(commands, uav);
   const next = flown + 1;
   if (next > flights) return null;
-  const isThere = board?.kind === "upload-mission" && (isOpen(board) || board.state === "applied") && (board.parameters.flight ?? 1) === next;
+  const isThere = board?.kind === "upload-mission" && (isOpen(board) || (board.state === "applied" && isSeenThere(board, connection))) && (board.parameters.flight ?? 1) === next;
   return isThere ? null : next;
 }
 

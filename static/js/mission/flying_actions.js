@@ -5,9 +5,11 @@ import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
 import { flyersOf, isFrozen, isOnItsWay, isOpen, KINDS } from "./flying.js";
+import { returnLines, returnOf } from "./own_return.js";
 import { confirmAct } from "./panels/confirm.js";
 
 const POLL_MS = 2000;
+const RETURNS_EVERY_MS = 20_000;
 const LATE = t("If it cannot be reached in time, the command expires and is not carried out later.");
 const WHY = { name: "why", label: t("Why (kept in the history)") };
 
@@ -19,9 +21,9 @@ const ASKED = {
   pause: ({ name }) => ({ title: t("Pause {name}?", { name }), lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), LATE], keep: t("Keep flying"), act: t("Pause {name}", { name }), isBack: true }),
   resume: ({ name }) => ({ title: t("Resume the flight of {name}?", { name }), lines: [t("It flies on along its route from where it is."), LATE], act: t("Resume {name}", { name }), isBack: true }),
   hold: ({ name }) => ({ title: t("Hold {name}?", { name }), lines: [t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."), LATE], keep: t("Keep flying"), act: t("Hold {name}", { name }), isBack: true, image: "hand" }),
-  return: ({ name }) => ({ title: t("Return {name}?", { name }), lines: [t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."), LATE], keep: t("Keep flying"), act: t("Return {name}", { name }), isBack: true, image: "rotate-ccw" }),
+  return: ({ name, returns }) => ({ title: t("Return {name}?", { name }), lines: [t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."), ...returnLines(returns), LATE], keep: t("Keep flying"), act: t("Return {name}", { name }), isBack: true, image: "rotate-ccw" }),
   land: ({ name }) => ({ title: t("Land {name} here?", { name }), lines: [t("It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone."), LATE], keep: t("Keep flying"), act: t("Land {name} here", { name }), isDanger: true, image: "plane-landing" }),
-  abort: ({ name }) => ({ title: t("Abort the flight of {name}?", { name }), lines: [t("Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on."), LATE], keep: t("Keep flying"), act: t("Abort {name}", { name }), isDanger: true, field: WHY, image: "octagon-alert" }),
+  abort: ({ name, returns }) => ({ title: t("Abort the flight of {name}?", { name }), lines: [t("Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on."), ...returnLines(returns), LATE], keep: t("Keep flying"), act: t("Abort {name}", { name }), isDanger: true, field: WHY, image: "octagon-alert" }),
   "change-speed": ({ name, speed_mps }) => ({ title: t("Change the speed of {name}?", { name }), lines: [t("Over ground, until its route says otherwise. Planned times no longer hold."), LATE], act: t("Change the speed of {name}", { name }), field: { name: "speed_mps", label: t("Speed [m/s]; now planned with {speed}", { speed: speedText(speed_mps) }), type: "number", value: Math.round(speed_mps * 10) / 10, min: 0.5, max: 100, step: "any", isNeeded: true }, isBack: true }),
 };
 
@@ -29,6 +31,7 @@ const ASKED = {
 export function createFlying(store, { failed, page }) {
   let timer = 0;
   let isAsking = false;
+  let returnsAt = 0;
 
   const mission = () => store.state.mission;
   const ifMatch = () => ({ headers: { "If-Match": `"${mission().revision}"`, "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } });
@@ -56,13 +59,41 @@ export function createFlying(store, { failed, page }) {
     store.update({ mission: data });
   }
 
+  /** store.connections: by UAV, what is known of it and of what is on board; null while that could not be read. */
+  async function readConnections() {
+    const uavs = flyersOf(mission()).map(({ uav }) => uav).filter((uav) => uav !== null);
+    const read = await Promise.all(uavs.map((uav) => get(`/uavs/${uav}/connection`).then(({ data }) => [uav, data], () => [uav, null])));
+    store.update({ connections: new Map(read) });
+  }
+
+  /** store.returns: what is in the way home, as it was last looked at; null until then. */
+  async function readReturns() {
+    if (!mission()) return;
+    returnsAt = Date.now();
+    void readConnections();
+    try {
+      store.update({ returns: (await get(`/missions/${mission().id}/returns`)).data.results });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      store.update({ returns: null });
+    }
+  }
+
+  /** Warnings only, each once. */
+  const returnsOf = (flyers) => [...new Set(flyers.flatMap(({ place }) => {
+    const check = returnOf(store.state.returns, place);
+    return check ? check.warnings : returnLines(check);
+  }))];
+
   async function approve() {
     const flyers = flyersOf(mission());
+    await readReturns();
     const asked = await confirmAct({
       title: t("Approve “{name}”?", { name: mission().name }),
       lines: [
         tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", { length: lengthText(mission().plan.total_length_m), names: uavsWords(flyers) }),
         t("From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked."),
+        ...returnsOf(flyers),
       ],
       field: { name: "longest_leg_m", label: t("Put points in on legs longer than [m]; empty: as planned"), type: "number", min: 50, max: 5000, step: "any" },
       act: t("Approve"), isBack: true, image: "badge-check",
@@ -105,7 +136,7 @@ export function createFlying(store, { failed, page }) {
     const flyers = flyersOf(mission());
     const asked = await confirmAct({
       title: t("Abort “{name}”?", { name: mission().name }),
-      lines: [t("{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.", { names: uavsWords(flyers) }), LATE],
+      lines: [t("{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.", { names: uavsWords(flyers) }), ...returnsOf(flyers), LATE],
       field: WHY, keep: mission().state === "active" ? t("Keep flying") : t("Keep it"), act: t("Abort the mission"), isDanger: true, image: "octagon-alert",
     });
     if (!asked) return;
@@ -116,7 +147,7 @@ export function createFlying(store, { failed, page }) {
   }
 
   async function command(flyer, kind) {
-    const asked = await confirmAct(ASKED[kind](flyer));
+    const asked = await confirmAct(ASKED[kind]({ ...flyer, returns: returnOf(store.state.returns, flyer.place) }));
     if (!asked) return;
     const { why = "", ...parameters } = asked;
     await tried(t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] }), async () => {
@@ -147,6 +178,7 @@ export function createFlying(store, { failed, page }) {
     const states = new Map(before.map(({ id, state }) => [id, state]));
     for (const { id, uav, kind, state, outcome } of now) {
       if (isOpen({ state }) || !states.has(id) || states.get(id) === state) continue;
+      void readConnections();
       const words = { name: uav.name, act: KINDS[kind], outcome };
       if (state === "applied") say(t("{act}: {name} has done it.", words));
       else if (state === "failed") toast(t("{act}: {name} has not done it. {outcome}", words));
@@ -160,9 +192,15 @@ export function createFlying(store, { failed, page }) {
     timer = setInterval(() => {
       const { commands } = store.state;
       const isBusy = mission() && (isOnItsWay(mission()) || commands?.some(isOpen));
-      if (!document.hidden && isBusy) void readCommands();
+      if (document.hidden || !isBusy) return;
+      void readCommands();
+      if (Date.now() - returnsAt >= RETURNS_EVERY_MS) void readReturns();
     }, POLL_MS);
-    store.listen(["mission"], ({ mission: now }) => now && store.state.commands === null && void readCommands());
+    store.listen(["mission"], ({ mission: now }) => {
+      if (!now || store.state.commands !== null) return;
+      void readCommands();
+      void readReturns();
+    });
     document.addEventListener("visibilitychange", () => !document.hidden && void readCommands());
   }
 

@@ -43,7 +43,7 @@ const store = createStore({
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
   tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], litReturn: null, hand: null,
-  commands: null, isDispatching: false,
+  commands: null, returns: null, connections: new Map(), isDispatching: false,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;

@@ -3,6 +3,7 @@
 import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
+import { changesOf } from "./hand_route.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
@@ -195,9 +196,17 @@ export function lastPlanOf({ lastPlan, mission }) {
   return lastPlan ?? mission?.last_plan ?? null;
 }
 
-/** Whose profile and reasons are shown where nobody has chosen: the longest route's. Null where nobody flies. */
-export function shownRoute({ plan, lookedAt, chosenRoute }) {
+/** The route that is changed by hand, as it would be flown: with the waypoints of the server's last look at it. */
+function wishedRoute(route, { look, points, original }) {
+  if (!look?.flown || !changesOf(points, original)) return route;
+  return { ...route, ...look.flown, length_m: look.length_m, duration_s: look.duration_s, isWished: true };
+}
+
+/** Whose profile and reasons are shown: the route that is changed by hand; where nobody has chosen one, the longest. Null where nobody flies. */
+export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
   const flown = routesOf(plan).filter((route) => route.geometry);
+  const changed = hand && flown.find((route) => route.sequence === hand.sequence);
+  if (changed) return wishedRoute(changed, hand);
   return [lookedAt, chosenRoute].map((sequence) => flown.find((route) => route.sequence === sequence)).find(Boolean) ?? flown.sort((a, b) => b.length_m - a.length_m)[0] ?? null;
 }
 

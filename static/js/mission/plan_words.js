@@ -43,6 +43,9 @@ const SENTENCES = [
   [/^The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach\.$/, () => t("The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.")],
   [/^As drawn, over the ground and what stands tall, a route with it takes ([\d,.]+) Wh more than the battery of (.+) may give\.$/, (missing, name) => t("As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.", { missing: figure(missing), name })],
   [/^Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it\.$/, () => t("Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.")],
+  [/^From its other targets (.+) would have to pass a mast or wires that cannot be flown over\.$/, (name) => t("From its other targets {name} would have to pass a mast or wires that cannot be flown over.", { name })],
+  [/^(.+) would have to pass a mast or wires that cannot be flown over\.$/, (name) => t("{name} would have to pass a mast or wires that cannot be flown over.", { name })],
+  [/^A UAV can get there, but not on one route with its other targets\. Add a UAV\.$/, () => t("A UAV can get there, but not on one route with its other targets. Add a UAV.")],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 

@@ -17,15 +17,24 @@ export function openChanges(selection, changes) {
   return (changes ?? [])
     .map((change) => {
       const uav = selection.uavs.find(({ id }) => id === change.id);
-      return { ...change, isThere: Boolean(uav), figures: change.figures.filter(({ name, kept }) => uav && uav[name] !== undefined && isSame(uav[name], kept)) };
+      const hasStill = (name, value) => uav && uav[name] !== undefined && isSame(uav[name], value);
+      const said = (change.said ?? []).filter((one) => uav?.own_figures?.includes(one.name) && hasStill(one.name, one.said));
+      return { ...change, isThere: Boolean(uav), figures: change.figures.filter(({ name, kept }) => hasStill(name, kept)), said };
     })
-    .filter(({ isThere, figures, state }) => isThere && (figures.length > 0 || state !== null));
+    .filter(({ isThere, figures, state, said }) => isThere && (figures.length > 0 || state !== null || said.length > 0));
 }
 
 /** The same selection with the figures that the fleet has now. */
 export function withPresentFigures(selection, changes) {
   const taken = new Map(changes.map(({ id, figures }) => [id, Object.fromEntries(figures.map(({ name, now }) => [name, now]))]));
   return { ...selection, uavs: selection.uavs.map((uav) => (taken.has(uav.id) ? { ...uav, ...taken.get(uav.id) } : uav)) };
+}
+
+/** The same selection with the figures of the fleet in place of those that were said for the mission alone. */
+export function withFleetFigures(selection, changes) {
+  const taken = new Map(changes.map(({ id, said }) => [id, said]));
+  const ofFleet = (uav, said) => ({ ...uav, ...Object.fromEntries(said.map(({ name, now }) => [name, now])), own_figures: uav.own_figures.filter((own) => !said.some(({ name }) => name === own)) });
+  return { ...selection, uavs: selection.uavs.map((uav) => (taken.get(uav.id)?.length ? ofFleet(uav, taken.get(uav.id)) : uav)) };
 }
 
 /** Values typed for a UAV in a mission. `known` is the UAV of the fleet: what is left empty is as there, what is typed otherwise is the mission's own. */
@@ -80,7 +89,8 @@ const STATE_WORDS = {
 };
 
 /** "Kite: battery 56.6 → 40 Wh, is in maintenance." */
-export function changeWords({ name, figures, state, message }) {
-  const told = [...figures.map(figureWords), ...(state ? [STATE_WORDS[state]] : [])];
+export function changeWords({ name, figures, state, message, said = [] }) {
+  const ofFleet = said.map(({ name: figure, then, now }) => t("{change} in the fleet, but not in this mission", { change: figureWords({ name: figure, kept: then, now }) }));
+  const told = [...figures.map(figureWords), ...(state ? [STATE_WORDS[state]] : []), ...ofFleet];
   return told.length ? `${name}: ${told.join(", ")}.` : message;
 }

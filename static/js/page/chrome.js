@@ -101,6 +101,6 @@ export function menuOf(label, items) {
   return h(
     "div",
     { class: "menu float", role: "group", "aria-label": label },
-    items.map((item) => h("button", { type: "button", onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.label)),
+    items.map((item) => h("button", { type: "button", disabled: Boolean(item.reason), title: item.reason || null, onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.label)),
   );
 }

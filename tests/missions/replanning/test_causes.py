@@ -6,7 +6,6 @@ import shapely
 from shapely.geometry import LineString
 
 from inspection.models import NoFlyZone
-from missions.flight_plan.performance import Performance
 from missions.models import CommandKind, OfferState, ReplanOffer
 from missions.services.replanning import accept_offer, suggest, suggest_for_zones
 from tests.missions import worlds
@@ -38,7 +37,7 @@ def middle_of_last_visits(flight: Flight, place: int) -> tuple[float, float]:
 
 def test_a_zone_that_comes_across_a_route_is_gone_round(flight):
     assert suggest_for_zones() == []
-    zone = worlds.zone_around(middle_of_last_visits(flight, 0), half_deg=0.0008)
+    zone = worlds.zone_around(middle_of_last_visits(flight, 1), half_deg=0.0008)
     (offer,) = suggest_for_zones()
     assert (offer.code, offer.cause["zone"]) == ("zone-active", zone.pk)
     assert suggest_for_zones() == []
@@ -72,9 +71,9 @@ def test_a_uav_before_whose_nose_the_zone_lies_is_to_be_held_first(flight):
 
 def test_a_battery_that_does_not_last_gives_its_targets_to_the_other(tmp_path):
     ground(tmp_path / "hill.tif", 100.0)
-    flight = two_in_the_air(somebody(), performance=Performance(battery_wh=150.0))
+    flight = two_in_the_air(somebody(), battery_wh=150.0)
     tern = flight.uavs[0]
-    flight.fly_to(0, 2, 0.5, battery_percent=40.0)
+    flight.fly_to(0, 2, 0.5, battery_percent=25.0)
     flight.fly_to(1, 2, 0.5, battery_percent=95.0)
     offer = suggest(mission_id=flight.mission.pk, code="battery-short", cause={"uav": tern.pk})
     offer = worked_out(offer, job_of(offer))

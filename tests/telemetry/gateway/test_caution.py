@@ -2,7 +2,8 @@
 
 import asyncio
 import time
-from collections import deque
+from collections import Counter, deque
+from datetime import timedelta
 from types import SimpleNamespace
 from uuid import uuid4
 
@@ -13,9 +14,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from missions.mavlink.content import FlightLoad, MissionItem
+from missions.mavlink.frames import frames_of_datagram
 from missions.mavlink.frozen import TakeOff
+from missions.mavlink.signing import FrameWriter
 from missions.models import CommandAxis, CommandKind
-from missions.services.commands import claim_commands
+from missions.services.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway
 from telemetry.gateway.desk import MOST_UPLOADS, Desk
@@ -23,12 +26,14 @@ from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session
+from telemetry.gateway.store import Store
 from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.flown import Flown
 from telemetry.ground_station.orders import Order
 from telemetry.ground_station.rules import CommandRules
-from telemetry.ground_station.vehicle_state import VehicleState
+from telemetry.ground_station.vehicle_state import MOST_PARAMETERS, VehicleState
 from telemetry.models import UavLink
-from telemetry.services.links import save_links, take_leases
+from telemetry.services.links import Lease, save_links, take_leases
 from tests.telemetry.gateway.station import unsigned_uav
 
 HERE = LonLat(10.0, 56.0)
@@ -221,3 +226,100 @@ def test_when_a_vehicle_was_heard_is_told_by_the_databases_clock(monkeypatch, tm
     (ago_s,) = UavLink.objects.annotate(ago=Now() - F("heard_at")).values_list("ago", flat=True)
     assert 1.0 <= ago_s.total_seconds() < 4.0
     assert take_leases(uav_ids=[uav.pk], holder="two/1", lease_s=10.0) == []
+
+
+@pytest.mark.django_db
+def test_two_gateways_of_one_name_do_not_take_uavs_from_each_other():
+    uav = unsigned_uav(7)
+    values = {"uav_ids": [uav.pk], "lease_s": 10.0}
+    assert take_leases(holder="gateway/one", **values)
+    assert take_leases(holder="gateway/two", **values) == [], "it runs"
+    UavLink.objects.update(lease_expires_at=Now() + timedelta(seconds=7))
+    assert take_leases(holder="other/one", **values) == []
+    assert take_leases(holder="gateway/two", **values), "it was started again"
+
+
+@pytest.mark.django_db
+def test_what_a_gateway_had_claimed_waits_for_no_lease_once_another_serves_the_uav():
+    uav, other = unsigned_uav(7), unsigned_uav(8)
+    for one in (uav, other):
+        queue_command(uav=one, kind=CommandKind.ABORT, actor=None)
+    claimed = {"limit": 10, "lease_s": 10.0, "uav_ids": [uav.pk, other.pk]}
+    for_them = claim_commands(holder="one/1", **claimed)
+    assert len(for_them) == 2 and claim_commands(holder="two/1", **claimed) == []
+    take_leases(uav_ids=[uav.pk], holder="two/1", lease_s=10.0)
+    (abort,) = claim_commands(holder="two/1", **claimed)
+    assert (abort.uav_id, abort.attempts) == (uav.pk, 2)
+    assert list(renew_claims(holder="one/1", lease_s=10.0)) == [command.pk for command in for_them if command.uav_id == other.pk]
+
+
+def test_a_vehicle_that_says_too_much_keeps_to_its_room():
+    session = Session(KnownUav(1, 1, "Tern", 7, True, None, None), deque(), link_id=1)
+    session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 60.0)
+    writer, peer = FrameWriter(7, 1), SimpleNamespace(name="udp", send=lambda _: None)
+    in_mission = mavlink.MAVLink_heartbeat_message(2, mavlink.MAV_AUTOPILOT_PX4, 1 | 128, MISSION, 4, 3)
+    messages = [in_mission, mavlink.MAVLink_extended_sys_state_message(0, IN_AIR)]
+    messages += [mavlink.MAVLink_mission_item_reached_message(number % 7) for number in range(500)]
+    messages += [mavlink.MAVLink_param_value_message(f"P{number}".encode(), 1.0, 9, 1, 0) for number in range(MOST_PARAMETERS + 50)]
+    for message in messages:
+        for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
+            session.receive(frame, peer, time.time())
+    assert [flown.item for flown in session.flown] == [0, 499 % 7], "the first, which may be being told, and the last"
+    assert len(session.state.parameters) == MOST_PARAMETERS
+
+
+def test_one_that_sends_far_too_much_takes_no_room_from_the_others():
+    records = [SimpleNamespace(uav_id=1 if number % 10 else 2, number=number) for number in range(100)]
+    store = Store(None, "one/1", 50, list, lambda _: None, records=deque(records))
+    store._drop_overflow()
+    kept = {uav_id: [record.number for record in store.records if record.uav_id == uav_id] for uav_id in (1, 2)}
+    assert kept == {1: [number for number in range(100) if number % 10][-40:], 2: list(range(0, 100, 10))}
+    assert store.lost == 50
+
+
+def test_a_clock_that_was_set_back_makes_nobody_wait_for_it():
+    session = Session(KnownUav(1, 1, "Tern", 7, True, None, None), deque(), link_id=1)
+    session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 60.0)
+    first, other = (SimpleNamespace(name=name, send=lambda _: None) for name in ("first", "other"))
+    writer, now_s = FrameWriter(7, 1), time.time()
+
+    def hear(peer, at_s: float) -> None:
+        for frame in frames_of_datagram(writer.frame_of(mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3), 0.0), Counter()):
+            session.receive(frame, peer, at_s)
+
+    hear(first, now_s)
+    assert session.is_served(now_s, 5.0)
+    hour_ago_s = now_s - 3_600.0
+    assert not session.is_served(hour_ago_s, 5.0), "nobody knows how long ago it was heard"
+    hear(other, hour_ago_s)
+    assert session.peer is other and not session.losses, "the first one may have been silent for long"
+
+
+@pytest.mark.django_db
+@pytest.mark.parametrize(("facts", "told"), [({"is_in_air": True}, [Flown(6, is_reached=False, is_down=True)]), ({"is_in_air": False}, [])])
+def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, told):
+    uav = unsigned_uav(7)
+    UavLink.objects.create(uav=uav, mode="AUTO", is_armed=True, **facts)
+    (lease,) = take_leases(uav_ids=[uav.pk], holder="one/2", lease_s=10.0)
+    session = Session(KnownUav(uav.pk, uav.organisation_id, uav.name, 7, True, None, None), deque(), link_id=1)
+    session.serve(lease, time.monotonic() + 60.0)
+    writer, peer = FrameWriter(7, 1), SimpleNamespace(name="udp", send=lambda _: None)
+    landed = mavlink.MAVLink_extended_sys_state_message(0, ON_GROUND)
+    for message in (mavlink.MAVLink_mission_current_message(7), landed, mavlink.MAVLink_heartbeat_message(2, 3, 1, 3, 3, 3), landed):
+        for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
+            session.receive(frame, peer, time.time())
+    assert session.flown == told
+
+
+def test_a_vehicle_that_comes_back_must_say_how_it_is_before_anything_is_sent(monkeypatch):
+    """It may have been armed meanwhile: a new list would change where it flies."""
+    session = Session(KnownUav(1, 1, "Tern", 7, True, None, None), deque(), link_id=1)
+    session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 3_600.0)
+    writer, peer, began_s = FrameWriter(7, 1), SimpleNamespace(name="udp", send=lambda _: None), time.monotonic()
+    heartbeat = mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3)
+    attitude = mavlink.MAVLink_attitude_message(1_000, 0, 0, 0, 0, 0, 0)
+    for at_s, message, is_served in ((0.0, heartbeat, True), (600.0, attitude, False), (600.5, heartbeat, True)):
+        monkeypatch.setattr(time, "monotonic", lambda at_s=at_s: began_s + at_s)
+        for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
+            session.receive(frame, peer, 1.7e9 + at_s)
+        assert session.is_served(1.7e9 + at_s, 5.0) is is_served

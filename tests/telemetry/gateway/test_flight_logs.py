@@ -1,14 +1,18 @@
 """A log of each flight, in the form that the tools of MAVLink read."""
 
+import asyncio
 import shutil
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from telemetry.gateway.flight_log import FlightRecorder
+from telemetry.gateway.flights import DISARMED_FOR_S, Flights
+from telemetry.gateway.options import Options
 from telemetry.models import FlightLog
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, unsigned_uav, wait_for
 from tests.workspace.people import somebody
@@ -77,6 +81,22 @@ def test_a_log_that_a_dead_gateway_left_open_is_closed_by_the_next(tmp_path):
         left = wait_for(lambda: FlightLog.objects.filter(path="left.tlog", ended_at__isnull=False).first())
     assert left.size_bytes == 99
     assert FlightLog.objects.filter(ended_at=None).count() == 0
+
+
+def test_a_vehicle_that_arms_and_disarms_all_the_time_keeps_to_one_file(tmp_path):
+    flights = Flights(Options([], [], "test", tmp_path))
+    uav, state = SimpleNamespace(uav_id=1, system=7, name="Tern"), SimpleNamespace(is_armed=True)
+    session = SimpleNamespace(uav=uav, state=state, log=None, heard_s=1_000.0)
+    for number in range(200):
+        state.is_armed = number % 2 == 0
+        flights.watch(session, 1_000.0 + number / 100)
+    assert len(list(tmp_path.rglob("*.tlog"))) == 1 and session.log is not None
+    asyncio.run(flights.sync(1_002.0 + DISARMED_FOR_S))
+    assert session.log is None
+    state.is_armed = True
+    flights.watch(session, 1_010.0)
+    assert len(list(tmp_path.rglob("*.tlog"))) == 2, "the next flight"
+    flights.end_all(1_011.0)
 
 
 def test_a_log_is_not_longer_than_it_may_be(tmp_path):

@@ -101,3 +101,40 @@ def test_abort_that_is_refused_every_way_is_tried_again(flavour: str):
     vehicle.carry_out = lambda command, values: next(noes, None) or carried_out(command, values)  # type: ignore[method-assign]
     assert told(vehicle, Order.ABORT)[0] == APPLIED
     assert mode_of(vehicle) == MODES[flavour]["return"]
+
+
+@pytest.mark.parametrize("order", [Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD])
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_a_start_that_arrives_after_what_makes_it_safe_does_not_last(flavour: str, order: Order):
+    """It was sent before, and a radio held it back."""
+    vehicle, state = vehicle_of(flavour, mode="mission", in_air=True), VehicleState(7)
+    flying = vehicle.custom_mode
+    keeper = CommandKeeper(order, state, ENDS, RULES, unsettled_until_s=2.0)
+    frames = mavlink.MAVLink(None, srcSystem=vehicle.system, srcComponent=1)
+    now_s, sent = 0.0, 0
+
+    def hear(messages: list[Any]) -> None:
+        for message in messages:
+            parsed = mavlink.MAVLink(None).parse_char(message.pack(frames))
+            state.receive(parsed, now_s)
+            tell(keeper.receive(parsed, now_s) if keeper.wake_at_s is not None else [])
+
+    def tell(messages: list[Any]) -> None:
+        nonlocal sent
+        for message in messages:
+            sent += 1
+            hear(vehicle.receive(message, now_s))
+
+    hear(vehicle.reports())
+    tell(keeper.start(now_s))
+    for step in range(1, 60):
+        now_s = step / 10
+        if step == 10:
+            assert keeper.outcome is None and vehicle.custom_mode != flying
+            vehicle.custom_mode = flying
+        hear(vehicle.reports() if step % 5 == 0 else [])
+        tell(keeper.tick(now_s))
+        if keeper.outcome is not None:
+            break
+    assert (keeper.outcome, sent) == (APPLIED, 2) and now_s >= 2.0
+    assert mode_of(vehicle) == MODES[flavour]["return" if order is Order.ABORT else order.value]

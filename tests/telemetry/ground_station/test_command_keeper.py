@@ -359,3 +359,16 @@ def test_effect_that_was_reported_before_the_command_is_no_effect():
     state.receive(again, 1.0)
     keeper.receive(again, 1.0)
     assert keeper.outcome == APPLIED
+
+
+def test_the_late_answer_to_an_earlier_speed_is_no_answer_to_a_later_one():
+    state = VehicleState(7)
+    state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
+    keeper = CommandKeeper(Order.CHANGE_SPEED, state, ENDS, RULES, parameters=PARAMETERS, unsettled_until_s=2.0)
+    assert keeper.start(0.5) == []
+    message = heard(mavlink.MAVLink_command_ack_message(SPEED, mavlink.MAV_RESULT_ACCEPTED, 0, 0, *GROUND))
+    assert keeper.receive(message, 1.0) == [] and keeper.outcome is None
+    (sent,) = keeper.tick(2.0)
+    assert sent.command == SPEED
+    keeper.receive(message, 2.1)
+    assert keeper.outcome == APPLIED

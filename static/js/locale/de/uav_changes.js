@@ -21,5 +21,9 @@ export default {
   "speed|figure": "Geschwindigkeit",
   "The present figures are taken.": "Die heutigen Werte sind übernommen.",
   "UAV changed since": "UAV seither geändert",
+  "Use the fleet's instead of this mission's own": "Die der Flotte statt der eigenen dieser Mission nehmen",
+  "The fleet's figures changed since this mission was given its own.": "Werte der Flotte haben sich geändert, seit diese Mission eigene bekam.",
+  "The fleet's figures are taken.": "Die Werte der Flotte gelten jetzt.",
+  "{change} in the fleet, but not in this mission": "{change} in der Flotte, nicht aber in dieser Mission",
   "Use the present figures": "Heutige Werte übernehmen",
 };

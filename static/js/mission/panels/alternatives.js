@@ -65,7 +65,7 @@ export function alternatives(state, actions, canPlan) {
   const isBusy = ways.some(({ isBeingMade }) => isBeingMade);
   const canAsk = canPlan && !isBusy && ways.some(({ result, fault }) => !result && !fault);
   return [
-    h("p", { class: "quiet-text" }, [t("One plan of the same targets for each. The best figure of a column is bold."), differ(ways) && t("Plans that reach fewer targets do not count for it."), openChanges(state.selection, state.mission?.uav_changes).length > 0 && t("All are planned with the figures that this mission has of its UAVs.")].filter(Boolean).join(" ")),
+    h("p", { class: "quiet-text" }, [t("One plan of the same targets for each. The best figure of a column is bold."), differ(ways) && t("Plans that reach fewer targets do not count for it."), openChanges(state.selection, state.mission?.uav_changes).some(({ figures }) => figures.length > 0) && t("All are planned with the figures that this mission has of its UAVs.")].filter(Boolean).join(" ")),
     h(
       "div",
       { class: "ways-place" },

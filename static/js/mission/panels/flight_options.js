@@ -28,7 +28,7 @@ export function mountFlightOptions(store, actions) {
   byId("flight-options").append(
     h("div", { class: "flight-option" }, h("label", { for: departure.id, class: "field-label" }, t("Departure")), h("div", { class: "departure-row" }, departure, now, anyTime), said, legal),
     h("div", { class: "flight-option", role: "group", "aria-labelledby": "air-title" }, h("div", { class: "option-head" }, h("h3", { id: "air-title", class: "field-label" }, t("Conditions")), changeAir), air),
-    h("label", { class: "switch-row" }, h("span", {}, t("Charging on towers"), h("small", { class: "caption" }, t("UAVs may stop on a tower to charge"))), charges),
+    h("label", { class: "switch-row" }, h("span", {}, t("Charging on towers"), h("small", { class: "caption" }, t("UAVs that fly once may stop on a tower to charge"))), charges),
     powerField,
   );
   changeAir.setAttribute("aria-label", t("Change the conditions"));

@@ -5,23 +5,27 @@ import { routeNumber } from "../../map/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { language, localeOf, t } from "../../text.js";
 import { exactText } from "../../units.js";
-import { boardOf, boardWords, commandWords, flightOf, flightToSend, flyersOf, isMixed, isOnItsWay, KINDS, stageActs, stageWords, timesOf, whyNoStart } from "../flying.js";
+import { boardOf, boardWords, commandWords, flightOf, flightToSend, flyersOf, isMixed, isOnItsWay, KINDS, stageActs, stageWords, timesOf, whyNoStart, whyNotMoved } from "../flying.js";
+import { returnOf, returnSaid } from "../own_return.js";
 
 const BESIDE = ["hold", "return", "land"];
 const MORE = [["arm", "plane-takeoff"], ["take-off", "plane-takeoff"], ["pause", "timer"], ["resume", "refresh-cw"], ["change-speed", "settings"], ["abort", "octagon-alert"]];
 
+const isFlown = ({ state }) => ["approved", "dispatched", "active"].includes(state);
 const secondsText = (iso) => new Date(iso).toLocaleTimeString(localeOf(language), { timeZone: document.documentElement.dataset.timeZone || undefined });
 
 /** flying: see flying_actions.js; save(): a copy. */
 export function mountFlying(store, flying, { canFly, saveCopy }) {
   const list = byId("flyers");
+  const connectionOf = ({ uav }) => store.state.connections.get(uav) ?? null;
   const speedOf = (place) => store.state.mission.uavs[place].cruise_speed_mps;
 
   function row(flyer, mission, commands) {
     const board = boardOf(commands, flyer.uav);
-    const { words, image, level, share } = boardWords(board);
+    const { words, image, level, share } = boardWords(board, connectionOf(flyer));
     const flight = flightOf(commands, flyer.uav);
     const said = flight && commandWords(flight);
+    const home = isFlown(mission) && returnSaid(returnOf(store.state.returns, flyer.place));
     return h(
       "li",
       { class: `flyer route-${routeNumber(flyer.place)}`, "aria-label": flyer.name },
@@ -30,17 +34,18 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
         h("strong", {}, flyer.name),
         h("p", { class: `flyer-board ${level ?? ""}`, role: board && isMixed(board) ? "alert" : null }, icon(image, "small"), h("span", {}, words)),
         share !== undefined && h("div", { class: "progress", role: "progressbar", "aria-label": t("Sending to {name}", { name: flyer.name }), "aria-valuemin": 0, "aria-valuemax": 100, "aria-valuenow": Math.round(share * 100) }, h("i", { style: `width:${Math.max(4, share * 100)}%` })),
-        said && h("p", { class: `flyer-board ${said.level ?? ""}`, title: timesOf(flight, secondsText) }, icon(said.image, "small"), h("span", {}, said.words))),
+        said && h("p", { class: `flyer-board ${said.level ?? ""}`, title: timesOf(flight, secondsText) }, icon(said.image, "small"), h("span", {}, said.words)),
+        home && h("p", { class: `flyer-board ${home.level ?? ""}` }, icon(home.image, "small"), h("span", {}, home.words))),
       canFly && isOnItsWay(mission) && h("div", { class: "flyer-acts", role: "group", "aria-label": t("Commands to {name}", { name: flyer.name }) }, acts({ ...flyer, speed_mps: speedOf(flyer.place) }, mission, commands)),
     );
   }
 
   function acts(flyer, mission, commands) {
-    const next = flightToSend(flyer, commands);
+    const next = flightToSend(flyer, commands, connectionOf(flyer));
     const whyNot = whyNoStart(mission, flyer, commands);
     const button = (words, act, { image = null, reason = "" } = {}) => h("button", { type: "button", class: "button small", disabled: Boolean(reason), title: reason || null, onclick: act }, image && icon(image, "small"), words);
     const more = h("button", { type: "button", class: "icon-button tight", "aria-haspopup": "true", "aria-expanded": "false", "aria-label": t("More for {name}", { name: flyer.name }) }, icon("ellipsis"));
-    more.addEventListener("click", () => toggleMenu(more, () => menuOf(t("Commands to {name}", { name: flyer.name }), MORE.map(([kind, image]) => ({ icon: image, label: KINDS[kind], act: () => void flying.command(flyer, kind) })))));
+    more.addEventListener("click", () => toggleMenu(more, () => menuOf(t("Commands to {name}", { name: flyer.name }), MORE.map(([kind, image]) => ({ icon: image, label: KINDS[kind], reason: whyNotMoved(kind, mission, flyer, commands), act: () => void flying.command(flyer, kind) })))));
     const isBeingRevoked = Boolean(mission.approval?.revoke_requested_at);
     return [
       next !== null && !isBeingRevoked ? button(next > 1 ? t("Send flight {flight}", { flight: next }) : t("Send again"), () => void flying.send(flyer, next), { image: "send" }) : button(KINDS.start, () => void flying.command(flyer, "start"), { image: "plane-takeoff", reason: whyNot }),
@@ -95,7 +100,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
     byId("revoke").addEventListener("click", () => void flying.revoke());
     byId("abort").addEventListener("click", () => void flying.abort());
   }
-  store.listen(["mission", "commands", "isDispatching"], draw);
+  store.listen(["mission", "commands", "returns", "connections", "isDispatching"], draw);
 
   /** Shift+P H R L for the route that is chosen, or the only one: the question opens, nothing is done at once. */
   function ask(kind) {

@@ -18,11 +18,12 @@ export function mountProfile(store, { grounds }) {
   const place = byId("route-profile");
   let drawn = null; // { route, flight, chart, width_px, longest_m }
 
-  const longestOf = ({ plan, why, ...state }) => Math.max(plan.result.longest_route_m, ...(why?.compare ? (lastPlanOf(state)?.routes ?? []) : []).map((route) => route.length_m));
+  const longestOf = ({ plan, why, ...state }, route) => Math.max(plan.result.longest_route_m, route.length_m, ...(why?.compare ? (lastPlanOf(state)?.routes ?? []) : []).map((route) => route.length_m));
 
   const departsAt = () => store.state.plan?.result.departs_at ?? null;
 
   async function draw(state) {
+    if (state.hand?.dragged) return; // the ground is asked about once it is dropped
     const route = state.plan ? shownRoute(state) : null;
     place.hidden = !route;
     if (!route) {
@@ -31,7 +32,7 @@ export function mountProfile(store, { grounds }) {
       place.replaceChildren();
       return;
     }
-    const [width_px, longest_m] = [stripRoom(dock), longestOf(state)];
+    const [width_px, longest_m] = [stripRoom(dock), longestOf(state, route)];
     if (drawn?.route.waypoints === route.waypoints && drawn.width_px === width_px && drawn.longest_m === longest_m) return;
     let ground = null;
     let fault = "";
@@ -81,7 +82,7 @@ export function mountProfile(store, { grounds }) {
     drawn.chart.light(target < 0 ? null : target);
   }
 
-  store.listen(["plan", "lookedAt", "chosenRoute", "why", "lastPlan"], draw);
+  store.listen(["plan", "lookedAt", "chosenRoute", "why", "lastPlan", "hand"], draw);
   store.listen(["along"], follow);
   store.listen(["litTarget"], light);
   new ResizeObserver(() => {
@@ -113,7 +114,7 @@ function readingWords({ at_m, height_m, ground_m, above_m, arrival_s, battery_pe
 function wholeWords(route, flight, fault, departs_at) {
   const heights = flight.path.map(({ height_m }) => height_m);
   const height = heightText(Math.max(...heights));
-  const lines = [line(route.name, true), line(flight.isFlat ? t("up to {height} above take-off", { height }) : t("up to {height} above sea level", { height }))];
+  const lines = [line(route.name, true), ...(route.isWished ? [line(t("as changed by hand"))] : []), line(flight.isFlat ? t("up to {height} above take-off", { height }) : t("up to {height} above sea level", { height }))];
   const landing = landing_s(route);
   if (landing !== null) lines.push(line(t("done at {time}", { time: timeAt(departs_at, landing) })));
   const battery = batteryOf(route);

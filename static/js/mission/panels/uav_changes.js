@@ -14,7 +14,7 @@ export function toldChanges({ mission, selection, plan, planIsStored }) {
   const isOfPlan = planIsStored && isPlanCurrent({ plan, selection });
   return openChanges(selection, mission.uav_changes)
     .map((change) => (isOfPlan ? change : { ...change, state: null }))
-    .filter(({ figures, state }) => figures.length > 0 || state !== null);
+    .filter(({ figures, state, said }) => figures.length > 0 || state !== null || said.length > 0);
 }
 
 /** Null where nothing has changed. */
@@ -23,8 +23,14 @@ export function uavNotice(state, actions, canPlan) {
   if (!changes.length) return null;
   const mayChange = canPlan && CHANGEABLE.includes(state.mission.state);
   const hasFigures = changes.some(({ figures }) => figures.length > 0);
-  const act = hasFigures ? { label: t("Use the present figures"), act: actions.takePresentFigures } : { label: t("Plan again"), act: actions.plan };
-  const headline = isPlanCurrent(state)
+  const isOfFleetAlone = !hasFigures && changes.every((change) => change.state === null);
+  const acts = [
+    hasFigures ? { label: t("Use the present figures"), act: actions.takePresentFigures } : !isOfFleetAlone && { label: t("Plan again"), act: actions.plan },
+    changes.some(({ said }) => said.length > 0) && { label: t("Use the fleet's instead of this mission's own"), act: actions.takeFleetFigures },
+  ].filter(Boolean);
+  const headline = isOfFleetAlone
+    ? t("The fleet's figures changed since this mission was given its own.")
+    : isPlanCurrent(state)
     ? tn(changes.length, "A UAV changed since this was planned.", "{count} UAVs changed since this was planned.")
     : tn(changes.length, "A UAV changed since this mission was made.", "{count} UAVs changed since this mission was made.");
   const more = changes.length - MOST_TOLD;
@@ -38,7 +44,7 @@ export function uavNotice(state, actions, canPlan) {
       h("p", {}, h("strong", {}, headline)),
       h("ul", { class: "causes" }, changes.slice(0, MOST_TOLD).map((change) => h("li", {}, changeWords(change)))),
       more > 0 && h("p", { class: "caption" }, tn(more, "{count} more UAV", "{count} more UAVs")),
-      mayChange && h("p", {}, h("button", { type: "button", class: "text-button", onclick: act.act }, act.label)),
+      mayChange && h("p", {}, acts.map(({ label, act }) => h("button", { type: "button", class: "text-button", onclick: act }, label))),
     ),
   );
 }

@@ -4,7 +4,7 @@ import { h } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
 import { t, tn } from "../../text.js";
 import { durationText, lengthText } from "../../units.js";
-import { counterpart, movesBetween, summaryOfPlan } from "../compare.js";
+import { counterpart, endsBetween, movesBetween, summaryOfPlan } from "../compare.js";
 import { moreOrLess } from "./routes.js";
 
 const MOST_MOVES = 30;
@@ -30,10 +30,22 @@ function table(now, last) {
     const old = counterpart(route, last);
     const figures = (of) => (of?.length_m > 0 ? `${lengthText(of.length_m)}, ${durationText(of.duration_s)}` : "—");
     const differences = [moreOrLess(route.length_m - (old?.length_m ?? 0), 50, lengthText), moreOrLess(route.duration_s - (old?.duration_s ?? 0), 30, durationText)].filter((words) => words !== "=");
+    differences.push(...endWords(endsBetween(old, route)));
     const difference = differences.join(", ") || t("the same");
     return h("tr", {}, h("th", { scope: "row", class: `route-${routeNumber(sequence)}` }, h("span", { class: "why-uav" }, h("span", { class: "letter" }, routeLetter(sequence)), route.uav)), h("td", {}, figures(old)), h("td", {}, figures(route)), h("td", {}, difference));
   });
   return h("table", { class: "why-table" }, h("thead", {}, h("tr", {}, heads.map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, rows));
+}
+
+const END_WORDS = { hover: t("hovering at its last target"), return: t("at its start"), land: t("on the ground at its last target"), base: t("at the nearest base") };
+
+/** "starts 1.2 km from before", "ends at its start instead of hovering at its last target". */
+function endWords({ moved_m, from, to }) {
+  const place = ({ end_action, base }) => base ?? END_WORDS[end_action];
+  return [
+    moved_m > 0 && t("starts {distance} from before", { distance: lengthText(moved_m) }),
+    to && t("ends {now} instead of {before}", { now: place(to), before: place(from) }),
+  ].filter(Boolean);
 }
 
 function gone(now, last) {

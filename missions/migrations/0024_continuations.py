@@ -8,7 +8,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('missions', '0021_live_monitoring'),
+        ('missions', '0023_fleet_figures_beside_own_ones'),
     ]
 
     operations = [

@@ -1,0 +1,6 @@
+"""Every address of a websocket."""
+
+from telemetry.websocket_urls import websocket_urlpatterns as of_telemetry
+from workspace.websocket_urls import websocket_urlpatterns as of_the_workspace
+
+websocket_urlpatterns = [*of_telemetry, *of_the_workspace]

@@ -1,0 +1,196 @@
+"""What is in the way when an autopilot is told to return or abort: it flies home by itself, as high as its own parameters say."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+import numpy as np
+from django.conf import settings
+from django.db.models.functions import Now
+from django.utils.translation import gettext as _
+
+from inspection.graph.spans import spans_of
+from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import planning_read
+from inspection.zones.reach import ZoneTable
+from missions.flight_plan.ways_home import Haven, InTheWay, Places, Trouble, WaysHome
+from missions.flight_plan.zone_facts import zones_near
+from missions.mavlink.frozen import Flight, NotARoute
+from missions.mavlink.own_return import NAMES, PARAMETERS, OwnReturn, own_return
+from missions.models import LinkKind, Mission, Route, Uav
+from missions.services.approval_document import frozen_route
+from missions.services.approved_fence import rally_points
+from missions.zone_selectors import departure_s, zone_margins
+
+STEP_M = 5.0  # by which a height is looked for that is clear
+
+
+class ReturnState(StrEnum):
+    CLEAR = "clear"
+    IN_THE_WAY = "in_the_way"
+    UNKNOWN = "unknown"  # what it would do was not read from it
+    NOT_CHECKED = "not_checked"  # it is known, and nothing that can be looked at here
+
+
+@dataclass(frozen=True)
+class ReturnCheck:
+    """Of one UAV of a mission. `height_m` counts from where it took off; `warnings` are sentences, none where all is clear.
+
+    `safe_height_m` is one at which nothing is in the way; None where it is clear, or where no height would be.
+    """
+
+    place: int
+    name: str
+    uav: int | None
+    state: ReturnState
+    warnings: tuple[str, ...] = ()
+    parameter: str | None = None
+    height_m: float | None = None
+    safe_height_m: float | None = None
+    read_at: datetime | None = None
+
+
+def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
+    """Read from the vehicle just now; what has nothing to do with its return is left out. No edit: the row's revision stays."""
+    own = {name: value for name, value in parameters.items() if name in NAMES.get(autopilot, ())}
+    if own:
+        told = {"autopilot": autopilot, "parameters": own}
+        Uav.objects.filter(pk=uav_id).update(autopilot_return=told, autopilot_return_read_at=Now())
+
+
+def return_checks(mission: Mission) -> list[ReturnCheck]:
+    """For each UAV that flies a route, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
+    routes = [route for route in mission.routes.all() if route.geometry is not None]
+    return [_check(mission, route) for route in routes]
+
+
+def _check(mission: Mission, route: Route) -> ReturnCheck:
+    flown_by, uav = route.mission_uav, route.mission_uav.uav
+    place, name, key = flown_by.sequence, flown_by.name, flown_by.uav_id
+    values = {"uav": name}
+    if uav is None:
+        return ReturnCheck(
+            place, name, key, ReturnState.UNKNOWN, (_("%(uav)s is not a UAV of the fleet: how it returns is not known.") % values,)
+        )
+    if uav.link == LinkKind.HTTP:
+        words = _("What the companion of %(uav)s does on Return and Abort is not known here: nothing on that way is checked.")
+        return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (words % values,))
+    told = uav.autopilot_return
+    own = own_return(told.get("autopilot", ""), told.get("parameters", {}))
+    if own is None:
+        words = _(
+            "%(parameter)s was not read from %(uav)s: how high it returns is not known, and the way of Return and Abort is not checked."
+        )
+        return ReturnCheck(place, name, key, ReturnState.UNKNOWN, (words % {**values, "parameter": _height_names()},))
+    facts = {"parameter": own.parameter, "height_m": own.height_m, "read_at": uav.autopilot_return_read_at}
+    if not own.is_straight:
+        words = _("By its parameters %(uav)s does not return straight at one height: the way of Return and Abort is not checked.")
+        return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (words % values,), **facts)
+    try:
+        flights = frozen_route(route, mission).flights
+    except NotARoute:
+        return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (), **facts)
+    table, ways = _ways(mission, route, flights)
+    found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
+    if not found:
+        return ReturnCheck(place, name, key, ReturnState.CLEAR, **facts)
+    safe_m = _safe_height_m(ways, own)
+    warnings = [*dict.fromkeys(_words(trouble, table) for trouble in found), _advice(own, safe_m)]
+    return ReturnCheck(place, name, key, ReturnState.IN_THE_WAY, tuple(warnings), **facts, safe_height_m=safe_m)
+
+
+def _height_names() -> str:
+    return " / ".join(dict.fromkeys(name for groups in PARAMETERS.values() for name in groups[0]))
+
+
+def _ways(mission: Mission, route: Route, flights: Sequence[Flight]) -> tuple[ZoneTable, list[WaysHome]]:
+    """Of each flight: home from everywhere, and to the nearest rally point from where that is nearer."""
+    ground, margins = planning_read().ground(), zone_margins()
+    rally = rally_points(mission, route.mission_uav.sequence)
+    positions = [waypoint.position for flight in flights for waypoint in flight.waypoints]
+    positions += [flight.take_off.position for flight in flights] + [place for place, _height_m in rally]
+    began_s = departure_s(mission)
+    window = None
+    if began_s is not None:
+        departs_s = began_s + route.departs_s
+        window = (departs_s, departs_s + route.duration_s + settings.FLIGHT_RULES.longest_flight_s)
+    near, facts = zones_near(ground.table, np.array(positions, dtype=np.float64), margins, window)
+    spans = spans_of(ground.network())
+    ways = []
+    for flight in flights:
+        havens = [Haven(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
+        for haven, places in _places_by_haven(flight, Haven(flight.take_off.position), havens):
+            ways.append(
+                WaysHome(
+                    places, haven, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
+                    zones=facts, margins=margins, clearance_m=settings.FLIGHT_RULES.clearance_m,
+                )
+            )  # fmt: skip
+    return near, ways
+
+
+def _places_by_haven(flight: Flight, home: Haven, rally: Sequence[Haven]) -> Iterable[tuple[Haven, Places]]:
+    waypoints = flight.waypoints
+    places = Places.along(
+        np.array([waypoint.position for waypoint in waypoints], dtype=np.float64),
+        np.array([waypoint.altitude_relative_m for waypoint in waypoints], dtype=np.float64),
+        [waypoint.sequence for waypoint in waypoints],
+    )
+    yield home, places
+    if not rally:
+        return
+    nearest = places.nearest_of([home.position, *(haven.position for haven in rally)])
+    for number, haven in enumerate(rally, start=1):
+        own = places.only(nearest == number)
+        if len(own):
+            yield haven, own
+
+
+def _levels(way: WaysHome, own: OwnReturn) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    return way.levels_m(lambda height_m, away_m, haven_m, is_rally: own.level_m(height_m, away_m, haven_m, is_rally=is_rally))
+
+
+def _safe_height_m(ways: Sequence[WaysHome], own: OwnReturn) -> float | None:
+    """The lowest in whole metres, or a little above it, that is clear from everywhere and comes no higher than flights may."""
+    most_m = settings.FLIGHT_RULES.max_agl_m
+    highest_m = max(most_m, *(way.most_agl_m(_levels(way, own)) for way in ways))
+    lowest_m = max(own.height_m, *(way.lowest_safe_m() for way in ways))
+    if not math.isfinite(lowest_m):
+        return None
+    height_m = float(math.ceil(lowest_m))
+    while height_m <= most_m:
+        other = own.at_height(height_m)
+        levels = [_levels(way, other) for way in ways]
+        if any(way.most_agl_m(levels_m) > highest_m for way, levels_m in zip(ways, levels, strict=True)):
+            return None
+        if not any(way.troubles(levels_m) for way, levels_m in zip(ways, levels, strict=True)):
+            return height_m
+        height_m += STEP_M
+    return None
+
+
+def _words(trouble: Trouble, table: ZoneTable) -> str:
+    values = {"first": trouble.first + 1, "last": trouble.last + 1, "height": f"{trouble.level_m:.0f}"}
+    if trouble.to_end and trouble.last > trouble.first:
+        where = _("From waypoint %(first)s on") % values
+    elif trouble.last > trouble.first:
+        where = _("Between waypoints %(first)s and %(last)s") % values
+    else:
+        where = _("On the way to waypoint %(first)s") % values
+    goes = _("the way to the rally point") if trouble.is_rally else _("the way home")
+    values |= {"where": where, "way": goes, "zone": "" if trouble.zone is None else table.names[trouble.zone]}
+    return {
+        InTheWay.ZONE: _("%(where)s, on Return and Abort %(way)s crosses %(zone)s at %(height)s m above the take-off."),
+        InTheWay.OBSTACLE: _("%(where)s, on Return and Abort %(way)s passes towers or wires too low, at %(height)s m above the take-off."),
+        InTheWay.GROUND: _("%(where)s, on Return and Abort %(way)s comes too near the ground, at %(height)s m above the take-off."),
+        InTheWay.UNKNOWN_GROUND: _("%(where)s, the ground below %(way)s is not known."),
+    }[trouble.kind] % values
+
+
+def _advice(own: OwnReturn, safe_m: float | None) -> str:
+    if safe_m is None:
+        return _("No height of %(parameter)s is clear: use Hold and Land instead.") % {"parameter": own.parameter}
+    values = {"parameter": own.parameter, "value": own.value_for(safe_m)}
+    return _("Set %(parameter)s on it to at least %(value)s, or use Hold and Land instead.") % values

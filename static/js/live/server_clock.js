@@ -1,0 +1,21 @@
+/** The server's time on a page whose own clock may be wrong: ages are counted by it. */
+
+const WINDOW_MS = 60_000;
+
+/** clock.heard("2026-…") with each word of the server; clock.now_ms() is its time by now, in milliseconds since 1970. */
+export function serverClock(ticks_ms = () => performance.now(), first_ms = Date.now()) {
+  const guess_ms = first_ms - ticks_ms();
+  let heard = []; // what the server's clock is ahead of ours, at least: a word takes its time to come, so the largest is the best
+  const newest = () => heard.filter(({ at_ms }) => ticks_ms() - at_ms <= WINDOW_MS);
+  return {
+    heard(serverTime) {
+      const at_ms = ticks_ms();
+      heard = [...newest(), { at_ms, ahead_ms: Date.parse(serverTime) - at_ms }];
+    },
+    now_ms() {
+      const last = heard.at(-1);
+      if (!last) return ticks_ms() + guess_ms;
+      return ticks_ms() + Math.max(last.ahead_ms, ...newest().map(({ ahead_ms }) => ahead_ms));
+    },
+  };
+}

@@ -1,0 +1,90 @@
+"""From what is found now to what changes: patience before an alert opens and before it closes, and one alert for one cause."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
+from telemetry.alerting.memory import Cause
+from telemetry.alerting.situation import Key, Situation
+
+RANK = {ADVISORY: 1, WARNING: 2, CRITICAL: 3}
+CLEARED, LANDED = "cleared", "landed"  # why an alert is over
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """Also of one that is open: then with a higher level, or other words."""
+
+    finding: Finding
+
+
+@dataclass(frozen=True, slots=True)
+class Closed:
+    code: str
+    subject: str
+    reason: str
+
+
+Change = Opened | Closed
+
+
+def changes(situation: Situation, detectors: Sequence[Detector]) -> list[Change]:
+    """What of the open alerts changes by this look. An open alert that goes on with the same level is Opened again with its newest words.
+
+    The level of an alert rises and does not fall: what was critical has to be seen to be over. The situation's memory is written to.
+    """
+    found: list[Change] = []
+    open_codes = {code for code, _ in situation.open_levels}
+    for detector in detectors:
+        if open_codes.intersection(detector.hidden_by):
+            continue
+        is_over = detector.needs_flight and not situation.is_in_flight
+        findings = () if is_over else detector.detect(situation)
+        if findings is None:
+            continue
+        of_detector = _changes_of(detector, situation, findings, LANDED if is_over else CLEARED)
+        open_codes |= {change.finding.code for change in of_detector if isinstance(change, Opened)}
+        found += of_detector
+    return found
+
+
+def _changes_of(detector: Detector, situation: Situation, findings: Iterable[Finding], over: str) -> list[Change]:
+    """over: why those that are found no more are over."""
+    causes, now_s = situation.memory.causes, situation.now_s
+    by_key: dict[Key, Finding] = {(finding.code, finding.subject): finding for finding in findings}
+    found: list[Change] = []
+    for key, finding in by_key.items():
+        level = _lasting_level(causes.setdefault(key, Cause()), finding.level, now_s, detector.raise_after_s)
+        is_open = situation.open_levels.get(key)
+        if is_open is not None or level is not None:
+            highest = max((entry for entry in (is_open, level) if entry is not None), key=RANK.__getitem__)
+            found.append(Opened(finding if finding.level == highest else _at_level(finding, highest)))
+    for key in {*causes, *situation.open_levels}:
+        if key[0] != detector.code or key in by_key:
+            continue
+        cause = causes.setdefault(key, Cause())
+        cause.since_s.clear()
+        cause.gone_s = now_s if cause.gone_s is None else cause.gone_s
+        if key not in situation.open_levels:
+            del causes[key]
+        elif over == LANDED or now_s - cause.gone_s >= detector.clear_after_s:
+            del causes[key]
+            found.append(Closed(*key, over))
+    return found
+
+
+def _lasting_level(cause: Cause, level: str, now_s: float, raise_after_s: float) -> str | None:
+    """The highest level at or above which it has been found for long enough."""
+    cause.gone_s = None
+    for name, rank in RANK.items():
+        if rank <= RANK[level]:
+            cause.since_s.setdefault(name, now_s)
+        else:
+            cause.since_s.pop(name, None)
+    lasting = [name for name, since_s in cause.since_s.items() if now_s - since_s >= raise_after_s]
+    return max(lasting, key=RANK.__getitem__) if lasting else None
+
+
+def _at_level(finding: Finding, level: str) -> Finding:
+    return Finding(finding.code, level, finding.message, finding.values, finding.subject, finding.details)

@@ -1,0 +1,53 @@
+"""What is left of the battery is not enough for the rest of the flight."""
+
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.memory import Memory
+from telemetry.alerting.situation import Situation
+
+CODE = "battery-short"
+EXPECTED = "%(uav)s is expected to end its flight with %(percent)s %% of its battery; %(reserve)s %% were to be left."
+EMPTY = "The battery of %(uav)s is not enough for its route: it would be empty before the end."
+LOW = "%(uav)s has %(percent)s %% of its battery left; its reserve is %(reserve)s %%."
+CLEARS_ABOVE_PERCENT = 2.0  # of what raises it
+LEAST_FLOWN_PERCENT = 6.0  # of the battery by the plan, before what it takes is compared with the plan
+READ_WITHIN_PERCENT = 1.0  # of what is reported
+RATES = (1.0, 4.0)
+
+
+def detect(situation: Situation) -> list[Finding] | None:
+    fresh, limits = situation.fresh, situation.limits
+    left_percent = None if fresh is None else fresh.measurement.battery_percent
+    if left_percent is None:
+        return None
+    place, model = situation.place, situation.model
+    reserve_percent = 20.0 if model is None else model.reserve_percent
+    rate, expected_percent = 1.0, left_percent
+    if situation.flies_mission and place is not None and model is not None and model.energy is not None:
+        used_percent = model.energy.used_at(place)
+        situation.memory.note_battery(used_percent, left_percent)
+        rate = drain_rate(situation.memory, used_percent, left_percent)
+        expected_percent = left_percent - rate * model.energy.rest_at(place)
+    warns_below = max(reserve_percent - limits.battery_margin_percent, limits.battery_critical_percent)
+    if expected_percent >= warns_below + (CLEARS_ABOVE_PERCENT if situation.is_open(CODE) else 0.0):
+        return []
+    level = CRITICAL if expected_percent < limits.battery_critical_percent else WARNING
+    words = LOW if expected_percent == left_percent else EXPECTED if expected_percent > 0.0 else EMPTY
+    values = {"uav": situation.uav.name}
+    if words is not EMPTY:
+        values |= {"percent": str(round(expected_percent)), "reserve": str(round(reserve_percent))}
+    details = {"left_percent": left_percent, "expected_percent": round(expected_percent, 1), "rate": round(rate, 2)}
+    return [Finding(CODE, level, words, values, details=details)]
+
+
+def drain_rate(memory: Memory, used_percent: float, left_percent: float) -> float:
+    """How many times as fast as planned the battery goes down: since the flight began, or of late, whichever is more."""
+    rates = [RATES[0]]
+    for planned_percent, before_percent in memory.drained:
+        planned = used_percent - planned_percent
+        if planned >= LEAST_FLOWN_PERCENT:
+            rates.append((before_percent - left_percent - READ_WITHIN_PERCENT) / planned)
+    return min(max(rates), RATES[1])
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=5.0, clear_after_s=15.0)

@@ -1,0 +1,69 @@
+"""It does not know well where it is: no fix, a weak one, or a position that jumps."""
+
+import math
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.memory import position_of
+from telemetry.alerting.situation import Situation
+from telemetry.alerting.watched import Report
+
+CODE = "gps"
+NO_FIX = "%(uav)s does not know where it is: its GPS has no fix."
+NO_POSITION = "%(uav)s reports, but not where it is."
+JUMPED = "The position of %(uav)s has jumped by %(metres)s m."
+FEW = "%(uav)s sees %(satellites)s satellites only."
+WEAK = "The position of %(uav)s is weak: its HDOP is %(hdop)s."
+FIX_IN_SPACE = 3
+MORE_SATELLITES, CLEAR_SHARE = 1, 0.85  # than raise it; of the HDOP that raises it
+LEAST_JUMP_M = 50.0
+JUMP_LASTS_S = 6.0
+BETWEEN_S = 5.0  # reports farther apart show no jump: a UAV may have flown it
+
+
+def detect(situation: Situation) -> list[Finding] | None:
+    fresh, limits = situation.fresh, situation.limits
+    if fresh is None:
+        return None
+    told, is_open = fresh.measurement, situation.is_open(CODE)
+    jump_m = _jump_m(situation, fresh)
+    found: tuple[str, str, dict[str, object]] | None = None
+    if told.gps_fix is not None and told.gps_fix < FIX_IN_SPACE:
+        found = CRITICAL, NO_FIX, {}
+    elif position_of(fresh) is None:
+        found = CRITICAL, NO_POSITION, {}
+    elif jump_m is not None:
+        found = WARNING, JUMPED, {"metres": round(jump_m)}
+    elif told.satellites is not None and told.satellites < limits.least_satellites + (MORE_SATELLITES if is_open else 0):
+        found = WARNING, FEW, {"satellites": told.satellites}
+    elif told.hdop is not None and told.hdop > limits.most_hdop * (CLEAR_SHARE if is_open else 1.0):
+        found = WARNING, WEAK, {"hdop": f"{told.hdop:.1f}"}
+    if found is None:
+        return []
+    level, words, values = found
+    details = {"gps_fix": told.gps_fix, "satellites": told.satellites, "hdop": told.hdop, "jump_m": jump_m and round(jump_m)}
+    return [Finding(CODE, level, words, {"uav": situation.uav.name, **values}, details=details)]
+
+
+def _jump_m(situation: Situation, fresh: Report) -> float | None:
+    """Of its last jump, as long as that is news. The memory is written to."""
+    memory = situation.memory
+    before = memory.before
+    if before is not None and memory.newest is fresh and memory.jumped_s != fresh.received_s:
+        here, there = position_of(fresh), position_of(before)
+        seconds = fresh.measured_s - before.measured_s
+        if here is not None and there is not None and 0.0 < seconds <= BETWEEN_S:
+            metres = _flat_m(there, here)
+            if metres >= max(LEAST_JUMP_M, situation.limits.jump_mps * seconds):
+                memory.jumped_s, memory.jump_m = fresh.received_s, metres
+    is_news = memory.jumped_s is not None and situation.now_s - memory.jumped_s <= JUMP_LASTS_S
+    return memory.jump_m if is_news else None
+
+
+def _flat_m(start: LonLat, end: LonLat) -> float:
+    north = (end.lat - start.lat) * 111_195.0
+    return math.hypot(north, (end.lon - start.lon) * 111_195.0 * math.cos(math.radians(start.lat)))
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=5.0)

@@ -1,0 +1,32 @@
+"""It flies its list, but higher or lower than approved."""
+
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.situation import Situation
+
+CODE = "height-off"
+ABOVE = "%(uav)s flies %(metres)s m above the height of its route; %(limit)s m are allowed."
+BELOW = "%(uav)s flies %(metres)s m below the height of its route; %(limit)s m are allowed."
+CLEAR_SHARE = 0.8
+
+
+def detect(situation: Situation) -> list[Finding] | None:
+    if not situation.flies_mission:
+        return []
+    place, fresh, model, limits = situation.place, situation.fresh, situation.model, situation.limits
+    if place is None or fresh is None or model is None or fresh.measurement.altitude_relative_m is None:
+        return None
+    if place.across_m > limits.off_route_critical_m:
+        return None  # which leg it would be on is not known
+    low_m, high_m = model.line.heights_at(place)
+    height_m = fresh.measurement.altitude_relative_m
+    off_m = max(height_m - high_m, low_m - height_m)
+    if off_m <= limits.height_off_m * (CLEAR_SHARE if situation.is_open(CODE) else 1.0):
+        return []
+    level = CRITICAL if off_m > limits.height_off_critical_m else WARNING
+    values = {"uav": situation.uav.name, "metres": round(off_m), "limit": round(limits.height_off_m)}
+    details = {"altitude_relative_m": round(height_m, 1), "planned_from_m": round(low_m, 1), "planned_to_m": round(high_m, 1)}
+    return [Finding(CODE, level, ABOVE if height_m > high_m else BELOW, values, details=details)]
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=5.0)

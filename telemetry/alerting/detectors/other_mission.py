@@ -1,0 +1,36 @@
+"""What it holds, or flies, is not what was approved."""
+
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.modes import ModeKind
+from telemetry.alerting.situation import Situation
+
+CODE = "other-mission"
+FLIES_OTHER = "%(uav)s flies a mission that is not the approved one."
+FLIES_UNKNOWN = "%(uav)s flies a mission, and nobody knows which: nothing approved was found on it."
+IN_DOUBT = "%(uav)s may hold another mission than the approved one: it changed after it was read back."
+BEYOND = "%(uav)s is at item %(item)s of its mission; the approved one has %(items)s."
+
+
+def detect(situation: Situation) -> list[Finding] | None:
+    held, newest = situation.held, situation.uav.newest
+    if held is None or held.is_changing:
+        return None
+    is_flown = situation.is_in_flight and situation.mode is ModeKind.MISSION
+    item = None if newest is None else newest.measurement.mission_item
+    values: dict[str, object] = {}
+    if is_flown and held.approval_id is None:
+        level, words = CRITICAL, FLIES_UNKNOWN
+    elif is_flown and not held.is_approved:
+        level, words = CRITICAL, FLIES_OTHER
+    elif held.doubt:
+        level, words = CRITICAL if is_flown else WARNING, IN_DOUBT
+    elif is_flown and held.items is not None and item is not None and item - held.first_item >= held.items:
+        level, words, values = CRITICAL, BEYOND, {"item": item, "items": held.items}
+    else:
+        return []
+    details = {"doubt": held.doubt, "loaded_approval": None if held.approval_id is None else str(held.approval_id)}
+    return [Finding(CODE, level, words, {"uav": situation.uav.name, **values}, details=details)]
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=2.0, needs_flight=False, hidden_by=("mission-mixed",))

@@ -1,0 +1,38 @@
+"""More wind than the UAV or the mission may have."""
+
+import math
+
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.situation import Situation
+from telemetry.decoding.measurement import Measurement
+
+CODE = "weather"
+WORDS = "The wind at %(uav)s is %(wind)s m/s; %(limit)s m/s are allowed."
+CLEAR_SHARE = 0.85
+
+
+def detect(situation: Situation) -> list[Finding] | None:
+    fresh, limits, model = situation.fresh, situation.limits, situation.model
+    wind_mps = None if fresh is None else wind_of(fresh.measurement)
+    if wind_mps is None:
+        return None
+    airspeed_mps = math.inf if model is None else model.max_airspeed_mps
+    limit_mps = min(airspeed_mps * limits.wind_share_percent / 100.0, limits.wind_mps or math.inf)
+    if wind_mps <= limit_mps * (CLEAR_SHARE if situation.is_open(CODE) else 1.0):
+        return []
+    level = CRITICAL if wind_mps >= airspeed_mps else WARNING
+    values = {"uav": situation.uav.name, "wind": f"{wind_mps:.0f}", "limit": f"{limit_mps:.0f}"}
+    return [Finding(CODE, level, WORDS, values, details={"wind_mps": round(wind_mps, 1), "limit_mps": round(limit_mps, 1)})]
+
+
+def wind_of(told: Measurement) -> float | None:
+    """As measured; else the least that it can be by the speeds through the air and over ground. None where neither is told."""
+    if told.wind_north_mps is not None and told.wind_east_mps is not None:
+        return math.hypot(told.wind_north_mps, told.wind_east_mps)
+    if told.airspeed_mps is None or told.velocity_north_mps is None or told.velocity_east_mps is None:
+        return None
+    return abs(told.airspeed_mps - math.hypot(told.velocity_north_mps, told.velocity_east_mps))
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=10.0, clear_after_s=20.0)

@@ -1,0 +1,94 @@
+"""A no-fly zone that is in force: it flies towards it, or is in it. Of one zone there is one alert."""
+
+import math
+from collections.abc import Iterator
+
+import shapely
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.memory import position_of
+from telemetry.alerting.route_line import RouteLine
+from telemetry.alerting.situation import Situation
+from telemetry.alerting.surroundings import NearZone
+
+CODE = "zone"
+INSIDE = "%(uav)s is in the no-fly zone %(zone)s."
+AHEAD = "%(uav)s will be in the no-fly zone %(zone)s in %(seconds)s s."
+STEPS = 10  # into which the time ahead is cut
+SLOW_MPS = 0.5
+
+
+def detect(situation: Situation) -> list[Finding] | None:
+    if situation.fresh is None:
+        return None
+    position = position_of(situation.fresh)
+    if position is None:
+        return None
+    if not situation.zones:
+        return []
+    point = shapely.Point(position)
+    ways = list(_ways(situation, position))
+    found = []
+    for zone in situation.zones:
+        if not zone.reaches(situation.agl_m):
+            continue
+        if zone.applies_at(situation.now_s) and zone.polygon.intersects(point):
+            found.append(_finding(situation, zone, 0.0))
+            continue
+        in_s = min((seconds for way in ways if (seconds := _reached_in_s(way, zone, situation)) is not None), default=None)
+        if in_s is not None:
+            found.append(_finding(situation, zone, in_s))
+    return found
+
+
+def _finding(situation: Situation, zone: NearZone, in_s: float) -> Finding:
+    values = {"uav": situation.uav.name, "zone": zone.name} | ({"seconds": round(in_s)} if in_s > 0.0 else {})
+    details = {"zone": zone.zone_id, "in_s": round(in_s, 1), "is_new": zone.is_new}
+    return Finding(
+        CODE, WARNING if in_s > 0.0 else CRITICAL, AHEAD if in_s > 0.0 else INSIDE, values, subject=str(zone.zone_id), details=details
+    )
+
+
+def _ways(situation: Situation, position: LonLat) -> Iterator[list[tuple[float, float]]]:
+    """Where it will be at each step, in lon/lat: by its velocity, and along its route."""
+    told, horizon_s = situation.uav.newest, situation.limits.zone_ahead_s
+    if told is None:
+        return
+    north_mps, east_mps = told.measurement.velocity_north_mps or 0.0, told.measurement.velocity_east_mps or 0.0
+    speed_mps = math.hypot(north_mps, east_mps)
+    if speed_mps > SLOW_MPS:
+        degree_north_m = 111_195.0
+        degree_east_m = degree_north_m * max(math.cos(math.radians(position.lat)), 1e-6)
+        steps = [horizon_s * step / STEPS for step in range(1, STEPS + 1)]
+        yield [
+            (position.lon + east_mps * seconds / degree_east_m, position.lat + north_mps * seconds / degree_north_m) for seconds in steps
+        ]
+    place, model = situation.place, situation.model
+    if place is not None and model is not None and situation.flies_mission and place.across_m <= situation.limits.off_route_m:
+        pace_mps = max(speed_mps, 1.0)
+        yield [_degrees(model.line, place.along_m + pace_mps * horizon_s * step / STEPS) for step in range(1, STEPS + 1)]
+
+
+def _degrees(line: RouteLine, along_m: float) -> tuple[float, float]:
+    east, north = line.at(along_m)
+    origin = line.frame.origin
+    return origin.lon + east / line.frame.metres_per_degree_east, origin.lat + north / line.frame.metres_per_degree_north
+
+
+def _reached_in_s(way: list[tuple[float, float]], zone: NearZone, situation: Situation) -> float | None:
+    """The end of the first step that touches the zone while it applies."""
+    if not zone.polygon.intersects(shapely.LineString(way)):
+        return None
+    step_s = situation.limits.zone_ahead_s / STEPS
+    before = way[0]
+    for step, here in enumerate(way, 1):
+        touches = zone.polygon.intersects(shapely.LineString([before, here]) if here != before else shapely.Point(here))
+        if touches and zone.applies_between(situation.now_s + (step - 1) * step_s, situation.now_s + step * step_s):
+            return step * step_s
+        before = here
+    return None
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=1.0, clear_after_s=5.0)

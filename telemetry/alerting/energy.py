@@ -1,0 +1,65 @@
+"""What an approved flight takes of its battery, by how far it has come."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from missions.flight_plan.conditions import Conditions
+from missions.flight_plan.performance import Performance
+from missions.flight_plan.power import NoHeadway
+from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.timing import timing
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, Waypoints
+from missions.mavlink.frozen import HOVER, Flight
+from telemetry.alerting.route_line import Place
+
+
+@dataclass(frozen=True, slots=True)
+class EnergyPlan:
+    """Of one flight. `used_percent` of the full battery by each waypoint; `until_percent`: for each waypoint what will have
+    been used at the end of the flight, or where it charges next."""
+
+    used_percent: tuple[float, ...]
+    until_percent: tuple[float, ...]
+    reserve_percent: float
+
+    def used_at(self, place: Place) -> float:
+        end = min(place.leg + 1, len(self.used_percent) - 1)
+        start_percent = self.used_percent[place.leg]
+        return start_percent + place.share * (self.used_percent[end] - start_percent)
+
+    def rest_at(self, place: Place) -> float:
+        """Still to be used, to the end of the flight or to where it charges next."""
+        end = min(place.leg + 1, len(self.used_percent) - 1)
+        return max(0.0, self.until_percent[end] - self.used_at(place))
+
+
+def energy_plan(
+    flight: Flight, *, cruise_speed_mps: float, performance: Performance, conditions: Conditions, rules: FlightRules,
+    charging: tuple[int, ...] = (),
+) -> EnergyPlan | None:  # fmt: skip
+    """None where the battery's energy is not known, or the wind was planned too strong."""
+    points = RoutePoints.of(
+        [
+            RoutePoint(waypoint.position, waypoint.kind, waypoint.altitude_agl_m, None, waypoint.target, waypoint.task, waypoint.speed_mps)
+            for waypoint in flight.waypoints
+        ]
+    )
+    heights = [waypoint.altitude_amsl_m for waypoint in flight.waypoints]
+    amsl_m = None if any(height is None for height in heights) else np.array(heights, dtype=np.float64)
+    relative_m = np.array([waypoint.altitude_relative_m for waypoint in flight.waypoints], dtype=np.float64)
+    try:
+        timed = timing(
+            Waypoints(points, amsl_m, relative_m), cruise_speed_mps=cruise_speed_mps, performance=performance, conditions=conditions,
+            lands=flight.end_action != HOVER, rules=rules,
+        )  # fmt: skip
+    except NoHeadway:
+        return None
+    if timed.used_wh is None or timed.end_percent is None or performance.battery_wh is None:
+        return None
+    used = tuple(float(value) * 100.0 / performance.battery_wh for value in timed.used_wh)
+    until, nearest = [], 100.0 - timed.end_percent
+    for waypoint, used_percent in zip(reversed(flight.waypoints), reversed(used), strict=True):
+        nearest = used_percent if waypoint.sequence in charging else nearest
+        until.append(nearest)
+    return EnergyPlan(used, tuple(reversed(until)), performance.reserve_percent)

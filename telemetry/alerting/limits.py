@@ -1,0 +1,94 @@
+"""Where alerts begin: usual limits, and those of a UAV type or a mission that differ."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+
+class InvalidLimits(ValueError):
+    """Limits that make no sense; `place` names the entry as the JSON does."""
+
+    def __init__(self, place: str, message: str) -> None:
+        super().__init__(f"{place}: {message}")
+        self.place = place
+        self.message = message
+
+
+def _limit(usual: float, low: float, high: float) -> Any:
+    return field(default=usual, metadata={"from": low, "to": high})
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """A name ends with its unit. What clears an alert lies below what raises it by a share that the detectors state.
+
+    link_late_s        nothing heard for so long: a warning; with reports that come more rarely, two and a half of their intervals
+    link_lost_s        likewise: critical; five intervals
+    off_route_m        beside the approved route: a warning; off_route_critical_m: critical
+    height_off_m       above or below the heights of the leg: a warning; height_off_critical_m: critical
+    zone_ahead_s       how far ahead zones are looked for
+    battery_margin_percent    of the full battery: how far below the reserve the flight may be expected to end before a warning
+    battery_critical_percent  expected at the end of the flight: below it is critical
+    no_progress_s      without coming on, beside the times that are planned for tasks
+    separation_m, separation_height_m  between two UAVs; nearer in both is too near
+    converging_s       how far ahead meetings are looked for
+    least_satellites, most_hdop  of a good fix
+    jump_mps           faster than that no UAV flies: its position has jumped
+    wind_share_percent of its highest airspeed that the wind may have
+    wind_mps           the wind may have; 0: only the share counts
+    """
+
+    link_late_s: float = _limit(5.0, 2.0, 600.0)
+    link_lost_s: float = _limit(20.0, 5.0, 3_600.0)
+    off_route_m: float = _limit(25.0, 5.0, 5_000.0)
+    off_route_critical_m: float = _limit(100.0, 10.0, 10_000.0)
+    height_off_m: float = _limit(12.0, 3.0, 500.0)
+    height_off_critical_m: float = _limit(30.0, 5.0, 1_000.0)
+    zone_ahead_s: float = _limit(30.0, 5.0, 300.0)
+    battery_margin_percent: float = _limit(3.0, 0.0, 50.0)
+    battery_critical_percent: float = _limit(5.0, 0.0, 50.0)
+    no_progress_s: float = _limit(30.0, 10.0, 3_600.0)
+    separation_m: float = _limit(15.0, 2.0, 1_000.0)
+    separation_height_m: float = _limit(8.0, 1.0, 500.0)
+    converging_s: float = _limit(20.0, 5.0, 120.0)
+    least_satellites: float = _limit(7.0, 4.0, 40.0)
+    most_hdop: float = _limit(2.5, 0.5, 20.0)
+    jump_mps: float = _limit(60.0, 10.0, 500.0)
+    wind_share_percent: float = _limit(70.0, 10.0, 100.0)
+    wind_mps: float = _limit(0.0, 0.0, 60.0)
+
+    def __post_init__(self) -> None:
+        for lower, higher in _ORDERED:
+            if getattr(self, lower) > getattr(self, higher):
+                raise InvalidLimits(higher, f"must not be below {lower} ({getattr(self, lower):g})")
+
+
+_ORDERED = (("link_late_s", "link_lost_s"), ("off_route_m", "off_route_critical_m"), ("height_off_m", "height_off_critical_m"))
+BOUNDS = {entry.name: (entry.metadata["from"], entry.metadata["to"]) for entry in fields(Limits)}
+
+
+def checked_limits(value: Any) -> dict[str, float]:
+    """The limits that a type or a mission states. Raises InvalidLimits; whether they fit together `limits_of` tells."""
+    if not isinstance(value, Mapping):
+        raise InvalidLimits("alert_limits", "must be an object")
+    read: dict[str, float] = {}
+    for key, entry in value.items():
+        if key not in BOUNDS:
+            raise InvalidLimits(str(key), "is not known")
+        if entry is None:
+            continue
+        if isinstance(entry, bool) or not isinstance(entry, int | float):
+            raise InvalidLimits(key, "must be a number")
+        low, high = BOUNDS[key]
+        if not low <= entry <= high:
+            raise InvalidLimits(key, f"must be from {low:g} to {high:g}")
+        read[key] = float(entry)
+    return read
+
+
+def limits_of(*stated: Any) -> Limits:
+    """The usual limits with those stated, the later ones before the earlier. Raises InvalidLimits."""
+    read: dict[str, float] = {}
+    for value in stated:
+        read |= checked_limits(value or {})
+    return Limits(**read)

@@ -1,0 +1,79 @@
+"""What is remembered of a UAV from one look to the next. It may be lost: then alerts come a little later."""
+
+from collections import deque
+from dataclasses import dataclass, field
+from statistics import median
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.route_line import Place, RouteLine
+from telemetry.alerting.watched import Report
+
+INTERVALS_KEPT = 5
+BATTERY_STEP_PERCENT = 1.0  # of the flight's plan, between two entries
+BATTERY_STEPS_KEPT = 10
+
+
+@dataclass
+class Cause:
+    """Since when something is found at a level or above, and since when it is found no more."""
+
+    since_s: dict[str, float] = field(default_factory=dict)
+    gone_s: float | None = None
+
+
+@dataclass
+class Progress:
+    """How far it has come, and when that was seen first."""
+
+    along_m: float
+    height_m: float | None
+    at_s: float
+
+
+@dataclass
+class Memory:
+    """Of one UAV. `before` is the report before the newest one; `place` is where the newest one puts it on its line."""
+
+    newest: Report | None = None
+    before: Report | None = None
+    place: Place | None = None
+    line: RouteLine | None = None
+    progress: Progress | None = None
+    jumped_s: float | None = None
+    jump_m: float = 0.0
+    drained: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=BATTERY_STEPS_KEPT + 1))
+    causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
+    _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
+
+    def take(self, report: Report | None, line: RouteLine | None = None) -> bool:
+        """Whether it is a new one."""
+        if line is not self.line:
+            self.line, self.place, self.progress = line, None, None
+            self.drained.clear()
+        if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
+            return False
+        if self.newest is not None:
+            self._intervals_s.append(report.received_s - self.newest.received_s)
+        self.before, self.newest = self.newest, report
+        self.place = None if line is None else _place(line, report, self.place)
+        return True
+
+    def note_battery(self, planned_percent: float, left_percent: float) -> None:
+        """What the plan had used by now, and what is left: kept once a step."""
+        if not self.drained or planned_percent - self.drained[-1][0] >= BATTERY_STEP_PERCENT:
+            self.drained.append((planned_percent, left_percent))
+
+    @property
+    def usual_interval_s(self) -> float:
+        """Between reports, as the last few came; 0 as long as that is not known."""
+        return median(self._intervals_s) if self._intervals_s else 0.0
+
+
+def position_of(report: Report) -> LonLat | None:
+    told = report.measurement
+    return None if told.longitude_deg is None or told.latitude_deg is None else LonLat(told.longitude_deg, told.latitude_deg)
+
+
+def _place(line: RouteLine, report: Report, before: Place | None) -> Place | None:
+    position = position_of(report)
+    return None if position is None else line.place(position, report.measurement.waypoint_sequence, before)

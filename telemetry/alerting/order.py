@@ -1,0 +1,22 @@
+"""All detectors, in the order in which they look: what hides others comes before them."""
+
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.detectors import (
+    battery,
+    converging,
+    gps,
+    height_off,
+    link,
+    mode_changed,
+    no_progress,
+    off_route,
+    other_mission,
+    weather,
+    zone,
+)
+
+DETECTORS: tuple[Detector, ...] = tuple(
+    module.DETECTOR
+    for module in (link, gps, mode_changed, other_mission, zone, converging, off_route, height_off, no_progress, battery, weather)
+)
+CODES = tuple(detector.code for detector in DETECTORS)

@@ -1,0 +1,137 @@
+"""An approved flight as a line: how far along it and beside it a UAV is, and how high it ought to be there."""
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from itertools import accumulate, pairwise
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from missions.mavlink.frozen import HOVER, Flight
+
+NEAR_VERTEX_M = 15.0  # an autopilot takes a waypoint for reached before it is there, and climbs or sinks beside it
+LEGS_BACK, LEGS_ON = 2, 1  # of the leg to the waypoint that is told, which may be some seconds old
+BACK_M, ON_M = 60.0, 600.0  # of where it was before, where no waypoint is told
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Beside which point of the line a UAV is. `leg` leads from vertex `leg` to the next one; `share` of it lies behind."""
+
+    along_m: float
+    across_m: float
+    leg: int
+    share: float
+
+
+class RouteLine:
+    """A flight from its first waypoint to its last. Frames are flat: lengths are within 1 % over some 20 km.
+
+    vertices (east, north) [m], along_m, heights_m above this flight's take-off, hold_s, and sequences have an entry for each waypoint.
+    """
+
+    def __init__(self, flight: Flight, charging: tuple[int, ...] = ()) -> None:
+        """charging: places of waypoints in the route at which it was planned to charge."""
+        waypoints = flight.waypoints
+        middle = waypoints[len(waypoints) // 2].position
+        self.frame = LocalFrame.around(middle.lon, middle.lat)
+        metres = self.frame.to_metres(np.array([waypoint.position for waypoint in waypoints], dtype=np.float64))
+        self.vertices: list[tuple[float, float]] = [(float(east), float(north)) for east, north in metres]
+        self.along_m = list(accumulate((math.dist(*leg) for leg in pairwise(self.vertices)), initial=0.0))
+        self.heights_m = [waypoint.altitude_relative_m for waypoint in waypoints]
+        self.grounds_m = [waypoint.ground_relative_m for waypoint in waypoints]
+        self.hold_s = [0.0 if waypoint.task is None else waypoint.task.hold_s for waypoint in waypoints]
+        self.sequences = [waypoint.sequence for waypoint in waypoints]
+        self.charges_at = {place for place, sequence in enumerate(self.sequences) if sequence in charging}
+        self.lands = flight.end_action != HOVER
+
+    @property
+    def length_m(self) -> float:
+        return self.along_m[-1]
+
+    def east_north(self, position: LonLat) -> tuple[float, float]:
+        origin = self.frame.origin
+        return (
+            (position.lon - origin.lon) * self.frame.metres_per_degree_east,
+            (position.lat - origin.lat) * self.frame.metres_per_degree_north,
+        )
+
+    def vertex_of(self, sequence: int | None) -> int | None:
+        """The vertex of a waypoint of the route; None where it is of another flight, or not known."""
+        if sequence is None or not self.sequences[0] <= sequence <= self.sequences[-1]:
+            return None
+        return bisect_right(self.sequences, sequence) - 1
+
+    def place(self, position: LonLat, sequence: int | None = None, before: Place | None = None) -> Place:
+        """The nearest point of the legs that it may be on: about the waypoint that it flies to, or else about where it was before."""
+        east, north = self.east_north(position)
+        vertex = self.vertex_of(sequence)
+        first, last = 0, max(len(self.vertices) - 2, 0)
+        if vertex is not None:
+            first, last = max(vertex - 1 - LEGS_BACK, 0), min(max(vertex - 1 + LEGS_ON, 0), last)
+        elif before is not None:
+            first = max(bisect_right(self.along_m, before.along_m - BACK_M) - 1, 0)
+            last = min(max(bisect_right(self.along_m, before.along_m + ON_M) - 1, first), last)
+        best: Place | None = None
+        for leg in range(first, last + 1):
+            found = self._beside(leg, east, north)
+            if best is None or found.across_m < best.across_m:
+                best = found
+        return best or Place(0.0, math.dist((east, north), self.vertices[0]), 0, 0.0)
+
+    def _beside(self, leg: int, east: float, north: float) -> Place:
+        (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
+        de, dn = east_2 - east_1, north_2 - north_1
+        square = de * de + dn * dn
+        share = 0.0 if square == 0.0 else min(1.0, max(0.0, ((east - east_1) * de + (north - north_1) * dn) / square))
+        across_m = math.hypot(east - east_1 - share * de, north - north_1 - share * dn)
+        return Place(self.along_m[leg] + share * math.sqrt(square), across_m, leg, share)
+
+    def heights_at(self, place: Place) -> tuple[float, float]:
+        """The lowest and the highest that the plan has the UAV there [m above take-off].
+
+        An autopilot climbs evenly along a leg, the plan's times have it level first: whatever lies between is right. About a waypoint so
+        are the heights of both legs, and under the first and the last all down to the ground.
+        """
+        last = len(self.vertices) - 1
+        end = min(place.leg + 1, last)
+        start_m, end_m = self.heights_m[place.leg], self.heights_m[end]
+        heights_m = [start_m, start_m + place.share * (end_m - start_m)]
+        for vertex in (place.leg, end):
+            if abs(self.along_m[vertex] - place.along_m) <= NEAR_VERTEX_M:
+                heights_m += self.heights_m[max(vertex - 1, 0) : min(vertex + 1, last) + 1]
+                if vertex == 0:
+                    heights_m.append(min(0.0, self.grounds_m[0]))
+                if vertex == last and self.lands:
+                    heights_m.append(self.grounds_m[last])
+                if vertex in self.charges_at:
+                    heights_m.append(self.grounds_m[vertex])
+        return min(heights_m), max(heights_m)
+
+    def ground_m(self, place: Place) -> float:
+        """Of the ground below, above this flight's take-off, as planned."""
+        end = min(place.leg + 1, len(self.vertices) - 1)
+        return self.grounds_m[place.leg] + place.share * (self.grounds_m[end] - self.grounds_m[place.leg])
+
+    def at(self, along_m: float) -> tuple[float, float]:
+        """East and north [m] so far along the line; at its ends beyond them."""
+        leg = min(max(bisect_right(self.along_m, along_m) - 1, 0), max(len(self.vertices) - 2, 0))
+        (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
+        length_m = self.along_m[min(leg + 1, len(self.vertices) - 1)] - self.along_m[leg]
+        share = 0.0 if length_m <= 0.0 else min(1.0, max(0.0, (along_m - self.along_m[leg]) / length_m))
+        return east_1 + share * (east_2 - east_1), north_1 + share * (north_2 - north_1)
+
+    def between(self, from_m: float, to_m: float) -> list[tuple[float, float]]:
+        """The line from one length along it to another: its ends and the vertices between."""
+        inner = [vertex for vertex, along_m in zip(self.vertices, self.along_m, strict=True) if from_m < along_m < to_m]
+        return [self.at(from_m), *inner, self.at(to_m)]
+
+    def planned_hold_s(self, along_m: float) -> float:
+        """The longest that it stays at a waypoint near here; without end at one where it charges."""
+        holds_s = 0.0
+        for vertex, at_m in enumerate(self.along_m):
+            if abs(at_m - along_m) <= 2.0 * NEAR_VERTEX_M:
+                holds_s = math.inf if vertex in self.charges_at else max(holds_s, self.hold_s[vertex])
+        return holds_s

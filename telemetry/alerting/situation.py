@@ -1,0 +1,87 @@
+"""All that detectors may look at, of one UAV at one moment."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from telemetry.alerting.limits import Limits
+from telemetry.alerting.memory import Memory
+from telemetry.alerting.modes import ModeKind, mode_kind
+from telemetry.alerting.route_line import Place
+from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
+from telemetry.alerting.watched import Report, WatchedUav
+
+Key = tuple[str, str]  # code and subject
+FRESH_S, FRESH_INTERVALS = 5.0, 2.5
+AIRBORNE_M = 5.0  # above take-off, where nothing says whether it flies
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """`open_levels` are those of the alerts that are open, by code and subject: a cause that is known already clears later than it rose."""
+
+    now_s: float
+    uav: WatchedUav
+    limits: Limits
+    memory: Memory
+    link: LinkFacts = field(default_factory=LinkFacts)
+    open_levels: Mapping[Key, str] = field(default_factory=dict)
+    model: FlightModel | None = None
+    held: Held | None = None
+    order: Order | None = None
+    zones: tuple[NearZone, ...] = ()
+    meetings: tuple[Meeting, ...] = ()
+
+    def is_open(self, code: str, subject: str = "") -> bool:
+        return (code, subject) in self.open_levels
+
+    @property
+    def heard_s(self) -> float | None:
+        received_s = None if self.uav.newest is None else self.uav.newest.received_s
+        told = [moment for moment in (self.link.heard_s, received_s) if moment is not None]
+        return max(told) if told else None
+
+    @property
+    def fresh(self) -> Report | None:
+        """The newest report, unless others should have come since."""
+        newest = self.uav.newest
+        if newest is None or self.now_s - newest.received_s > max(FRESH_S, FRESH_INTERVALS * self.memory.usual_interval_s):
+            return None
+        return newest
+
+    @property
+    def place(self) -> Place | None:
+        """On its line, by the newest report; None without a position, or when that is old."""
+        return None if self.fresh is None else self.memory.place
+
+    @property
+    def mode(self) -> ModeKind | None:
+        newest = self.uav.newest
+        return mode_kind((newest.measurement.mode if newest is not None else "") or self.link.mode)
+
+    @property
+    def flies_mission(self) -> bool:
+        """As far as is known: a mode that nobody tells or knows is taken for it."""
+        return self.mode in (ModeKind.MISSION, None)
+
+    @property
+    def is_in_flight(self) -> bool:
+        """As far as is known."""
+        told = None if self.uav.newest is None else self.uav.newest.measurement
+        is_in_air = self.link.is_in_air if told is None or told.is_in_air is None else told.is_in_air
+        if is_in_air is not None:
+            return is_in_air
+        is_armed = self.link.is_armed if told is None or told.is_armed is None else told.is_armed
+        if is_armed is not None:
+            return is_armed
+        return told is not None and (told.altitude_relative_m or 0.0) > AIRBORNE_M
+
+    @property
+    def agl_m(self) -> float | None:
+        """As told; else above the ground as the plan has it there."""
+        told = None if self.uav.newest is None else self.uav.newest.measurement
+        if told is None or told.altitude_agl_m is not None:
+            return None if told is None else told.altitude_agl_m
+        place = self.memory.place
+        if told.altitude_relative_m is None or place is None or self.model is None or place.across_m > 200.0:
+            return None
+        return told.altitude_relative_m - self.model.line.ground_m(place)

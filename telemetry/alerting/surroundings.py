@@ -1,0 +1,90 @@
+"""What is around a UAV: its link, what it holds and was told, zones, and other UAVs. Times are Unix seconds."""
+
+from dataclasses import dataclass
+from typing import Any
+from uuid import UUID
+
+from telemetry.alerting.energy import EnergyPlan
+from telemetry.alerting.route_line import RouteLine
+
+
+@dataclass(frozen=True, slots=True)
+class LinkFacts:
+    """What is known of the UAV's link. `heard_s` is when anything was last received, by the server's clock."""
+
+    heard_s: float | None = None
+    mode: str = ""
+    is_armed: bool | None = None
+    is_in_air: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """The latest command of ours about its flight that did not fail. `done_s` is None as long as it is on its way."""
+
+    kind: str
+    done_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """What the UAV holds, as far as it was read back. `is_approved`: exactly a flight of the approval in force.
+
+    `is_changing`: a mission is being brought to it or taken off it; `items` of the list, without home, None where it has none.
+    """
+
+    approval_id: UUID | None = None
+    is_approved: bool = False
+    doubt: str = ""
+    is_changing: bool = False
+    items: int | None = None
+    first_item: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class FlightModel:
+    """What was approved of the flight, worked out once. `max_airspeed_mps` is the highest that the UAV flies through the air."""
+
+    line: RouteLine
+    energy: EnergyPlan | None
+    max_airspeed_mps: float
+    reserve_percent: float
+
+
+@dataclass(frozen=True, slots=True)
+class NearZone:
+    """A zone whose box a UAV may touch soon. `polygon` is a prepared shapely geometry in lon/lat; heights are above ground.
+
+    `spans` are the times at which it applies, about now; None: always. `is_new`: it was saved after the approval.
+    """
+
+    zone_id: int
+    name: str
+    polygon: Any
+    floor_agl_m: float
+    ceiling_agl_m: float
+    spans: tuple[tuple[float, float], ...] | None = None
+    is_new: bool = False
+
+    def applies_at(self, moment_s: float) -> bool:
+        return self.spans is None or any(start <= moment_s <= end for start, end in self.spans)
+
+    def applies_between(self, from_s: float, to_s: float) -> bool:
+        return self.spans is None or any(start <= to_s and from_s <= end for start, end in self.spans)
+
+    def reaches(self, agl_m: float | None) -> bool:
+        """A height that is not known counts as reached."""
+        return agl_m is None or self.floor_agl_m <= agl_m <= self.ceiling_agl_m
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """Two UAVs that come near each other. Distances are at the closest, with the places as estimated and at the worst of their bounds."""
+
+    other_id: int
+    other_name: str
+    in_s: float
+    lateral_m: float
+    height_m: float
+    least_lateral_m: float
+    least_height_m: float

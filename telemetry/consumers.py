@@ -1,0 +1,89 @@
+"""Websockets of live pages."""
+
+from typing import Any
+from uuid import UUID
+
+import orjson
+from channels.db import database_sync_to_async
+from django.conf import settings
+
+from missions.models import Mission
+from telemetry.live.feed import Feed
+from telemetry.live.hub import hub_here
+from telemetry.live.messages import message
+from telemetry.live.reader import Reader, SaysNonsense
+from workspace.models import User
+from workspace.sockets import NOTHING_TO_SAY, STILL_THERE_EVERY_S, SignedInSocket
+
+LONGEST_WORD = 4_096  # characters that a page may say at once
+STALLED_S = 60.0  # a page that confirms nothing for so long is not there any more
+GONE, STALLED = 4404, 1013
+
+
+class LiveConsumer(SignedInSocket):
+    """`/ws/live` and `/ws/missions/{id}/live`: everything that such a page shows, then what changes.
+
+    `{"type": "snapshot", "sequence": 1, "server_time": …, "live": {"uavs": […], "missions": […], "alerts": […], "commands": […],
+    "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "gone": {"uavs": [… ids …], …}}`, numbered one
+    by one, and `{"type": "still-there"}` in silence. The page says `{"type": "have", "sequence": n}` of each that has a number of its own,
+    and is told the latest of each object once it has the one before the last; or `{"type": "again"}` where it has lost count. Closed with
+    4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is deleted.
+    """
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        self._reader: Reader | None = None
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            if self._reader is not None:
+                self._hub.leave(self._reader)
+
+    async def connect(self) -> None:
+        mission: UUID | None = self.scope["url_route"]["kwargs"].get("mission_id")
+        user = await self._user()
+        if user is None or not (mission is None or await _has_mission(user, mission)):
+            await self.close()  # before it is accepted: the handshake is refused with 403, whatever the reason
+            return
+        await self.accept()
+        self._hub = hub_here()
+        reader = self._reader = Reader(user.organisation_id, mission, user.language or settings.LANGUAGE_CODE)
+        self._start(self._speak(reader, self._hub.join(reader)))
+        self._start(self._watch_person(user))
+
+    async def receive(self, text_data: str | None = None, bytes_data: bytes | None = None) -> None:
+        try:
+            if self._reader is not None:
+                _heed(self._reader, text_data)
+        except ValueError:
+            self._hang_up(NOTHING_TO_SAY)
+
+    async def _speak(self, reader: Reader, feed: Feed) -> None:
+        full_s = 0.0
+        while True:
+            if await reader.due(STILL_THERE_EVERY_S):
+                if reader.is_ended:
+                    return self._hang_up(GONE)
+                full_s = 0.0
+                await self.send(feed.next_message(reader))
+            elif not reader.is_full:
+                await self.send(message("still-there", reader.sequence))
+            elif (full_s := full_s + STILL_THERE_EVERY_S) >= STALLED_S:
+                return self._hang_up(STALLED)
+
+
+def _heed(reader: Reader, said: str | None) -> None:
+    """Raises ValueError where it is nothing that a page says."""
+    if said is None or len(said) > LONGEST_WORD:
+        raise ValueError
+    match orjson.loads(said):
+        case {"type": "have", "sequence": int(sequence), **rest} if not rest:
+            reader.confirm(sequence)
+        case {"type": "again", **rest} if not rest:
+            reader.again()
+        case _:
+            raise SaysNonsense
+
+
+@database_sync_to_async
+def _has_mission(user: User, mission: UUID) -> bool:
+    return Mission.objects.filter(pk=mission, organisation=user.organisation_id, deleted_at=None).exists()

@@ -1,0 +1,56 @@
+"""What is believed of a UAV at one moment, in a flat frame around its take-off."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+CHI2_95 = 5.991  # of two dimensions: a normal distribution's ellipse of 95 %
+NORMAL_95 = 1.960
+# Directions and lengths (in standard deviations) with which what has no direction is spread around each place: five rings of equal weight.
+_RINGS = np.sqrt(-2.0 * np.log(1.0 - np.array([0.1, 0.3, 0.5, 0.7, 0.92])))
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """Means, and how sure they are. `covariance` (2, 2) of east and north [m2]; `reach2` the squared Mahalanobis distance that 95 % keep
+    within; the others are standard deviations. `reading_s` is where it is on its profile's clock, None off a route."""
+
+    east_m: float
+    north_m: float
+    height_m: float | None
+    east_mps: float
+    north_mps: float
+    up_mps: float
+    covariance: FloatArray
+    reach2: float
+    height_sd_m: float
+    speed_sd_mps: float
+    nominal_s: float | None = None
+
+    @property
+    def speed_mps(self) -> float:
+        return float(np.hypot(self.east_mps, self.north_mps))
+
+
+def round_covariance(variance_m2: float) -> FloatArray:
+    return np.eye(2) * variance_m2
+
+
+def reach2_of(east_m: FloatArray, north_m: FloatArray, weight: FloatArray, round_m2: float, covariance: FloatArray) -> float:
+    """How far, as a squared Mahalanobis distance, 95 % lie: of places around the mean, each with a round doubt of its own."""
+    inverse = np.linalg.inv(covariance)
+    angle = np.arange(len(east_m)) * 2.399_963  # the golden angle, so that neighbours lie differently
+    found, parts = [], []
+    for number, ring in enumerate(_RINGS):
+        lie = angle + number * 1.256_637
+        east = east_m + ring * np.sqrt(round_m2) * np.cos(lie)
+        north = north_m + ring * np.sqrt(round_m2) * np.sin(lie)
+        found.append(inverse[0, 0] * east**2 + 2.0 * inverse[0, 1] * east * north + inverse[1, 1] * north**2)
+        parts.append(weight)
+    distance2, share = np.concatenate(found), np.concatenate(parts)
+    order = np.argsort(distance2)
+    total = np.cumsum(share[order])
+    return float(distance2[order][min(int(np.searchsorted(total, 0.95 * total[-1])), len(order) - 1)])

@@ -1,0 +1,57 @@
+"""When a UAV will be where its route leads."""
+
+import math
+
+import numpy as np
+
+from telemetry.estimation.belief import NORMAL_95
+from telemetry.estimation.estimate import Arrival
+from telemetry.estimation.motion import State, Track
+from telemetry.estimation.pace import clock_of
+
+SURE_S = 0.5
+LASTS_SHARE = 0.02  # by which a whole flight's pace may differ from what was seen of it: winds that come up
+
+
+def arrivals_of(state: State, track: Track) -> tuple[Arrival, ...]:
+    """At the first waypoint of each target that is still to come, as foreseen right after the report."""
+    profile = track.profile
+    first = [
+        number for number, target in enumerate(profile.target) if target >= 0 and (number == 0 or profile.target[number - 1] != target)
+    ]
+    return tuple(_arrivals(state, track, first)) if first else ()
+
+
+def end_of(state: State, track: Track) -> Arrival | None:
+    """Of the flight: down, or at the last waypoint where it hovers."""
+    found = _arrivals(state, track, [len(track.profile.sequence) - 1])
+    return found[0] if found else None
+
+
+def at_reading(state: State, track: Track, knot: int) -> float:
+    """When it is at a knot of the profile, as foreseen; in the past for one that lies behind it."""
+    clock = clock_of(track.profile, track.pace)
+    return state.report_s + float(clock[knot]) - float(np.interp(track.pace.nominal_s, track.profile.nominal_s, clock).mean())
+
+
+def _arrivals(state: State, track: Track, nodes: list[int]) -> list[Arrival]:
+    profile, pace = track.profile, track.pace
+    clock = clock_of(profile, pace)
+    here_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
+    middle_s = float(here_s.mean())
+    reached = profile.reached[nodes]
+    to_go_s = clock[reached] - middle_s
+    moving_s = (profile.moving_s[reached] - float(np.interp(middle_s, clock, profile.moving_s))) / pace.pace
+    slack_s2 = profile.doubt_s2[reached] - float(np.interp(middle_s, clock, profile.doubt_s2))
+    doubt_s = np.sqrt(
+        SURE_S**2 + float(here_s.var()) + np.maximum(slack_s2, 0.0) + (pace.variance + LASTS_SHARE**2) * np.maximum(moving_s, 0.0) ** 2
+    )
+    found = []
+    for number, to_go, doubt in zip(nodes, to_go_s.tolist(), doubt_s.tolist(), strict=True):
+        if to_go <= 0.0 or not math.isfinite(to_go):
+            continue
+        at_s, target = state.report_s + to_go, int(profile.target[number])
+        within_s = NORMAL_95 * doubt
+        sequence = int(profile.sequence[number])
+        found.append(Arrival(sequence, None if target < 0 else target, at_s, max(at_s - within_s, state.report_s), at_s + within_s))
+    return found

@@ -1,0 +1,224 @@
+"""How far along its profile a UAV is: a distribution over the profile's clock, moved by time and narrowed by reports.
+
+The clock of a flight is its profile's, with the time in motion divided by the UAV's pace (what it flies for what the profile says). It
+shows real seconds: a UAV that flies by the book at its pace is one second further on it each second. What it is off by grows with the
+time in motion (pace, gusts) and with each turn, stop and climb. It never goes back.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from telemetry.estimation.profile import Profile
+
+FloatArray = NDArray[np.float64]
+
+PLACES = 12
+SPREAD = np.linspace(-2.8, 2.8, 15)
+SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
+GRID = 241
+# Calibrated on the truth generator, on seeds that no test uses; see tests/telemetry/estimation/calibration.py.
+PACE_SD = 0.06  # of a UAV that has not flown yet
+PACE_WANDERS = 0.004  # in a second
+LEAST_PACE, MOST_PACE = 0.4, 1.8
+GUST_SD, GUST_S = 0.05, 12.0  # of speed, and for how long one lasts
+SMALLEST_S = 0.06
+NOW_S = 25.0  # for how long the speed of this moment tells of what comes
+NOW_SHARE = 0.8
+EVEN_S = (-4.0, -2.0, 2.0)  # from now: where it must fly as it does now
+LEAST_EVEN_MPS = 1.0
+ALONG_M, OFF_M = 1.5, 6.0  # standard deviations of a report from the profile, along it and across; corners are cut
+NOT_EVEN = 0.03  # how often it is off along it as well
+FAR_M = 40.0
+OFF_MPS = 2.0
+NOT_SAID = 0.02  # likelihood where the vehicle says that it flies to another waypoint
+
+
+@dataclass(frozen=True, eq=False)
+class Pace:
+    """Equally likely places on the profile, in its own seconds, shape (PLACES,), and the pace with its variance.
+
+    `now` is the share by which the speed of the moment differs from the pace.
+    """
+
+    nominal_s: FloatArray
+    pace: float = 1.0
+    variance: float = PACE_SD**2
+    now: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Ahead:
+    """Where it may be after some time: (n,) readings of the clock, with weights that sum to 1."""
+
+    clock: FloatArray
+    reading_s: FloatArray
+    weight: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What a report shows of it; in the profile's frame. None is not told."""
+
+    east_m: float | None
+    north_m: float | None
+    east_mps: float | None
+    north_mps: float | None
+    up_mps: float | None
+    sequence: int | None
+
+
+def at_start() -> Pace:
+    return Pace(np.zeros(PLACES))
+
+
+def anywhere(profile: Profile, sight: Seen) -> Pace | None:
+    """Of a flight of which nothing was heard before."""
+    start = at_start()
+    return _found_anew(profile, start, clock_of(profile, start), 0.0, sight, within_s=math.inf)
+
+
+def clock_of(profile: Profile, pace: Pace) -> FloatArray:
+    """Of each knot."""
+    return profile.moving_s / pace.pace + profile.standing_s
+
+
+def ahead(profile: Profile, pace: Pace, after_s: float) -> Ahead:
+    """after_s: since the places were right, at least 0."""
+    clock = clock_of(profile, pace)
+    from_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
+    middle_s, doubt_s = _moved(profile, pace, clock, from_s, after_s)
+    reading_s = np.maximum(middle_s[:, None] + doubt_s[:, None] * SPREAD, from_s[:, None]).ravel()
+    return Ahead(clock, reading_s, np.tile(SPREAD_WEIGHT / PLACES, PLACES))
+
+
+def seen(profile: Profile, pace: Pace, after_s: float, sight: Seen, *, is_surely_under_way: bool = True) -> Pace | None:
+    """The places that are left after a report, and a better pace. None where it is nowhere near the profile.
+
+    Without is_surely_under_way it may have stood still for any part of the time.
+    """
+    clock = clock_of(profile, pace)
+    from_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
+    middle_s, doubt_s = _moved(profile, pace, clock, from_s, after_s)
+    if not is_surely_under_way:
+        middle_s, doubt_s = from_s + 0.5 * after_s, np.hypot(doubt_s, 0.4 * after_s)
+    low_s, high_s = float((middle_s - 4.5 * doubt_s).min()), float((middle_s + 4.5 * doubt_s).max())
+    grid_s = np.linspace(max(low_s, float(from_s.min()) - 0.5, float(clock[0])), min(high_s, float(clock[-1])) + 1e-3, GRID)
+    prior = np.exp(-0.5 * ((grid_s[:, None] - middle_s) / doubt_s) ** 2) / doubt_s
+    weight = prior.sum(axis=1) * _likelihood(profile, clock, grid_s, sight)
+    if sight.east_m is not None and sight.north_m is not None:
+        gap_m = np.hypot(_at(grid_s, clock, profile.east_m) - sight.east_m, _at(grid_s, clock, profile.north_m) - sight.north_m)
+        if not weight.max() > 0 or gap_m[int(weight.argmax())] > FAR_M:
+            return _found_anew(profile, pace, clock, float(middle_s.mean()), sight)
+    places_s = _places(grid_s, weight)
+    if places_s is None:
+        return replace(pace, nominal_s=np.interp(np.sort(middle_s), clock, profile.nominal_s))
+    if not is_surely_under_way:
+        return replace(pace, nominal_s=np.interp(places_s, clock, profile.nominal_s), now=_now(profile, clock, places_s, sight))
+    return _learnt(profile, pace, clock, from_s, middle_s, places_s, after_s, sight)
+
+
+def _moved(profile: Profile, pace: Pace, clock: FloatArray, from_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
+    """Mean and standard deviation of the clock after some time, for each place."""
+    plain_s = from_s + after_s
+    moving_s = (_at(plain_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)) / pace.pace
+    slack_s2 = _at(plain_s, clock, profile.doubt_s2) - _at(from_s, clock, profile.doubt_s2)
+    middle_s = plain_s + pace.now * NOW_S * -np.expm1(-moving_s / NOW_S)
+    gusts_s2 = 2.0 * GUST_SD**2 * GUST_S**2 * (moving_s / GUST_S + np.expm1(-moving_s / GUST_S))
+    return middle_s, np.sqrt(SMALLEST_S**2 + gusts_s2 + pace.variance * moving_s**2 + slack_s2)
+
+
+def _at(reading_s: FloatArray, clock: FloatArray, column: FloatArray) -> FloatArray:
+    return np.interp(reading_s, clock, column)
+
+
+def velocity(profile: Profile, clock: FloatArray, reading_s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """East, north and up [m/s] by the profile, over a second around each reading; over the half of it that there is at the beginning."""
+    before, after = np.maximum(reading_s - 0.5, clock[0]), reading_s + 0.5
+    columns = (profile.east_m, profile.north_m, profile.height_m)
+    east, north, up = ((_at(after, clock, column) - _at(before, clock, column)) / (after - before) for column in columns)
+    return east, north, up
+
+
+def _likelihood(profile: Profile, clock: FloatArray, grid_s: FloatArray, sight: Seen) -> FloatArray:
+    found = np.ones_like(grid_s)
+    if sight.east_m is not None and sight.north_m is not None:
+        off_east, off_north = _at(grid_s, clock, profile.east_m) - sight.east_m, _at(grid_s, clock, profile.north_m) - sight.north_m
+        gap_m2 = off_east**2 + off_north**2
+        east, north, _ = velocity(profile, clock, grid_s)
+        along_m2 = (off_east * east + off_north * north) ** 2 / np.maximum(east**2 + north**2, 1.0)
+        near = np.exp(-0.5 * (along_m2 / ALONG_M**2 + np.maximum(gap_m2 - along_m2, 0.0) / OFF_M**2))
+        found *= near + NOT_EVEN * np.exp(-0.5 * gap_m2 / OFF_M**2) + 1e-5 * np.exp(-0.5 * gap_m2 / FAR_M**2)
+    if sight.east_mps is not None and sight.north_mps is not None:
+        east, north, _ = velocity(profile, clock, grid_s)
+        gap_mps2 = (east - sight.east_mps) ** 2 + (north - sight.north_mps) ** 2
+        found *= np.exp(-0.5 * gap_mps2 / OFF_MPS**2) + 1e-3
+    if sight.sequence is not None and len(profile.sequence):
+        leg = profile.leg[np.minimum(np.searchsorted(clock, grid_s), len(profile.leg) - 1)]
+        found *= np.where(np.abs(profile.sequence[leg] - sight.sequence) <= 0, 1.0, NOT_SAID)
+    return found
+
+
+def _found_anew(profile: Profile, pace: Pace, clock: FloatArray, expected_s: float, sight: Seen, *, within_s: float = 120.0) -> Pace | None:
+    """It is not where it was expected: looked for along the whole profile."""
+    grid_s = np.unique(np.concatenate([clock, np.linspace(clock[0], clock[-1], max(GRID, int(clock[-1] - clock[0])))]))
+    weight = _likelihood(profile, clock, grid_s, sight) * (1e-3 + np.exp(-np.abs(grid_s - expected_s) / within_s)) * np.gradient(grid_s)
+    best = int(weight.argmax())
+    gap_m = math.hypot(_one(grid_s[best], clock, profile.east_m) - (sight.east_m or 0.0),
+                       _one(grid_s[best], clock, profile.north_m) - (sight.north_m or 0.0))  # fmt: skip
+    places_s = _places(grid_s, weight)
+    if gap_m > FAR_M or places_s is None:
+        return None
+    return replace(pace, nominal_s=np.interp(places_s, clock, profile.nominal_s), now=0.0)
+
+
+def _one(reading_s: float, clock: FloatArray, column: FloatArray) -> float:
+    return float(np.interp(reading_s, clock, column))
+
+
+def _places(grid_s: FloatArray, weight: FloatArray) -> FloatArray | None:
+    total = np.cumsum(weight)
+    if not (total[-1] > 0 and math.isfinite(total[-1])):
+        return None
+    return np.interp((np.arange(PLACES) + 0.5) / PLACES, (total - 0.5 * weight) / total[-1], grid_s)
+
+
+def _learnt(
+    profile: Profile,
+    pace: Pace,
+    clock: FloatArray,
+    from_s: FloatArray,
+    middle_s: FloatArray,
+    places_s: FloatArray,
+    after_s: float,
+    sight: Seen,
+) -> Pace:
+    """Only from time in motion, and where it was seen."""
+    nominal_s = np.interp(places_s, clock, profile.nominal_s)
+    variance = pace.variance + PACE_WANDERS**2 * after_s
+    if sight.east_m is None:
+        return replace(pace, nominal_s=nominal_s, variance=min(variance, PACE_SD**2))
+    moving_s = float((_at(middle_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)).mean()) / pace.pace
+    better = pace.pace
+    if moving_s > 0.5 * after_s:
+        slack_s2 = float((_at(middle_s, clock, profile.doubt_s2) - _at(from_s, clock, profile.doubt_s2)).mean())
+        seen_s2 = 2.0 * GUST_SD**2 * GUST_S * moving_s + slack_s2 + float(places_s.var()) + float(middle_s.var()) + 0.2**2
+        gain = variance / (variance + seen_s2 / moving_s**2)
+        better = pace.pace * (1.0 + gain * float(places_s.mean() - middle_s.mean()) / moving_s)
+        variance *= 1.0 - gain
+    return Pace(nominal_s, min(max(better, LEAST_PACE), MOST_PACE), min(variance, PACE_SD**2), _now(profile, clock, places_s, sight))
+
+
+def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, sight: Seen) -> float:
+    """By the speed that was told, where it flies evenly: 0 near corners and stops."""
+    if sight.east_mps is None or sight.north_mps is None:
+        return 0.0
+    here_s = float(places_s.mean())
+    each = np.array(velocity(profile, clock, here_s + np.array([0.0, *EVEN_S])))
+    by_profile_mps = float(np.linalg.norm(each[:, 0]))
+    if by_profile_mps < LEAST_EVEN_MPS or np.linalg.norm(each[:, 1:] - each[:, :1], axis=0).max() > 0.1 * by_profile_mps:
+        return 0.0
+    told_mps = math.sqrt(sight.east_mps**2 + sight.north_mps**2 + (sight.up_mps or 0.0) ** 2)
+    return NOW_SHARE * min(max(told_mps / by_profile_mps - 1.0, -0.5), 0.5)

@@ -1,0 +1,184 @@
+"""From what was known to what is known after one more report."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.belief import Belief
+from telemetry.estimation.knowledge import Knowledge
+from telemetry.estimation.motion import SHARED_HEIGHT_M, SHARED_M, State, Track, after
+from telemetry.estimation.pace import PLACES, Pace, Seen, anywhere, at_start, seen
+from telemetry.estimation.phases import Phase, phase_of
+from telemetry.estimation.profile import Profile, way_home
+from telemetry.estimation.report import Report
+
+GPS_VARIANCE_M2 = 0.45**2  # each way, of what no two reports share
+BARO_VARIANCE_M2 = 0.25**2
+LONGEST_DIFFERENCE_S = 15.0  # between two positions, for a velocity
+STANDS_BELOW_MPS = 0.7
+CLIMBS_ABOVE_MPS = 0.5
+AT_HOME_M, CREEPS_MPS = 8.0, 1.5  # it comes down there
+RETURN_PACE_SD = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """What does not change in a flight: `profile` None without a route. Everything is told in `frame`."""
+
+    knowledge: Knowledge
+    frame: LocalFrame
+    profile: Profile | None
+
+
+def first_state(course: Course, report: Report) -> State | None:
+    """None without a position."""
+    told, place = report.measurement, _place(course, report.measurement)
+    if place is None:
+        return None
+    said = phase_of(told.mode, is_armed=told.is_armed, is_in_air=told.is_in_air)
+    phase = said or (Phase.MISSION if course.profile is not None else Phase.FREE)
+    east_mps, north_mps, up_mps = _velocity(told) or (0.0, 0.0, 0.0)
+    route = None
+    if course.profile is not None:
+        pace = at_start() if phase is Phase.GROUND else anywhere(course.profile, _sight(phase, told, place))
+        route = None if pace is None else Track(course.profile, pace)
+    return _with_way(
+        course,
+        State(
+            report.measured_s, report.measured_s, _on_route(phase, route), told.mode, *place, told.altitude_relative_m,
+            east_mps, north_mps, up_mps,
+            GPS_VARIANCE_M2, BARO_VARIANCE_M2, told.heading_deg, _amsl_above(told), route, None, told.waypoint_sequence,
+        ),
+    )  # fmt: skip
+
+
+def next_state(course: Course, state: State, report: Report) -> State:
+    """report: measured no earlier than the state's."""
+    told, after_s = report.measurement, max(report.measured_s - state.report_s, 0.0)
+    belief = after(state, after_s)
+    said = phase_of(told.mode, is_armed=told.is_armed, is_in_air=told.is_in_air)
+    phase = said or state.phase
+    place = _place(course, told)
+    east_m, north_m, variance_m2 = _fused(belief, place)
+    height_m, height_variance_m2 = _fused_height(belief, told.altitude_relative_m)
+    east_mps, north_mps, up_mps = _velocity(told) or _velocity_from(state, belief, place, report.measured_s)
+    sequence = told.waypoint_sequence if told.waypoint_sequence is not None else state.sequence
+    route = _route(course, state, phase, after_s, _sight(phase, told, place))
+    if phase is Phase.FREE and said is None and route is not None:
+        phase = Phase.MISSION
+    return _with_way(
+        course,
+        State(
+            report.measured_s, state.placed_s if place is None else report.measured_s, _on_route(phase, route), told.mode or state.mode,
+            east_m, north_m, height_m, east_mps, north_mps, up_mps, variance_m2, height_variance_m2,
+            state.heading_deg if told.heading_deg is None else told.heading_deg,
+            _kept_amsl(state, _amsl_above(told)), route, None, sequence,
+        ),
+    )  # fmt: skip
+
+
+def _place(course: Course, told: Measurement) -> tuple[float, float] | None:
+    if told.longitude_deg is None or told.latitude_deg is None:
+        return None
+    east_m, north_m = course.frame.to_metres(np.array([[told.longitude_deg, told.latitude_deg]]))[0]
+    return float(east_m), float(north_m)
+
+
+def _velocity(told: Measurement) -> tuple[float, float, float] | None:
+    if told.velocity_east_mps is None or told.velocity_north_mps is None:
+        return None
+    return told.velocity_east_mps, told.velocity_north_mps, -(told.velocity_down_mps or 0.0)
+
+
+def _sight(phase: Phase, told: Measurement, place: tuple[float, float] | None) -> Seen:
+    """The velocity only where it tells of the place on the route."""
+    velocity = _velocity(told) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
+    east_m, north_m = place or (None, None)
+    east_mps, north_mps, up_mps = velocity or (None, None, None)
+    return Seen(east_m, north_m, east_mps, north_mps, up_mps, told.waypoint_sequence)
+
+
+def _velocity_from(state: State, belief: Belief, place: tuple[float, float] | None, at_s: float) -> tuple[float, float, float]:
+    """Where none was told: from two positions, or as believed."""
+    past_s = at_s - state.placed_s
+    if place is None or not 0.5 <= past_s <= LONGEST_DIFFERENCE_S:
+        return belief.east_mps, belief.north_mps, belief.up_mps
+    return (place[0] - state.east_m) / past_s, (place[1] - state.north_m) / past_s, belief.up_mps
+
+
+def _fused(belief: Belief, place: tuple[float, float] | None) -> tuple[float, float, float]:
+    """A measured position and the believed one, each by its variance."""
+    own_m2 = max(0.5 * float(np.trace(belief.covariance)) - SHARED_M**2, 0.01)
+    if place is None:
+        return belief.east_m, belief.north_m, own_m2
+    gain = own_m2 / (own_m2 + GPS_VARIANCE_M2)
+    east_m, north_m = belief.east_m + gain * (place[0] - belief.east_m), belief.north_m + gain * (place[1] - belief.north_m)
+    return east_m, north_m, gain * GPS_VARIANCE_M2
+
+
+def _fused_height(belief: Belief, told_m: float | None) -> tuple[float | None, float]:
+    own_m2 = max(belief.height_sd_m**2 - SHARED_HEIGHT_M**2, 0.01)
+    if told_m is None:
+        return belief.height_m, own_m2
+    if belief.height_m is None:
+        return told_m, BARO_VARIANCE_M2
+    gain = own_m2 / (own_m2 + BARO_VARIANCE_M2)
+    return belief.height_m + gain * (told_m - belief.height_m), gain * BARO_VARIANCE_M2
+
+
+def _route(course: Course, state: State, phase: Phase, after_s: float, sight: Seen) -> Track | None:
+    """The place on the approved route, followed also where it is left for a while."""
+    if course.profile is None:
+        return None
+    if phase is Phase.GROUND and state.route is None:
+        return Track(course.profile, at_start())
+    if phase is Phase.GROUND and state.phase is Phase.GROUND:
+        return state.route
+    before = state.route
+    if before is None:
+        pace = None if sight.east_m is None else anywhere(course.profile, sight)
+    elif phase in {Phase.MISSION, Phase.TAKE_OFF} or state.phase in {Phase.MISSION, Phase.TAKE_OFF}:
+        is_under_way = state.phase in {Phase.MISSION, Phase.TAKE_OFF} and phase in {Phase.MISSION, Phase.TAKE_OFF}
+        pace = seen(course.profile, before.pace, after_s, sight, is_surely_under_way=is_under_way)
+    else:
+        pace = before.pace  # it stands where it left the route
+    return None if pace is None else Track(course.profile, pace)
+
+
+def _on_route(phase: Phase, route: Track | None) -> Phase:
+    """Who flies a list, but not along the approved route, flies where nobody knows."""
+    return Phase.FREE if phase is Phase.MISSION and route is None else phase
+
+
+def _with_way(course: Course, state: State) -> State:
+    """Of one that returns: the way home from where it is."""
+    home = course.knowledge.home
+    if state.phase is not Phase.RETURN or home is None or state.height_m is None:
+        return state if state.phase is not Phase.RETURN else _changed(state, Phase.FREE, None)
+    if state.up_mps > CLIMBS_ABOVE_MPS and math.hypot(state.east_mps, state.north_mps) < 2.0 * STANDS_BELOW_MPS:
+        return _changed(state, Phase.RETURN, None)
+    east_m, north_m = course.frame.to_metres(np.array([home]))[0] - (state.east_m, state.north_m)
+    far_m = math.hypot(east_m, north_m)
+    if far_m < AT_HOME_M and math.hypot(state.east_mps, state.north_mps) < CREEPS_MPS:
+        return _changed(state, Phase.LAND, None)
+    towards_mps = 0.0 if far_m < 1.0 else max((state.east_mps * east_m + state.north_mps * north_m) / far_m, 0.0)
+    profile = way_home(course.frame, (state.east_m, state.north_m, state.height_m), towards_mps, LonLat(*home), course.knowledge)
+    return _changed(state, Phase.RETURN, Track(profile, Pace(np.zeros(PLACES), variance=RETURN_PACE_SD**2)))
+
+
+def _changed(state: State, phase: Phase, home: Track | None) -> State:
+    return replace(state, phase=phase, home=home)
+
+
+def _amsl_above(told: Measurement) -> float | None:
+    if told.altitude_amsl_m is None or told.altitude_relative_m is None:
+        return None
+    return told.altitude_amsl_m - told.altitude_relative_m
+
+
+def _kept_amsl(state: State, told_m: float | None) -> float | None:
+    return state.amsl_above_m if told_m is None else told_m

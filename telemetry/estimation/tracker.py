@@ -1,0 +1,168 @@
+"""One UAV: reports in, an estimate for any moment out."""
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from telemetry.estimation.belief import Belief
+from telemetry.estimation.estimate import Arrival, Ellipse, Estimate
+from telemetry.estimation.knowledge import Knowledge
+from telemetry.estimation.motion import State, after
+from telemetry.estimation.outlook import arrivals_of, end_of
+from telemetry.estimation.phases import Phase
+from telemetry.estimation.profile import profile_of
+from telemetry.estimation.report import Report, sound
+from telemetry.estimation.step import Course, first_state, next_state
+
+KEPT_S = 300.0  # of reports: one that comes later than that changes nothing
+KEPT = 400
+VOUCHED_M = 400.0  # a bound that is wider says nothing any more
+VOUCHED_S = 900.0
+VOUCHED_AWAY_S = 30.0  # of one that would leave its route without a link
+MEASURED_WITHIN_S = 1.0
+
+
+@dataclass
+class Tracker:
+    """`take` reports in any order, as often as they come; `estimate` asks for a moment.
+
+    A report that was measured before others that are known corrects the past: all after it are gone through again. So what is known does
+    not depend on the order in which reports come, and can be had again from the newest of them.
+    """
+
+    knowledge: Knowledge
+    _course: Course | None = None
+    _reports: list[Report] = field(default_factory=list)
+    _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
+    _outlook: tuple[float, tuple[Arrival, ...], Arrival | None] | None = None
+
+    def take(self, report: Report) -> None:
+        read = sound(report)
+        if read is None or (self._reports and read.measured_s < self._reports[-1].measured_s - KEPT_S):
+            return
+        place = bisect_right(self._reports, read.measured_s, key=lambda known: known.measured_s)
+        if place and self._reports[place - 1].measured_s == read.measured_s:
+            if self._reports[place - 1].has_position or not read.has_position:
+                return
+            place -= 1
+            self._reports[place] = read
+        else:
+            self._reports.insert(place, read)
+            self._states.insert(place, None)
+        self._go_through(place)
+        self._outlook = None
+        self._forget()
+
+    def estimate(self, at_s: float) -> Estimate | None:
+        """Of a moment no earlier than some report; None before the first position."""
+        place = bisect_right(self._reports, at_s, key=lambda known: known.measured_s) - 1
+        state = self._states[place] if place >= 0 else None
+        if state is None or self._course is None:
+            return None
+        belief = after(state, at_s - state.report_s)
+        return self._told(state, belief, at_s)
+
+    def _go_through(self, place: int) -> None:
+        state = self._states[place - 1] if place else None
+        for number in range(place, len(self._reports)):
+            report = self._reports[number]
+            state = self._begin(report) if state is None or self._course is None else next_state(self._course, state, report)
+            self._states[number] = state
+
+    def _begin(self, report: Report) -> State | None:
+        told = report.measurement
+        if told.longitude_deg is None or told.latitude_deg is None:
+            return None
+        if self._course is None:
+            profile = profile_of(self.knowledge)
+            frame = LocalFrame.around(told.longitude_deg, told.latitude_deg) if profile is None else profile.frame
+            self._course = Course(self.knowledge, frame, profile)
+        return first_state(self._course, report)
+
+    def _forget(self) -> None:
+        oldest_s = self._reports[-1].measured_s - KEPT_S
+        gone = max(bisect_right(self._reports, oldest_s, key=lambda known: known.measured_s), len(self._reports) - KEPT)
+        gone = min(gone, len(self._reports) - 1)  # the newest stays however long ago it was
+        if gone > 0:
+            del self._reports[:gone], self._states[:gone]
+
+    def _told(self, state: State, belief: Belief, at_s: float) -> Estimate:
+        bound = _ellipse(belief)
+        since_s = at_s - state.placed_s
+        lon, lat = self._frame.to_degrees(np.array([[belief.east_m, belief.north_m]]))[0]
+        height_m = None if belief.height_m is None else float(belief.height_m)
+        amsl_m = None if height_m is None or state.amsl_above_m is None else height_m + state.amsl_above_m
+        vouched_s = VOUCHED_S if self.knowledge.is_to_go_on else VOUCHED_AWAY_S
+        estimate = Estimate(
+            at_s=at_s,
+            position=LonLat(float(lon), float(lat)),
+            altitude_relative_m=height_m,
+            altitude_amsl_m=amsl_m,
+            speed_mps=belief.speed_mps,
+            heading_deg=_heading_deg(state, belief),
+            bound=bound,
+            bound_height_m=1.96 * belief.height_sd_m,
+            bound_speed_mps=1.96 * belief.speed_sd_mps,
+            report_s=state.report_s,
+            is_measured=since_s < MEASURED_WITHIN_S,
+            is_lost=since_s > vouched_s or bound.along_m > VOUCHED_M,
+            waypoint_sequence=state.sequence,
+        )
+        return estimate if belief.nominal_s is None else self._with_route(estimate, state, belief.nominal_s)
+
+    @property
+    def _frame(self) -> LocalFrame:
+        if self._course is None:
+            raise ValueError("nothing was reported")
+        return self._course.frame
+
+    def _with_route(self, estimate: Estimate, state: State, nominal_s: float) -> Estimate:
+        followed = state.followed
+        if followed is None:
+            return estimate
+        arrivals, end = self._foreseen(state)
+        at_s = estimate.at_s
+        told = replace(estimate, ends_at_s=None if end is None else max(end.at_s, at_s))
+        if followed is not state.route:
+            return told
+        profile = followed.profile
+        along_m = float(np.interp(nominal_s, profile.nominal_s, profile.along_m))
+        knot = min(int(np.searchsorted(profile.nominal_s, nominal_s)), len(profile.leg) - 1)
+        sequence = int(profile.sequence[profile.leg[knot]])
+        return replace(
+            told,
+            waypoint_sequence=estimate.waypoint_sequence if sequence < 0 else sequence,
+            along_route_m=along_m,
+            to_go_m=profile.length_m - along_m,
+            arrivals=tuple(_not_past(arrival, at_s) for arrival in arrivals if arrival.latest_s > at_s),
+        )
+
+    def _foreseen(self, state: State) -> tuple[tuple[Arrival, ...], Arrival | None]:
+        """Worked out once a report."""
+        if self._outlook is None or self._outlook[0] != state.report_s:
+            followed = state.followed
+            arrivals = () if state.route is None or followed is not state.route else arrivals_of(state, state.route)
+            self._outlook = (state.report_s, arrivals, None if followed is None else end_of(state, followed))
+        return self._outlook[1:]
+
+
+def _not_past(arrival: Arrival, at_s: float) -> Arrival:
+    return replace(arrival, at_s=max(arrival.at_s, at_s), earliest_s=max(arrival.earliest_s, at_s))
+
+
+def _heading_deg(state: State, belief: Belief) -> float | None:
+    """The course while it moves, as the nose goes along with it; else as last told."""
+    if belief.speed_mps < 1.0 or state.phase in {Phase.GROUND, Phase.FREE}:
+        return state.heading_deg
+    return math.degrees(math.atan2(belief.east_mps, belief.north_mps)) % 360.0
+
+
+def _ellipse(belief: Belief) -> Ellipse:
+    values, vectors = np.linalg.eigh(belief.covariance)
+    long_m, short_m = (float(np.sqrt(belief.reach2 * max(value, 0.0))) for value in (values[1], values[0]))
+    bearing_deg = math.degrees(math.atan2(vectors[0, 1], vectors[1, 1])) % 180.0
+    return Ellipse(long_m, short_m, bearing_deg)

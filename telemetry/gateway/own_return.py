@@ -1,0 +1,61 @@
+"""The parameters by which a vehicle flies home by itself: asked for when it is first heard and before each flight, and told on."""
+
+from dataclasses import dataclass
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.frames import Message
+from missions.mavlink.own_return import NAMES, PARAMETERS
+from telemetry.ground_station.ends import AUTOPILOT
+from telemetry.ground_station.parameters import BY_NAME
+from telemetry.ground_station.vehicle_state import VehicleState
+
+ASK_EVERY_S = 2.0
+MOST_QUESTIONS = 5  # a vehicle that has no such parameters says nothing
+
+
+@dataclass(frozen=True)
+class ToldReturn:
+    """`at_s` is when the last of them was heard, monotonic."""
+
+    autopilot: str
+    parameters: dict[str, float]
+    at_s: float
+
+
+@dataclass
+class OwnReturn:
+    """Of one vehicle. Times are monotonic seconds."""
+
+    _wanted_since_s: float = 0.0
+    _asked_s: float = -ASK_EVERY_S
+    _questions_left: int = MOST_QUESTIONS
+    _told_s: float = 0.0
+
+    def ask_anew(self, now_s: float) -> None:
+        """Somebody may have set them since."""
+        self._wanted_since_s, self._questions_left = now_s, MOST_QUESTIONS
+
+    def questions(self, state: VehicleState, now_s: float) -> list[Message]:
+        """What is to be sent now: for what was not told since it was wanted."""
+        groups = PARAMETERS.get(state.flavour or "", ())
+        if not groups or not self._questions_left or now_s - self._asked_s < ASK_EVERY_S:
+            return []
+        untold = [group for group in groups if all(state.parameters_at_s.get(name, -1.0) < self._wanted_since_s for name in group)]
+        if not untold:
+            return []
+        self._asked_s = now_s
+        self._questions_left -= 1
+        names = [name for group in untold for name in group]
+        return [mavlink.MAVLink_param_request_read_message(state.system, AUTOPILOT, name.encode(), BY_NAME) for name in names]
+
+    def news(self, state: VehicleState) -> ToldReturn | None:
+        """What was told since `note` was called last, also without having been asked: all that is known."""
+        flavour = state.flavour or ""
+        heard_s = {name: state.parameters_at_s[name] for name in NAMES.get(flavour, ()) if name in state.parameters_at_s}
+        if not heard_s or max(heard_s.values()) <= self._told_s:
+            return None
+        return ToldReturn(str(flavour), {name: state.parameters[name] for name in heard_s}, max(heard_s.values()))
+
+    def note(self, told: ToldReturn) -> None:
+        self._told_s = max(self._told_s, told.at_s)

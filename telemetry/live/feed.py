@@ -1,0 +1,100 @@
+"""One organisation's rows, followed for all its open pages at once."""
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable, Collection
+from uuid import UUID
+
+from django.db import Error as DatabaseError
+
+from telemetry.live.look import Look, changed_between
+from telemetry.live.messages import changes, everything, message
+from telemetry.live.reader import Reader
+from telemetry.selectors.live import Key
+
+logger = logging.getLogger(__name__)
+
+LOOK_EVERY_S = 1.0  # whether a word has come or not
+LOOK_PAUSE_S = 0.1  # between two looks, however many words come
+
+Looker = Callable[[int, Collection[UUID], Collection[str], Look], Awaitable[Look]]
+
+
+class Feed:
+    """`run` until it is cancelled. Pages come and go by `join` and `leave`, all in one event loop."""
+
+    def __init__(self, organisation_id: int, look: Looker) -> None:
+        self.organisation_id = organisation_id
+        self.readers: set[Reader] = set()
+        self._look = look
+        self._seen = Look()
+        self._waiting: set[Reader] = set()  # for the first look that has begun since they came
+        self._word = asyncio.Event()
+        self._bodies: dict[tuple[UUID | None, str, frozenset[Key] | None], str] = {}
+
+    def join(self, reader: Reader) -> None:
+        self.readers.add(reader)
+        self._waiting.add(reader)
+        self._word.set()
+
+    def leave(self, reader: Reader) -> None:
+        self.readers.discard(reader)
+        self._waiting.discard(reader)
+
+    def hint(self) -> None:
+        self._word.set()
+
+    def next_message(self, reader: Reader) -> str:
+        """Of a reader to whom something is to be told. Pages that are told the same share the work."""
+        sequence, keys = reader.take()
+        place = (reader.mission, reader.language, keys)
+        body = self._bodies.get(place)
+        if body is None:
+            make = everything(self._seen, *place[:2]) if keys is None else changes(self._seen, *place[:2], keys)
+            body = self._bodies[place] = make
+        return message("snapshot" if keys is None else "changes", sequence, body)
+
+    async def run(self) -> None:
+        while True:
+            self._word.clear()
+            await self._look_once()
+            await asyncio.sleep(LOOK_PAUSE_S)
+            try:
+                await asyncio.wait_for(self._word.wait(), LOOK_EVERY_S - LOOK_PAUSE_S)
+            except TimeoutError:
+                continue
+
+    async def _look_once(self) -> None:
+        newcomers, self._waiting = self._waiting, set()
+        missions = {reader.mission for reader in self.readers if reader.mission is not None}
+        languages = {reader.language for reader in self.readers}
+        try:
+            seen = await self._look(self.organisation_id, missions, languages, self._seen)
+        except DatabaseError as error:  # away for a moment: the next look tells
+            logger.debug("live pages cannot be told: %r", error)
+            self._waiting |= newcomers & self.readers
+            return
+        except Exception:  # one object that cannot be shown must not stop the rest for good
+            logger.exception("live pages of organisation %s cannot be told", self.organisation_id)
+            self._waiting |= newcomers & self.readers
+            return
+        before, self._seen = self._seen, seen
+        self._bodies.clear()
+        self._tell(before, newcomers)
+
+    def _tell(self, before: Look, newcomers: set[Reader]) -> None:
+        changed: dict[UUID | None, set[Key]] = {}
+        for reader in self.readers:
+            if reader.mission is not None and reader not in self._waiting and not self._seen.is_shown(_mission_key(reader), reader.mission):
+                reader.end()
+            elif reader in newcomers:
+                reader.begin()
+            elif reader.is_ready:
+                if reader.mission not in changed:
+                    changed[reader.mission] = changed_between(before, self._seen, reader.mission)
+                if changed[reader.mission]:
+                    reader.note(changed[reader.mission])
+
+
+def _mission_key(reader: Reader) -> Key:
+    return ("missions", str(reader.mission))

@@ -1,0 +1,61 @@
+"""The one place of a process that follows rows for live pages: one feed an organisation, as long as a page of it is open."""
+
+import asyncio
+from collections.abc import Collection
+from concurrent.futures import ThreadPoolExecutor
+from uuid import UUID
+from weakref import WeakKeyDictionary
+
+from channels.db import DatabaseSyncToAsync
+
+from telemetry.live.feed import Feed
+from telemetry.live.hints import listen
+from telemetry.live.look import Look, look
+from telemetry.live.reader import Reader
+
+
+class Hub:
+    """Of one event loop. Reads in a thread of its own, so that it waits for no page's rights to be looked up."""
+
+    def __init__(self) -> None:
+        self._feeds: dict[int, tuple[Feed, asyncio.Task[None]]] = {}
+        self._listening: asyncio.Task[None] | None = None
+        self._look = DatabaseSyncToAsync(look, thread_sensitive=False, executor=ThreadPoolExecutor(1, thread_name_prefix="live"))
+
+    def join(self, reader: Reader) -> Feed:
+        if reader.organisation_id not in self._feeds:
+            feed = Feed(reader.organisation_id, self._look_at)
+            self._feeds[reader.organisation_id] = (feed, asyncio.create_task(feed.run()))
+        if self._listening is None:
+            self._listening = asyncio.create_task(listen(self._hint))
+        feed, _ = self._feeds[reader.organisation_id]
+        feed.join(reader)
+        return feed
+
+    def leave(self, reader: Reader) -> None:
+        feed, run = self._feeds[reader.organisation_id]
+        feed.leave(reader)
+        if not feed.readers:
+            run.cancel()
+            del self._feeds[reader.organisation_id]
+        if not self._feeds and self._listening is not None:
+            self._listening.cancel()
+            self._listening = None
+
+    def _hint(self, organisation_id: int) -> None:
+        if organisation_id in self._feeds:
+            self._feeds[organisation_id][0].hint()
+
+    async def _look_at(self, organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Look) -> Look:
+        return await self._look(organisation_id, missions, languages, before)
+
+
+_hubs: WeakKeyDictionary[asyncio.AbstractEventLoop, Hub] = WeakKeyDictionary()
+
+
+def hub_here() -> Hub:
+    """That of the running event loop: one a process, as it is served."""
+    loop = asyncio.get_running_loop()
+    if loop not in _hubs:
+        _hubs[loop] = Hub()
+    return _hubs[loop]

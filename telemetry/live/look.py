@@ -1,0 +1,70 @@
+"""One look at an organisation's rows: what is shown now, and the texts of what has changed since the look before."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from hashlib import sha256
+from uuid import UUID
+
+from telemetry.live.objects import SAME_IN_ALL, language_of, texts_of
+from telemetry.selectors.live import Key, Shown, shown_live
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    version: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Look:
+    """`texts` by language; what has no words is under SAME_IN_ALL."""
+
+    shown: Mapping[Key, Shown] = field(default_factory=dict)
+    texts: Mapping[str, Mapping[Key, Text]] = field(default_factory=dict)
+
+    def text(self, key: Key, language: str) -> str | None:
+        found = self.texts.get(language_of(key[0], language), {}).get(key)
+        return None if found is None else found.text
+
+    def is_shown(self, key: Key, mission: UUID | None) -> bool:
+        entry = self.shown.get(key)
+        return entry is not None and entry.is_for(mission)
+
+
+def look(organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Look) -> Look:
+    """An object that changes while it is read may be newer than its version: then the next look finds it changed, and tells it again."""
+    shown = shown_live(organisation_id, missions)
+    texts = {language: _texts(shown, language, before.texts.get(language, {})) for language in {SAME_IN_ALL, *languages}}
+    return Look(shown, texts)
+
+
+def look_once(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> Look:
+    """Of one page alone; without texts where it is what has the ETag `known`."""
+    shown = shown_live(organisation_id, [] if mission is None else [mission])
+    seen = Look({key: entry for key, entry in shown.items() if entry.is_for(mission)})
+    if known and known == etag_of(seen, language):
+        return seen
+    return Look(seen.shown, {each: _texts(seen.shown, each, {}) for each in {SAME_IN_ALL, language}})
+
+
+def etag_of(seen: Look, language: str) -> str:
+    versions = sorted((*key, entry.version) for key, entry in seen.shown.items())
+    return f'"{sha256(repr((language, versions)).encode()).hexdigest()[:32]}"'
+
+
+def changed_between(before: Look, now: Look, mission: UUID | None) -> set[Key]:
+    """What pages of the mission, or of the whole organisation, are to be told: changed, come, or gone."""
+    changed = {
+        key
+        for key, entry in now.shown.items()
+        if entry != before.shown.get(key) and (entry.is_for(mission) or before.is_shown(key, mission))
+    }
+    return changed | {key for key in before.shown.keys() - now.shown.keys() if before.is_shown(key, mission)}
+
+
+def _texts(shown: Mapping[Key, Shown], language: str, before: Mapping[Key, Text]) -> dict[Key, Text]:
+    own = {key: entry for key, entry in shown.items() if language_of(key[0], language) == language}
+    stale = [key for key, entry in own.items() if key not in before or before[key].version != entry.version]
+    fresh = texts_of(stale, language) if stale else {}
+    kept = {key: text for key, text in before.items() if key in own}
+    return kept | {key: Text(own[key].version, text) for key, text in fresh.items() if key in own}

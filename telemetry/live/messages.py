@@ -1,0 +1,48 @@
+"""What is said to live pages. Objects are texts already: a message is put together of them."""
+
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from uuid import UUID
+
+from telemetry.live.look import Look
+from telemetry.selectors.live import KINDS, Key
+
+
+def server_time() -> str:
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+def message(kind: str, sequence: int, body: str = "") -> str:
+    head = f'"type":"{kind}","sequence":{sequence},"server_time":"{server_time()}"'
+    return f"{{{head},{body}}}" if body else f"{{{head}}}"
+
+
+def everything(look: Look, mission: UUID | None, language: str) -> str:
+    """The body of a snapshot."""
+    return f'"live":{live_text(look, mission, language)}'
+
+
+def live_text(look: Look, mission: UUID | None, language: str) -> str:
+    """`{"uavs": […], …}`, as GET /api/v1/live has it, too."""
+    texts: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    for key, entry in look.shown.items():
+        text = look.text(key, language)
+        if text is not None and entry.is_for(mission):
+            texts[key[0]].append(text)
+    return "{" + ",".join(f'"{kind}":[{",".join(texts[kind])}]' for kind in KINDS) + "}"
+
+
+def changes(look: Look, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
+    """The body of a message of changes: what is shown, whole; of the rest that it is gone."""
+    there: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    gone: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    for key in sorted(keys):
+        kind, name = key
+        text = look.text(key, language) if look.is_shown(key, mission) else None
+        if text is not None:
+            there[kind].append(text)
+        else:
+            gone[kind].append(name if name.isdigit() else f'"{name}"')
+    parts = [f'"{kind}":[{",".join(there[kind])}]' for kind in KINDS]
+    ended = ",".join(f'"{kind}":[{",".join(gone[kind])}]' for kind in KINDS)
+    return ",".join(parts) + f',"gone":{{{ended}}}'

@@ -1,0 +1,90 @@
+"""What live pages show, whole: one JSON text an object, in the reader's language."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import orjson
+from django.db.models import Count
+from django.utils import translation
+
+from missions.models import ReplanOffer, UavCommand
+from missions.serializers.commands import command_json
+from telemetry.live.missions import missions_json
+from telemetry.live.uavs import uavs_json
+from telemetry.models import Alert
+from telemetry.selectors.live import Key
+from workspace.stored_words import in_words
+
+SAME_IN_ALL = ""  # the language of what has no words
+
+
+def language_of(kind: str, language: str) -> str:
+    """That in which objects of the kind are kept for a reader of `language`."""
+    return SAME_IN_ALL if kind == "uavs" else language
+
+
+def texts_of(keys: Iterable[Key], language: str) -> dict[Key, str]:
+    """Those that are there no more are left out."""
+    by_kind: dict[str, list[str]] = defaultdict(list)
+    for kind, key in keys:
+        by_kind[kind].append(key)
+    with translation.override(language or None):
+        return {
+            (kind, str(found["id"])): orjson.dumps(found, default=str).decode()
+            for kind, ids in by_kind.items()
+            for found in _READ[kind](ids)
+        }
+
+
+def _alerts(ids: list[str]) -> list[dict[str, Any]]:
+    alerts = Alert.objects.filter(pk__in=ids).select_related("acknowledged_by").annotate(note_count=Count("notes"))
+    return [
+        {
+            "id": alert.pk,
+            "uav": alert.uav_id,
+            "mission": alert.mission_id,
+            "level": alert.level,
+            "code": alert.code,
+            "subject": alert.subject,
+            "message": in_words(alert.message),
+            "details": alert.details,
+            "opened_at": alert.opened_at,
+            "closed_at": alert.closed_at,
+            "acknowledged_at": alert.acknowledged_at,
+            "acknowledged_by": alert.acknowledged_by.username if alert.acknowledged_by else None,
+            "revision": alert.revision,
+            "notes": alert.note_count,
+        }
+        for alert in alerts
+    ]
+
+
+def _commands(ids: list[str]) -> list[dict[str, Any]]:
+    return [command_json(command) for command in UavCommand.objects.filter(pk__in=ids).select_related("uav", "created_by")]
+
+
+def _offers(ids: list[str]) -> list[dict[str, Any]]:
+    return [
+        {
+            "id": offer.pk,
+            "mission": offer.mission_id,
+            "code": offer.code,
+            "state": offer.state,
+            "cause": offer.cause,
+            "difference": offer.difference,
+            "continuation": offer.continuation_id,
+            "created_at": offer.created_at,
+            "outcome": in_words(offer.outcome),
+        }
+        for offer in ReplanOffer.objects.filter(pk__in=ids)
+    ]
+
+
+_READ: dict[str, Callable[[list[Any]], list[dict[str, Any]]]] = {
+    "uavs": uavs_json,
+    "missions": missions_json,
+    "alerts": _alerts,
+    "commands": _commands,
+    "offers": _offers,
+}

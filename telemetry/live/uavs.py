@@ -1,0 +1,79 @@
+"""UAVs as live pages show them: the link, what was measured, what is estimated."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from django.db.models import Case, F, IntegerField, Value, When
+
+from missions.models import MissionState, MissionUav, Uav
+from telemetry.models import UavLink
+
+FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)
+MEASURED = (
+    "position", "altitude_relative_m", "altitude_amsl_m", "altitude_agl_m", "speed_mps", "climb_mps", "heading_deg", "battery_percent",
+    "mode", "is_armed", "is_in_air", "gps_fix", "satellites", "hdop", "link_quality_percent", "wind_speed_mps", "wind_from_deg",
+    "waypoint_sequence",
+)  # fmt: skip
+GROUPS = ("position", "height", "speed", "attitude", "battery", "state", "link", "gps", "wind", "waypoint")
+
+
+def uavs_json(uav_ids: Iterable[int]) -> list[dict[str, Any]]:
+    uavs = Uav.objects.filter(pk__in=list(uav_ids)).select_related("connection", "watch")
+    flown = _flown([uav.pk for uav in uavs])
+    return [_uav_json(uav, flown.get(uav.pk)) for uav in uavs]
+
+
+def measured_json(stored: Mapping[str, Mapping[str, Any]] | None) -> dict[str, Any] | None:
+    """Flat, as of the newest report; `measured_at_of` has the time of each group of values, null where it was never told."""
+    if not stored:
+        return None
+    values = {name: value for group in stored.values() for name, value in group.items()}
+    newest = stored["report"]
+    return {
+        "measured_at": newest["measured_at"],
+        "received_at": newest["received_at"],
+        **{name: values.get(name) for name in MEASURED},
+        "measured_at_of": {group: stored[group]["measured_at"] if group in stored else None for group in GROUPS},
+    }
+
+
+def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int]]:
+    """The mission that each flies, and its place in it."""
+    rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None)
+    first = Case(When(mission__state=MissionState.ACTIVE, then=Value(0)), default=Value(1), output_field=IntegerField())
+    newest = rows.order_by("uav", first, F("mission__updated_at").desc()).distinct("uav")
+    return {uav: (str(mission), place) for uav, mission, place in newest.values_list("uav", "mission", "sequence")}
+
+
+def _uav_json(uav: Uav, flown: tuple[str, int] | None) -> dict[str, Any]:
+    watch = getattr(uav, "watch", None)
+    mission, place = flown or (None, None)
+    return {
+        "id": uav.pk,
+        "name": uav.name,
+        "mission": mission,
+        "place": place,
+        "link": _link_json(uav.link, getattr(uav, "connection", None) or UavLink()),
+        "measured": measured_json(watch.measured) if watch else None,
+        "estimated": watch.estimated if watch else None,
+        "is_simulated": uav.is_simulated,
+    }
+
+
+def _link_json(kind: str, link: UavLink) -> dict[str, Any]:
+    loaded = {
+        "approval": link.loaded_approval,
+        "flight": link.loaded_flight,
+        "read_at": link.loaded_read_at,
+        "doubt": link.loaded_doubt,
+    }
+    return {
+        "kind": kind,
+        "heard_at": link.heard_at,
+        "mode": link.mode,
+        "is_armed": link.is_armed,
+        "is_in_air": link.is_in_air,
+        "autopilot": link.autopilot,
+        "loaded": loaded if link.loaded_sha256 else None,
+        "waypoint_sequence": link.waypoint_sequence,
+    }

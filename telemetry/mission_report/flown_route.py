@@ -1,0 +1,155 @@
+"""How a route was flown: beside which leg, how far off it and how much too high or too low."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from inspection.geodesy import LonLat, path_length_m
+from missions.mavlink.frozen import Flight, FrozenRoute
+from telemetry.alerting.route_line import Place, RouteLine
+from telemetry.mission_report.fix import Fix
+
+PASSED_END_M = 15.0  # of the last waypoint: what comes after is the way home or down
+LONGEST_GAP_S = 60.0  # between two reports that are joined to a flown line
+
+
+@dataclass(frozen=True, slots=True)
+class FlownLeg:
+    """One leg between two waypoints of the route; errors are None where no report speaks of it.
+
+    across_* is beside the leg [m]; height_* is how far outside of what the plan has there, 0 inside.
+    """
+
+    from_sequence: int
+    to_sequence: int
+    length_m: float
+    reports: int
+    began_s: float | None = None
+    ended_s: float | None = None
+    across_rms_m: float | None = None
+    across_max_m: float | None = None
+    height_rms_m: float | None = None
+    height_max_m: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FlownRoute:
+    """A whole route. flown_m is the length of the track as it was reported; reports are those in the air."""
+
+    legs: tuple[FlownLeg, ...]
+    reports: int
+    began_s: float | None
+    ended_s: float | None
+    flown_m: float
+    across_rms_m: float | None
+    across_max_m: float | None
+    height_rms_m: float | None
+    height_max_m: float | None
+    battery_lowest_percent: float | None
+    battery_used_percent: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    fix: Fix
+    place: Place
+    height_error_m: float | None
+
+
+def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
+    """fixes: of its UAV in this mission, in order."""
+    in_air = [fix for fix in fixes if fix.is_in_air is not False]
+    legs: list[FlownLeg] = []
+    seen: list[_Seen] = []
+    for flight, own in zip(route.flights, _by_flight(route.flights, in_air), strict=True):
+        line = RouteLine(flight, route.charging_stops)
+        on_line = _on_line(line, own)
+        seen += on_line
+        legs += [_leg(line, number, on_line) for number in range(len(line.vertices) - 1)]
+    across_m, height_m = _errors(seen)
+    batteries = [fix.battery_percent for fix in fixes if fix.battery_percent is not None]
+    return FlownRoute(
+        legs=tuple(legs),
+        reports=len(in_air),
+        began_s=in_air[0].at_s if in_air else None,
+        ended_s=in_air[-1].at_s if in_air else None,
+        flown_m=sum(path_length_m(np.array(line)) for line in track_of(in_air)),
+        across_rms_m=_rms(across_m),
+        across_max_m=max(across_m, default=None),
+        height_rms_m=_rms(height_m),
+        height_max_m=max(height_m, default=None),
+        battery_lowest_percent=min(batteries, default=None),
+        battery_used_percent=sum(max(a - b, 0.0) for a, b in pairwise(batteries)) if batteries else None,
+    )
+
+
+def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix]]:
+    """By the waypoint that is told; a report that tells none belongs to the flight of the one before it."""
+    found: list[list[Fix]] = [[] for _ in flights]
+    ends = [flight.waypoints[-1].sequence for flight in flights]
+    number = 0
+    for fix in fixes:
+        if fix.waypoint_sequence is not None:
+            told = next((place for place, end in enumerate(ends) if fix.waypoint_sequence <= end), len(ends) - 1)
+            number = max(number, told)
+        found[number].append(fix)
+    return found
+
+
+def _on_line(line: RouteLine, fixes: Sequence[Fix]) -> list[_Seen]:
+    seen: list[_Seen] = []
+    before: Place | None = None
+    for fix in fixes:
+        place = line.place(fix.position, fix.waypoint_sequence, before)
+        if before is not None and line.length_m - before.along_m <= PASSED_END_M and place.along_m <= before.along_m:
+            break
+        before = place
+        seen.append(_Seen(fix, place, _height_error_m(line, place, fix.altitude_relative_m)))
+    return seen
+
+
+def _height_error_m(line: RouteLine, place: Place, altitude_m: float | None) -> float | None:
+    if altitude_m is None:
+        return None
+    lowest_m, highest_m = line.heights_at(place)
+    return max(lowest_m - altitude_m, altitude_m - highest_m, 0.0)
+
+
+def _leg(line: RouteLine, number: int, seen: Sequence[_Seen]) -> FlownLeg:
+    own = [one for one in seen if one.place.leg == number]
+    across_m, height_m = _errors(own)
+    return FlownLeg(
+        from_sequence=line.sequences[number],
+        to_sequence=line.sequences[number + 1],
+        length_m=line.along_m[number + 1] - line.along_m[number],
+        reports=len(own),
+        began_s=own[0].fix.at_s if own else None,
+        ended_s=own[-1].fix.at_s if own else None,
+        across_rms_m=_rms(across_m),
+        across_max_m=max(across_m, default=None),
+        height_rms_m=_rms(height_m),
+        height_max_m=max(height_m, default=None),
+    )
+
+
+def _errors(seen: Sequence[_Seen]) -> tuple[list[float], list[float]]:
+    return [one.place.across_m for one in seen], [one.height_error_m for one in seen if one.height_error_m is not None]
+
+
+def _rms(values: Sequence[float]) -> float | None:
+    return math.sqrt(sum(value * value for value in values) / len(values)) if values else None
+
+
+def track_of(fixes: Sequence[Fix]) -> list[list[LonLat]]:
+    """Lines of the flown track, broken where nothing was reported for longer than LONGEST_GAP_S."""
+    lines: list[list[LonLat]] = []
+    before_s: float | None = None
+    for fix in fixes:
+        if before_s is None or fix.at_s - before_s > LONGEST_GAP_S:
+            lines.append([])
+        lines[-1].append(fix.position)
+        before_s = fix.at_s
+    return [line for line in lines if len(line) > 1]

@@ -1,0 +1,91 @@
+"""What live pages of an organisation show at this moment: keys and versions, cheap enough to be looked at many times a second.
+
+Whole objects are in live/objects.py; they are read only where a version has changed.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from uuid import UUID
+
+from workspace.prepared import prepared_rows
+
+Key = tuple[str, str]  # kind and id
+KINDS = ("uavs", "missions", "alerts", "commands", "offers")
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """One object: another version after each change. If `is_in_whole`, pages of the organisation show it; those of `missions` do, too."""
+
+    version: int
+    is_in_whole: bool
+    missions: tuple[UUID, ...]
+
+    def is_for(self, mission: UUID | None) -> bool:
+        return self.is_in_whole if mission is None else mission in self.missions
+
+
+# UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open or were closed
+# within the hour; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked for.
+_LOOK = """
+WITH asked AS (SELECT %s::bigint AS organisation_id, %s::uuid[] AS missions),
+flown AS (
+    SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.id AS mission_id, place.sequence
+    FROM missions_mission mission JOIN missions_missionuav place ON place.mission_id = mission.id
+    WHERE mission.organisation_id = (SELECT organisation_id FROM asked) AND mission.state IN ('dispatched', 'active')
+        AND mission.deleted_at IS NULL AND place.uav_id IS NOT NULL
+    ORDER BY place.uav_id, mission.state, mission.updated_at DESC
+),
+member AS (
+    SELECT place.uav_id, array_agg(DISTINCT mission.id ORDER BY mission.id) AS missions
+    FROM asked JOIN missions_mission mission ON mission.id = ANY(asked.missions) AND mission.organisation_id = asked.organisation_id
+        AND mission.deleted_at IS NULL
+    JOIN missions_missionuav place ON place.mission_id = mission.id
+    WHERE place.uav_id IS NOT NULL GROUP BY place.uav_id
+)
+SELECT 'uavs', uav.id::text, hashtextextended(ROW(watch.version, floor(extract(epoch FROM link.heard_at)), link.mode, link.is_armed,
+        link.is_in_air, link.autopilot, link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_read_at,
+        link.loaded_doubt, link.waypoint_sequence, uav.name, uav.link, uav.is_simulated, flown.mission_id, flown.sequence)::text, 0),
+    flown.uav_id IS NOT NULL OR heard.recently, coalesce(member.missions, '{}')
+FROM asked JOIN missions_uav uav ON uav.organisation_id = asked.organisation_id
+    LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id LEFT JOIN telemetry_uavwatch watch ON watch.uav_id = uav.id
+    LEFT JOIN flown ON flown.uav_id = uav.id LEFT JOIN member ON member.uav_id = uav.id,
+    LATERAL (SELECT coalesce(greatest(link.heard_at, watch.updated_at) > now() - interval '1 day', false) AS recently) heard
+WHERE flown.uav_id IS NOT NULL OR member.uav_id IS NOT NULL OR heard.recently
+UNION ALL
+SELECT 'missions', mission.id::text, hashtextextended(ROW(mission.revision, mission.state, mission.name, mission.departs_at,
+        mission.started_at, mission.ended_at, digest.targets)::text, 0),
+    mission.state IN ('dispatched', 'active') OR coalesce(mission.ended_at > now() - interval '1 hour', false), ARRAY[mission.id]
+FROM asked JOIN missions_mission mission ON mission.organisation_id = asked.organisation_id, LATERAL (
+        SELECT sum(hashtext(ROW(target.sequence, target.label, target.state, target.state_at, target.state_reason)::text)) AS targets
+        FROM missions_inspectiontarget target WHERE target.mission_id = mission.id
+    ) digest
+WHERE mission.deleted_at IS NULL AND (mission.state IN ('dispatched', 'active') OR mission.ended_at > now() - interval '1 hour'
+    OR mission.id = ANY(asked.missions))
+UNION ALL
+SELECT 'alerts', alert.id::text, hashtextextended(ROW(alert.revision, alert.level, alert.code, alert.message, alert.details,
+        alert.closed_at, alert.acknowledged_at, (SELECT count(*) FROM telemetry_alertnote note WHERE note.alert_id = alert.id))::text, 0),
+    true, CASE WHEN alert.mission_id IS NULL THEN coalesce(member.missions, '{}') ELSE ARRAY[alert.mission_id] END
+FROM asked JOIN telemetry_alert alert ON alert.organisation_id = asked.organisation_id
+    LEFT JOIN member ON member.uav_id = alert.uav_id
+WHERE alert.closed_at IS NULL OR alert.closed_at > now() - interval '1 hour'
+UNION ALL
+SELECT 'commands', command.id::text, hashtextextended(ROW(command.state, command.attempts, command.expires_at, command.sent_at,
+        command.acknowledged_at, command.finished_at, command.progress, command.outcome_code, command.outcome)::text, 0),
+    true, CASE WHEN command.mission_id IS NULL THEN coalesce(member.missions, '{}') ELSE ARRAY[command.mission_id] END
+FROM asked JOIN missions_uavcommand command ON command.organisation_id = asked.organisation_id
+    LEFT JOIN member ON member.uav_id = command.uav_id
+WHERE command.finished_at IS NULL OR command.finished_at > now() - interval '10 minutes'
+UNION ALL
+SELECT 'offers', offer.id::text, hashtextextended(ROW(offer.state, offer.code, offer.cause, offer.difference, offer.decided_at,
+        offer.outcome, offer.continuation_id)::text, 0), true, ARRAY[offer.mission_id]
+FROM asked JOIN missions_mission mission ON mission.organisation_id = asked.organisation_id AND mission.deleted_at IS NULL
+    JOIN missions_replanoffer offer ON offer.mission_id = mission.id
+WHERE offer.state IN ('computing', 'open') OR coalesce(offer.decided_at, offer.created_at) > now() - interval '10 minutes'
+"""
+
+
+def shown_live(organisation_id: int, missions: Collection[UUID] = ()) -> dict[Key, Shown]:
+    """With the missions asked for, as far as they are the organisation's and there."""
+    rows = prepared_rows(_LOOK, [organisation_id, list(missions)])
+    return {(kind, key): Shown(version, is_in_whole, tuple(own)) for kind, key, version, is_in_whole, own in rows}

@@ -1,0 +1,120 @@
+"""Reads of the watch: who is on a mission, and what was reported since."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from django.db import connection
+
+from inspection.geodesy import LonLat
+from missions.models import MissionState
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
+from telemetry.exports.logged_record import REPORTED
+
+OVER = (MissionState.ABORTED, MissionState.FAILED, MissionState.COMPLETED)
+ON_ITS_WAY = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
+STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UAV for so long is no word
+
+
+@dataclass(frozen=True, slots=True)
+class WatchedFlight:
+    """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
+
+    From `home` on, what UavLink has of it.
+    """
+
+    uav_id: int
+    organisation_id: int
+    name: str
+    mission_id: UUID
+    approval_id: UUID
+    flight: int
+    home: LonLat | None
+    heard_at: datetime | None
+    mode: str
+    is_armed: bool | None
+    is_in_air: bool | None
+    waypoint_sequence: int | None
+
+
+_FLYING = """
+SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.organisation_id, uav.name, mission.id, approval.id,
+    CASE WHEN link.loaded_approval = approval.id AND link.loaded_flight IS NOT NULL THEN link.loaded_flight
+        ELSE route.flights_flown + 1 END,
+    ST_X(link.home), ST_Y(link.home), link.heard_at, coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence
+FROM missions_mission mission
+JOIN missions_missionuav place ON place.mission_id = mission.id AND place.uav_id IS NOT NULL
+JOIN missions_uav uav ON uav.id = place.uav_id
+JOIN missions_route route ON route.mission_uav_id = place.id AND route.geometry IS NOT NULL
+JOIN missions_approval approval ON approval.mission_id = mission.id AND approval.revoked_at IS NULL
+LEFT JOIN telemetry_uavlink link ON link.uav_id = place.uav_id
+WHERE mission.deleted_at IS NULL AND (mission.state = ANY(%(on_its_way)s)
+    OR (mission.state = ANY(%(over)s) AND coalesce(mission.ended_at, mission.updated_at) > now() - make_interval(secs => %(longest_s)s)
+        AND link.is_in_air AND link.heard_at > now() - make_interval(secs => %(longest_s)s)))
+ORDER BY place.uav_id, coalesce(array_position(%(on_its_way)s, mission.state::text), 9), mission.updated_at DESC
+"""
+_VALUES = "ST_X(position), ST_Y(position), " + ", ".join(REPORTED)
+_NEW = f"""
+SELECT id, uav_id, measured_at, received_at, {_VALUES} FROM telemetry_telemetryrecord
+WHERE id > %s AND id <> ALL(%s) AND uav_id = ANY(%s) AND NOT is_from_future ORDER BY id
+"""  # noqa: S608 (names of columns, all from here)
+_NEWEST = f"""
+SELECT record.* FROM unnest(%s::bigint[]) AS uav(id), LATERAL (
+    SELECT id, uav_id, measured_at, received_at, {_VALUES} FROM telemetry_telemetryrecord
+    WHERE uav_id = uav.id AND NOT is_from_future ORDER BY measured_at DESC LIMIT %s
+) record ORDER BY measured_at
+"""  # noqa: S608
+
+
+@dataclass(frozen=True, slots=True)
+class StoredReport:
+    id: int
+    uav_id: int
+    measured_at: datetime
+    report: Report
+
+
+def watched_flights() -> list[WatchedFlight]:
+    """UAVs of missions on their way, and those still in the air after theirs ended; each once."""
+    values = {"on_its_way": list(ON_ITS_WAY), "over": list(OVER), "longest_s": STILL_IN_THE_AIR_S}
+    with connection.cursor() as cursor:
+        cursor.execute(_FLYING, values)
+        rows = cursor.fetchall()
+    return [_flight(*row) for row in rows]
+
+
+def _flight(*row: Any) -> WatchedFlight:
+    lon, lat = row[6:8]
+    return WatchedFlight(*row[:6], None if lon is None else LonLat(lon, lat), *row[8:])
+
+
+def last_record_id() -> int:
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT coalesce(max(id), 0) FROM telemetry_telemetryrecord")
+        return int(cursor.fetchone()[0])
+
+
+def reports_stored_after(last_id: int, *, but: Collection[int], uav_ids: Sequence[int]) -> list[StoredReport]:
+    """In the order in which they were stored; `but` are ids after the last that are known already."""
+    return _reports(_NEW, [last_id, sorted(but), list(uav_ids)])
+
+
+def newest_reports(uav_ids: Sequence[int], *, most: int) -> list[StoredReport]:
+    """The newest of each UAV by the time of measurement, in its order."""
+    return _reports(_NEWEST, [list(uav_ids), most])
+
+
+def _reports(statement: str, values: list[Any]) -> list[StoredReport]:
+    with connection.cursor() as cursor:
+        cursor.execute(statement, values)
+        return [_report(*row) for row in cursor.fetchall()]
+
+
+def _report(
+    key: int, uav_id: int, measured_at: datetime, received_at: datetime, lon: float | None, lat: float | None, *rest: Any
+) -> StoredReport:
+    measurement = Measurement(lon, lat, **dict(zip(REPORTED, rest, strict=True)))
+    return StoredReport(key, uav_id, measured_at, Report(measured_at.timestamp(), received_at.timestamp(), measurement))

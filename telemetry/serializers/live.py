@@ -1,0 +1,151 @@
+"""What live pages show, in the shapes of the API; read and put together in telemetry/live."""
+
+from rest_framework import serializers
+
+from missions.fields import PositionField
+from missions.models import LinkKind, MissionState, OfferState, TargetState
+from missions.serializers.commands import CommandSerializer
+from telemetry.models import AlertLevel
+
+
+class LoadedSerializer(serializers.Serializer):
+    approval = serializers.UUIDField(allow_null=True)
+    flight = serializers.IntegerField(allow_null=True)
+    read_at = serializers.DateTimeField(allow_null=True, help_text="when it was last read back")
+    doubt = serializers.CharField(allow_blank=True, help_text="why the UAV may hold something else by now")
+
+
+class LiveLinkSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=LinkKind.choices)
+    heard_at = serializers.DateTimeField(allow_null=True)
+    mode = serializers.CharField(allow_blank=True)
+    is_armed = serializers.BooleanField(allow_null=True)
+    is_in_air = serializers.BooleanField(allow_null=True)
+    autopilot = serializers.CharField(allow_blank=True)
+    loaded = LoadedSerializer(allow_null=True, help_text="the approved mission found on it by reading back; null: none")
+    waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route")
+
+
+class MeasuredAtSerializer(serializers.Serializer):
+    """When each group of values was measured; null: never."""
+
+    position = serializers.DateTimeField(allow_null=True)
+    height = serializers.DateTimeField(allow_null=True)
+    speed = serializers.DateTimeField(allow_null=True)
+    attitude = serializers.DateTimeField(allow_null=True)
+    battery = serializers.DateTimeField(allow_null=True)
+    state = serializers.DateTimeField(allow_null=True, help_text="mode, armed, in the air")
+    link = serializers.DateTimeField(allow_null=True)
+    gps = serializers.DateTimeField(allow_null=True)
+    wind = serializers.DateTimeField(allow_null=True)
+    waypoint = serializers.DateTimeField(allow_null=True)
+
+
+class MeasuredSerializer(serializers.Serializer):
+    measured_at = serializers.DateTimeField(help_text="of the newest report; never one from the future")
+    received_at = serializers.DateTimeField()
+    position = PositionField(allow_null=True)
+    altitude_relative_m = serializers.FloatField(allow_null=True, help_text="above take-off")
+    altitude_amsl_m = serializers.FloatField(allow_null=True)
+    altitude_agl_m = serializers.FloatField(allow_null=True)
+    speed_mps = serializers.FloatField(allow_null=True, help_text="over ground")
+    climb_mps = serializers.FloatField(allow_null=True)
+    heading_deg = serializers.FloatField(allow_null=True)
+    battery_percent = serializers.FloatField(allow_null=True)
+    mode = serializers.CharField(allow_null=True)
+    is_armed = serializers.BooleanField(allow_null=True)
+    is_in_air = serializers.BooleanField(allow_null=True)
+    gps_fix = serializers.IntegerField(allow_null=True)
+    satellites = serializers.IntegerField(allow_null=True)
+    hdop = serializers.FloatField(allow_null=True)
+    link_quality_percent = serializers.FloatField(allow_null=True)
+    wind_speed_mps = serializers.FloatField(allow_null=True)
+    wind_from_deg = serializers.FloatField(allow_null=True)
+    waypoint_sequence = serializers.IntegerField(allow_null=True)
+    measured_at_of = MeasuredAtSerializer(help_text="values that the newest report does not have are those of an earlier one")
+
+
+class LiveUavSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+    mission = serializers.UUIDField(allow_null=True, help_text="that it flies, or has been sent")
+    place = serializers.IntegerField(allow_null=True, help_text="in that mission; it gives its letter")
+    link = LiveLinkSerializer()
+    measured = MeasuredSerializer(allow_null=True)
+    estimated = serializers.JSONField(allow_null=True, help_text="where it is by now, and how sure that is; null: it flies no mission")
+    is_simulated = serializers.BooleanField()
+
+
+class MissionPlaceSerializer(serializers.Serializer):
+    place = serializers.IntegerField()
+    name = serializers.CharField()
+    uav = serializers.IntegerField(allow_null=True)
+
+
+class LiveTargetSerializer(serializers.Serializer):
+    place = serializers.IntegerField(help_text="in the mission's list, from 0")
+    label = serializers.CharField()
+    state = serializers.ChoiceField(choices=TargetState.choices)
+    state_at = serializers.DateTimeField(allow_null=True)
+    state_reason = serializers.CharField(allow_blank=True)
+    uav = serializers.IntegerField(allow_null=True, help_text="place of the UAV that flies to it")
+
+
+class TargetCountsSerializer(serializers.Serializer):
+    complete = serializers.IntegerField()
+    all = serializers.IntegerField()
+
+
+class LiveMissionSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    name = serializers.CharField()
+    state = serializers.ChoiceField(choices=MissionState.choices)
+    revision = serializers.IntegerField()
+    departs_at = serializers.DateTimeField(allow_null=True)
+    started_at = serializers.DateTimeField(allow_null=True)
+    ended_at = serializers.DateTimeField(allow_null=True)
+    uavs = MissionPlaceSerializer(many=True)
+    targets = LiveTargetSerializer(many=True)
+    counts = TargetCountsSerializer()
+
+
+class LiveAlertSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    uav = serializers.IntegerField(allow_null=True)
+    mission = serializers.UUIDField(allow_null=True)
+    level = serializers.ChoiceField(choices=AlertLevel.choices)
+    code = serializers.CharField()
+    subject = serializers.CharField(allow_blank=True)
+    message = serializers.CharField()
+    details = serializers.JSONField()
+    opened_at = serializers.DateTimeField()
+    closed_at = serializers.DateTimeField(allow_null=True)
+    acknowledged_at = serializers.DateTimeField(allow_null=True)
+    acknowledged_by = serializers.CharField(allow_null=True)
+    revision = serializers.IntegerField()
+    notes = serializers.IntegerField(help_text="how many there are")
+
+
+class LiveOfferSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    mission = serializers.UUIDField()
+    code = serializers.CharField()
+    state = serializers.ChoiceField(choices=OfferState.choices)
+    cause = serializers.JSONField()
+    difference = serializers.JSONField()
+    continuation = serializers.UUIDField(allow_null=True)
+    created_at = serializers.DateTimeField()
+    outcome = serializers.CharField(allow_blank=True)
+
+
+class LiveSerializer(serializers.Serializer):
+    uavs = LiveUavSerializer(many=True, help_text="that fly a mission or were heard within a day; the mission's, if one is asked for")
+    missions = LiveMissionSerializer(many=True, help_text="on their way, or ended within the hour; the one asked for, whatever its state")
+    alerts = LiveAlertSerializer(many=True, help_text="open, or closed within the hour")
+    commands = CommandSerializer(many=True, help_text="not finished, or finished within ten minutes")
+    offers = LiveOfferSerializer(many=True, help_text="of another plan: undecided, or decided within ten minutes")
+
+
+class LiveAnswerSerializer(serializers.Serializer):
+    server_time = serializers.DateTimeField(help_text="ages are counted from it")
+    live = LiveSerializer()

@@ -1,0 +1,138 @@
+"""Shape of a mission's record, for the OpenAPI document."""
+
+from rest_framework import serializers
+
+from missions.models import MissionState, TargetState, WaypointKind
+
+
+class RecordApprovalSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    content_sha256 = serializers.CharField(help_text="of what was approved, and flown")
+    approved_at = serializers.DateTimeField()
+    approved_by = serializers.CharField(allow_null=True)
+    revoked_at = serializers.DateTimeField(allow_null=True)
+
+
+class RecordMissionSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    name = serializers.CharField()
+    state = serializers.ChoiceField(choices=MissionState.choices)
+    departs_at = serializers.DateTimeField(allow_null=True)
+    started_at = serializers.DateTimeField(allow_null=True, help_text="when its first UAV began to fly")
+    ended_at = serializers.DateTimeField(allow_null=True)
+    continues = serializers.UUIDField(allow_null=True, help_text="the mission whose rest this one flies")
+    approval = RecordApprovalSerializer(allow_null=True)
+
+
+class TargetCountsSerializer(serializers.Serializer):
+    all = serializers.IntegerField()
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        return super().get_fields() | {state.value: serializers.IntegerField() for state in TargetState}
+
+
+class AlertCountsSerializer(serializers.Serializer):
+    critical = serializers.IntegerField()
+    warning = serializers.IntegerField()
+    advisory = serializers.IntegerField()
+
+
+class TotalsSerializer(serializers.Serializer):
+    length_m = serializers.FloatField()
+    duration_s = serializers.FloatField(allow_null=True, help_text="from the first take-off to the last landing")
+    energy_wh = serializers.FloatField(allow_null=True, help_text="null where a battery is not known")
+
+
+class RecordSummarySerializer(serializers.Serializer):
+    targets = TargetCountsSerializer()
+    alerts = AlertCountsSerializer()
+    planned = TotalsSerializer()
+    flown = TotalsSerializer()
+    across_rms_m = serializers.FloatField(allow_null=True, help_text="off the route, sideways")
+    height_rms_m = serializers.FloatField(allow_null=True, help_text="outside of the heights that the plan has there")
+    lowest_battery_percent = serializers.FloatField(allow_null=True)
+
+
+class FlownSerializer(serializers.Serializer):
+    reports = serializers.IntegerField(help_text="in the air, with a position")
+    began_at = serializers.DateTimeField(allow_null=True)
+    ended_at = serializers.DateTimeField(allow_null=True)
+    across_rms_m = serializers.FloatField(allow_null=True)
+    across_max_m = serializers.FloatField(allow_null=True)
+    height_rms_m = serializers.FloatField(allow_null=True)
+    height_max_m = serializers.FloatField(allow_null=True)
+
+
+class FlownLegSerializer(FlownSerializer):
+    from_sequence = serializers.IntegerField(help_text="waypoint of the approved route")
+    to_sequence = serializers.IntegerField()
+    length_m = serializers.FloatField()
+
+
+class FlownRouteSerializer(FlownSerializer):
+    flown_m = serializers.FloatField(help_text="length of the track as it was reported")
+    battery_lowest_percent = serializers.FloatField(allow_null=True)
+    battery_used_percent = serializers.FloatField(allow_null=True, help_text="of all batteries of the route together")
+    energy_wh = serializers.FloatField(allow_null=True)
+
+
+class PlannedRouteSerializer(serializers.Serializer):
+    length_m = serializers.FloatField()
+    duration_s = serializers.FloatField()
+    energy_wh = serializers.FloatField(allow_null=True)
+
+
+class RecordWaypointSerializer(serializers.Serializer):
+    sequence = serializers.IntegerField()
+    kind = serializers.ChoiceField(choices=WaypointKind.choices)
+    position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="longitude, latitude [deg]")
+    altitude_relative_m = serializers.FloatField(help_text="above the route's first take-off")
+    arrival_s = serializers.FloatField(allow_null=True, help_text="after the mission's departure")
+    target = serializers.IntegerField(allow_null=True, help_text="its place in the mission")
+
+
+class RecordRouteSerializer(serializers.Serializer):
+    place = serializers.IntegerField(help_text="of the UAV in the mission")
+    uav = serializers.IntegerField(allow_null=True)
+    name = serializers.CharField()
+    departs_at = serializers.DateTimeField(allow_null=True)
+    planned = PlannedRouteSerializer()
+    flown = FlownRouteSerializer()
+    legs = FlownLegSerializer(many=True)
+    waypoints = RecordWaypointSerializer(many=True)
+
+
+class RecordTargetSerializer(serializers.Serializer):
+    place = serializers.IntegerField()
+    label = serializers.CharField()
+    asset = serializers.IntegerField(allow_null=True)
+    state = serializers.ChoiceField(choices=TargetState.choices)
+    state_at = serializers.DateTimeField(allow_null=True)
+    state_reason = serializers.CharField(allow_blank=True)
+    uav = serializers.IntegerField(allow_null=True, help_text="place of the UAV that was to do it")
+    waypoint_sequence = serializers.IntegerField(allow_null=True)
+    planned_at = serializers.DateTimeField(allow_null=True)
+    reached_at = serializers.DateTimeField(allow_null=True)
+    closest_m = serializers.FloatField(allow_null=True, help_text="the nearest at which the UAV was seen")
+    planned_hold_s = serializers.FloatField(allow_null=True)
+    held_s = serializers.FloatField(allow_null=True, help_text="the longest that it can have stayed")
+
+
+class RecordResultSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    place = serializers.IntegerField(help_text="of the target in the mission as it was approved")
+    uav = serializers.IntegerField()
+    uav_name = serializers.CharField()
+    outcome = serializers.CharField()
+    note = serializers.CharField(allow_blank=True)
+    values = serializers.JSONField()
+    measured_at = serializers.DateTimeField()
+    received_at = serializers.DateTimeField()
+
+
+class MissionRecordSerializer(serializers.Serializer):
+    mission = RecordMissionSerializer()
+    summary = RecordSummarySerializer()
+    routes = RecordRouteSerializer(many=True)
+    targets = RecordTargetSerializer(many=True)
+    results = RecordResultSerializer(many=True)

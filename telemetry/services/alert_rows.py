@@ -1,0 +1,89 @@
+"""Alerts' rows: written in bulk, each change counted."""
+
+import json
+from collections.abc import Collection, Mapping, Sequence
+from datetime import datetime, timedelta
+
+from django.db import connection, transaction
+from django.db.models import F, QuerySet
+
+from missions.models import MissionState
+from telemetry.alerting.book import RANK, Closed, Opened
+from telemetry.alerting.watched import WatchedUav
+from telemetry.models import Alert
+from telemetry.selectors.alerts import OpenRow
+
+WORDS_STAND_FOR = timedelta(seconds=5)  # newer figures of the same cause are written no more often
+WATCHED_STATES = (MissionState.DISPATCHED, MissionState.ACTIVE)
+MISSION_ENDED = "mission-ended"
+
+_RENEW = """
+UPDATE telemetry_alert alert
+SET level = told.level, message = told.message, "values" = told.vals::jsonb, details = told.details::jsonb, written_at = %s,
+    revision = alert.revision + 1,
+    acknowledged_at = CASE WHEN told.is_raised THEN NULL ELSE alert.acknowledged_at END,
+    acknowledged_by_id = CASE WHEN told.is_raised THEN NULL ELSE alert.acknowledged_by_id END
+FROM unnest(%s::bigint[], %s::text[], %s::text[], %s::text[], %s::text[], %s::bool[])
+    AS told(id, level, message, vals, details, is_raised)
+WHERE alert.id = told.id AND alert.closed_at IS NULL
+"""
+
+
+def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Mapping[int, Sequence[OpenRow]], now: datetime) -> set[int]:
+    """Writes what has changed. Returns the organisations whose alerts did."""
+    rows = {(row.uav_id, row.code, row.subject): row for of_uav in open_rows.values() for row in of_uav}
+    new, renewed, closed = [], [], []
+    organisations = set()
+    for uav, change in found:
+        if isinstance(change, Closed):
+            row = rows.get((uav.uav_id, change.code, change.subject))
+            if row is not None:
+                closed.append((row.id, change.reason))
+                organisations.add(uav.organisation_id)
+            continue
+        finding = change.finding
+        row = rows.get((uav.uav_id, finding.code, finding.subject))
+        if row is None:
+            new.append(
+                Alert(
+                    organisation_id=uav.organisation_id, uav_id=uav.uav_id, mission_id=uav.mission_id, level=finding.level,
+                    code=finding.code, subject=finding.subject, message=finding.message, values=finding.values, details=finding.details,
+                    opened_at=now, written_at=now,
+                )
+            )  # fmt: skip
+            organisations.add(uav.organisation_id)
+        elif _is_worth_writing(row, change, now):
+            is_raised = RANK[finding.level] > RANK[row.level]
+            renewed.append((row.id, finding.level, finding.message, json.dumps(finding.values), json.dumps(finding.details), is_raised))
+            organisations.add(uav.organisation_id)
+    if not organisations:
+        return organisations
+    with transaction.atomic():
+        Alert.objects.bulk_create(new, ignore_conflicts=True)
+        if renewed:
+            with connection.cursor() as cursor:
+                cursor.execute(_RENEW, [now, *(list(column) for column in zip(*sorted(renewed), strict=True))])
+        for reason in {reason for _, reason in closed}:
+            ids = sorted(row_id for row_id, of_row in closed if of_row == reason)
+            _close(Alert.objects.filter(pk__in=ids), reason, now)
+    return organisations
+
+
+def close_alerts_of_ended_missions(*, codes: Collection[str], now: datetime) -> set[int]:
+    """Nobody watches their UAVs any more. Returns the organisations."""
+    over = Alert.objects.filter(closed_at=None, code__in=codes, mission__isnull=False).exclude(mission__state__in=WATCHED_STATES)
+    found = dict(over.values_list("pk", "organisation_id"))
+    if found:
+        _close(Alert.objects.filter(pk__in=sorted(found)), MISSION_ENDED, now)
+    return set(found.values())
+
+
+def _close(alerts: QuerySet[Alert], reason: str, now: datetime) -> None:
+    alerts.filter(closed_at=None).update(closed_at=now, close_reason=reason, revision=F("revision") + 1)
+
+
+def _is_worth_writing(row: OpenRow, change: Opened, now: datetime) -> bool:
+    finding = change.finding
+    if finding.level != row.level or finding.message != row.message:
+        return True
+    return finding.values != row.values and now - row.written_at >= WORDS_STAND_FOR

@@ -1,0 +1,36 @@
+"""What the estimator may know of a flight: the approved route, and what it was approved with."""
+
+from functools import lru_cache
+from uuid import UUID
+
+from missions.flight_plan.conditions import conditions_from_json
+from missions.flight_plan.lost_link import LostLink
+from missions.flight_plan.performance import performance_from_json
+from missions.models import Approval
+from missions.services.dispatch import DamagedApproval, approved_load
+from missions.services.requests import lost_link_from_json
+from telemetry.estimation.knowledge import Knowledge
+
+
+@lru_cache(maxsize=1_024)
+def knowledge_of(approval_id: UUID, uav_id: int, flight: int) -> Knowledge:
+    """An approval never changes. After its last flight, and of a document that is damaged, nothing is known."""
+    approval = Approval.objects.filter(pk=approval_id).first()
+    if approval is None:
+        return Knowledge()
+    try:
+        approved = approved_load(approval, uav_id=uav_id, flight=flight)
+    except (DamagedApproval, LookupError, StopIteration):
+        return Knowledge()
+    document = approval.document
+    figures = next(route["figures"] for route in document["routes"] if route["uav"] == uav_id)
+    performance = performance_from_json(figures["performance"])
+    return Knowledge(
+        flight=approved.route.flights[flight - 1],
+        cruise_speed_mps=approved.route.cruise_speed_mps,
+        max_airspeed_mps=performance.max_airspeed_mps,
+        climb_speed_mps=performance.climb_speed_mps or Knowledge.climb_speed_mps,
+        conditions=conditions_from_json(document["conditions"]),
+        home=approved.take_off.position,
+        is_to_go_on=lost_link_from_json(document["lost_link"] or {}).behaviour is LostLink.GO_ON,
+    )

@@ -1,0 +1,49 @@
+"""What live pages show, for where there are no websockets."""
+
+from uuid import UUID
+
+from django.conf import settings
+from django.http import Http404, HttpResponse
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.exceptions import ValidationError
+from rest_framework.request import Request
+from rest_framework.views import APIView
+
+from telemetry.live.look import etag_of, look_once
+from telemetry.live.messages import live_text, server_time
+from telemetry.serializers.live import LiveAnswerSerializer
+
+
+class Live(APIView):
+    @extend_schema(
+        operation_id="get_live",
+        summary="What flies: UAVs as measured and estimated, missions, alerts, commands, offers of another plan",
+        description="What a live page shows at this moment, as its websocket (`/ws/live`, `/ws/missions/{id}/live`) tells it first.",
+        parameters=[
+            OpenApiParameter("mission", UUID, description="only what belongs to it"),
+            OpenApiParameter("If-None-Match", str, OpenApiParameter.HEADER, description="the ETag as last seen; 304 while nothing changes"),
+        ],
+        responses={200: LiveAnswerSerializer, 304: OpenApiResponse(description="Nothing has changed.")},
+    )
+    def get(self, request: Request) -> HttpResponse:
+        mission = _asked_mission(request)
+        language = request.user.language or settings.LANGUAGE_CODE
+        known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one
+        seen = look_once(request.user.organisation_id, mission, language, known=known)
+        if mission is not None and ("missions", str(mission)) not in seen.shown:
+            raise Http404
+        headers = {"ETag": etag_of(seen, language), "Cache-Control": "private, no-cache"}
+        if headers["ETag"] == known:
+            return HttpResponse(status=304, headers=headers)
+        body = f'{{"server_time":"{server_time()}","live":{live_text(seen, mission, language)}}}'
+        return HttpResponse(body, content_type="application/json", headers=headers)
+
+
+def _asked_mission(request: Request) -> UUID | None:
+    text = request.query_params.get("mission")
+    if text is None:
+        return None
+    try:
+        return UUID(text)
+    except ValueError:
+        raise ValidationError({"mission": "This is no mission's id."}) from None

@@ -1,0 +1,240 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { openFeed, pauseBefore_ms } from "../../static/js/live/feed.js";
+import { serverClock } from "../../static/js/live/server_clock.js";
+
+globalThis.location = { protocol: "https:", host: "spanwise.example", origin: "https://spanwise.example" };
+
+const TIME = "2026-11-22T12:00:00.000+00:00";
+const EMPTY = { uavs: [], missions: [], alerts: [], commands: [], offers: [] };
+
+/** A socket that a test speaks through. What a listener throws comes back to the test. */
+class Socket {
+  static CONNECTING = 0;
+  static OPEN = 1;
+  static all = [];
+
+  constructor(address) {
+    this.address = address;
+    this.readyState = Socket.OPEN;
+    this.said = [];
+    this.listeners = {};
+    Socket.all.push(this);
+  }
+
+  static get last() {
+    return Socket.all.at(-1);
+  }
+
+  addEventListener(name, listener) {
+    this.listeners[name] = listener;
+  }
+
+  says(word) {
+    this.listeners.message({ data: JSON.stringify({ server_time: TIME, ...word }) });
+  }
+
+  send(text) {
+    this.said.push(JSON.parse(text));
+  }
+
+  close() {
+    this.readyState = 3;
+  }
+
+  isLost() {
+    this.readyState = 3;
+    this.listeners.close();
+  }
+}
+
+const snapshot = (sequence, live) => ({ type: "snapshot", sequence, live: { ...EMPTY, ...live } });
+const changes = (sequence, some, gone = {}) => ({ type: "changes", sequence, ...EMPTY, ...some, gone: { ...EMPTY, ...gone } });
+const settle = () => new Promise((resolve) => setImmediate(resolve));
+
+/** A page with timers of the test's own; `answers` are what the server says when it is asked, the last one again and again. */
+function page(context, { answers = [new Error("away")], ...options } = {}) {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  Socket.all = [];
+  const asked = [];
+  const states = [];
+  const told = [];
+  const get = async (address, { headers }) => {
+    asked.push({ address, ...headers });
+    const answer = answers.length > 1 ? answers.shift() : answers[0];
+    if (answer instanceof Error) throw answer;
+    return answer;
+  };
+  const feed = openFeed({ Socket, get, random: () => 1, onState: ({ state }) => states.push(state), onChange: (touched) => told.push(touched), ...options });
+  const pass = async (ms) => (context.mock.timers.tick(ms), await settle());
+  return { feed, asked, states, told, pass };
+}
+
+const answer = (live, etag = '"1"') => ({ status: 200, etag, data: { server_time: TIME, live: { ...EMPTY, ...live } } });
+
+test("a page shows everything, then what changes, and confirms each word", (context) => {
+  const { feed, states, told } = page(context);
+  assert.equal(Socket.last.address, "wss://spanwise.example/ws/live");
+  Socket.last.says(snapshot(1, { uavs: [{ id: 1, name: "Tern" }, { id: 2, name: "Gull" }] }));
+  assert.equal(told.at(-1), null);
+  Socket.last.says(changes(2, { uavs: [{ id: 1, name: "Arctic tern" }] }, { uavs: [2] }));
+  assert.deepEqual([...feed.shown.uavs.values()], [{ id: 1, name: "Arctic tern" }]);
+  assert.deepEqual([...told.at(-1).uavs], [1, 2]);
+  assert.deepEqual(Socket.last.said, [{ type: "have", sequence: 1 }, { type: "have", sequence: 2 }]);
+  assert.deepEqual(states, ["connecting", "live"]);
+  feed.close();
+});
+
+test("a page of one mission listens to that mission", (context) => {
+  page(context, { mission: "m1" }).feed.close();
+  assert.equal(Socket.last.address, "wss://spanwise.example/ws/missions/m1/live");
+});
+
+test("after a gap the page asks once for everything and takes nothing before that", (context) => {
+  const { feed, told } = page(context);
+  Socket.last.says(snapshot(1, { uavs: [{ id: 1, at: "a" }] }));
+  Socket.last.says(changes(3, { uavs: [{ id: 1, at: "c" }] }));
+  Socket.last.says(changes(4, { uavs: [{ id: 1, at: "d" }] }));
+  assert.equal(feed.shown.uavs.get(1).at, "a");
+  assert.deepEqual(Socket.last.said.map(({ type }) => type), ["have", "again", "have", "have"]);
+  Socket.last.says(snapshot(5, { uavs: [{ id: 1, at: "e" }] }));
+  Socket.last.says(changes(6, { uavs: [{ id: 1, at: "f" }] }));
+  assert.equal(feed.shown.uavs.get(1).at, "f");
+  assert.equal(told.length, 3);
+  feed.close();
+});
+
+test("a word that was lost last of all is found missing by the next sign of life", (context) => {
+  const { feed } = page(context);
+  Socket.last.says(snapshot(1));
+  Socket.last.says({ type: "still-there", sequence: 1 });
+  assert.equal(Socket.last.said.length, 1);
+  Socket.last.says({ type: "still-there", sequence: 2 });
+  assert.deepEqual(Socket.last.said.at(-1), { type: "again" });
+  feed.close();
+});
+
+test("a page that fails to draw confirms all the same, so that it is told the next", (context) => {
+  const { feed } = page(context, { onChange: () => assert.fail("not drawn") });
+  assert.throws(() => Socket.last.says(snapshot(1)), /not drawn/);
+  assert.deepEqual(Socket.last.said, [{ type: "have", sequence: 1 }]);
+  feed.close();
+});
+
+test("without a socket the page asks every two seconds and says so; the socket comes back by itself", async (context) => {
+  const { feed, asked, states, pass } = page(context, { answers: [answer({ uavs: [{ id: 1 }] }), { status: 304, etag: '"1"' }] });
+  Socket.last.says(snapshot(1));
+  Socket.last.isLost();
+  await pass(0);
+  assert.deepEqual(states, ["connecting", "live", "connecting", "asked"]);
+  assert.deepEqual([...feed.shown.uavs.keys()], [1]);
+  await pass(500);
+  assert.equal(Socket.all.length, 2);
+  Socket.last.isLost();
+  await pass(1_500);
+  assert.deepEqual(asked, [{ address: "/live" }, { address: "/live", "If-None-Match": '"1"' }]);
+  assert.equal(Socket.all.length, 3);
+  Socket.last.says(snapshot(1, { uavs: [{ id: 7 }] }));
+  await pass(10_000);
+  assert.equal(asked.length, 2);
+  assert.deepEqual([...feed.shown.uavs.keys()], [7]);
+  assert.deepEqual(states.slice(3), ["asked", "live"]);
+  feed.close();
+});
+
+test("while nothing answers the page says that it is connecting, and keeps trying", async (context) => {
+  const { feed, states, asked, pass } = page(context);
+  Socket.last.isLost();
+  for (let second = 0; second < 60; second += 1) {
+    await pass(1_000);
+    if (Socket.last.readyState === Socket.OPEN) Socket.last.isLost();
+  }
+  assert.deepEqual(states, ["connecting"]);
+  assert.ok(asked.length >= 28, `${asked.length} questions in a minute`);
+  assert.ok(Socket.all.length >= 12, `${Socket.all.length} sockets in a minute`);
+  feed.close();
+});
+
+test("a socket that opens and says nothing is not waited for", async (context) => {
+  const { feed, states, pass } = page(context, { answers: [answer({})] });
+  await pass(3_000);
+  assert.deepEqual(states, ["connecting", "asked"]);
+  await pass(42_000);
+  await pass(500);
+  assert.equal(Socket.all.length, 2);
+  feed.close();
+});
+
+test("a live socket that falls silent is replaced after 45 s", async (context) => {
+  const { feed, states, pass } = page(context);
+  Socket.last.says(snapshot(1));
+  await pass(44_000);
+  Socket.last.says({ type: "still-there", sequence: 1 });
+  await pass(44_000);
+  assert.deepEqual(states, ["connecting", "live"]);
+  await pass(1_000);
+  await pass(500);
+  assert.equal(Socket.all.length, 2);
+  assert.deepEqual(states, ["connecting", "live", "connecting"]);
+  feed.close();
+});
+
+for (const [status, state] of [[401, "signed-out"], [404, "gone"]]) {
+  test(`after ${status} the page is ${state} for good`, async (context) => {
+    const { feed, states, asked, pass } = page(context, { answers: [Object.assign(new Error("no"), { status })] });
+    Socket.last.says(snapshot(1));
+    Socket.last.isLost();
+    await pass(0);
+    await pass(60_000);
+    assert.equal(states.at(-1), state);
+    assert.equal(asked.length, 1);
+    assert.equal(Socket.all.length, 1);
+    feed.close();
+  });
+}
+
+test("what is answered after the socket is back changes nothing", async (context) => {
+  let answerNow;
+  const { feed, pass } = page(context, { get: () => new Promise((resolve) => (answerNow = resolve)) });
+  Socket.last.isLost();
+  await pass(500);
+  Socket.last.says(snapshot(1, { uavs: [{ id: 7 }] }));
+  answerNow(answer({ uavs: [{ id: 1 }] }));
+  await pass(5_000);
+  assert.deepEqual([...feed.shown.uavs.keys()], [7]);
+  assert.equal(feed.state, "live");
+  feed.close();
+});
+
+test("a closed page neither hears nor asks", async (context) => {
+  const { feed, asked, told, pass } = page(context);
+  const socket = Socket.last;
+  feed.close();
+  socket.says(snapshot(1));
+  socket.isLost();
+  await pass(60_000);
+  assert.deepEqual([asked.length, told.length, Socket.all.length, socket.readyState], [0, 0, 1, 3]);
+});
+
+test("pages do not all come back at once, and wait 5 s at most", () => {
+  assert.deepEqual([0, 1, 2, 3, 4, 50].map((failures) => pauseBefore_ms(failures, () => 1)), [500, 1_000, 2_000, 4_000, 5_000, 5_000]);
+  assert.deepEqual([0, 50].map((failures) => pauseBefore_ms(failures, () => 0)), [250, 2_500]);
+});
+
+test("the server's time is known although the page's clock is wrong and words come late", () => {
+  let ticks_ms = 1_000;
+  const server_ms = Date.parse(TIME);
+  const at = (ms) => new Date(server_ms + ms).toISOString();
+  const clock = serverClock(() => ticks_ms, 0);
+  clock.heard(at(0 - 300)); // it took 300 ms
+  assert.equal(clock.now_ms(), server_ms - 300);
+  ticks_ms += 1_000;
+  clock.heard(at(1_000 - 20));
+  ticks_ms += 1_000;
+  clock.heard(at(2_000 - 900));
+  assert.equal(clock.now_ms(), server_ms + 2_000 - 20);
+  ticks_ms += 100_000; // the page slept, and what it knew is too old
+  clock.heard(at(90_000));
+  assert.equal(clock.now_ms(), server_ms + 90_000);
+});

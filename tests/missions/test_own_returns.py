@@ -1,0 +1,101 @@
+"""What is in the way of an autopilot's own return is told for each UAV of a mission, and never left unsaid."""
+
+from typing import Any
+
+import pytest
+from django.test import Client
+
+from missions.models import LinkKind, Mission, Uav
+from missions.services.own_return import note_own_return
+from tests.inspection import ground as things
+from tests.missions.flights import an_operator, fleet, ground, planned
+from tests.missions.worlds import power_line, rebuild, world, zone_around
+from tests.workspace.people import client_of, somebody
+from workspace.models import Organisation
+
+pytestmark = pytest.mark.django_db
+COPTER = {"RTL_ALT": 3_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_CONE_SLOPE": 3.0, "RTL_ALT_TYPE": 0.0}
+
+
+@pytest.fixture
+def uav() -> Uav:
+    return fleet("Tern")[0]
+
+
+@pytest.fixture
+def mission(uav) -> Mission:
+    """From the tower at one end of the line to that at the other."""
+    towers = world().towers
+    return planned(an_operator(), [uav], [towers[0], towers[5]])
+
+
+def told(mission: Mission) -> dict[str, Any]:
+    (found,) = client_of(mission.author).get(f"/api/v1/missions/{mission.pk}/returns").json()["results"]
+    return dict(found)
+
+
+def read(uav: Uav, **parameters: float) -> None:
+    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER | parameters | {"SYSID_THISMAV": 7.0})
+
+
+def test_a_height_that_was_never_read_is_not_known(mission):
+    found = told(mission)
+    assert (found["state"], found["height_m"], found["read_at"]) == ("unknown", None, None)
+    assert "was not read from Tern" in found["warnings"][0] and "RTL_ALT" in found["warnings"][0]
+
+
+def test_a_free_way_home_is_told_with_its_height(mission, uav):
+    read(uav)
+    found = told(mission)
+    assert (found["state"], found["warnings"], found["parameter"], found["height_m"]) == ("clear", [], "RTL_ALT", 30.0)
+    assert found["read_at"] is not None
+    uav.refresh_from_db()
+    assert uav.autopilot_return == {"autopilot": "ardupilot", "parameters": COPTER}
+
+
+def test_a_zone_across_the_straight_way_home_is_named_and_no_height_helps(mission, uav):
+    zone_around((10.010, 55.9975), 0.0007, name="Fire brigade")
+    read(uav)
+    found = told(mission)
+    assert (found["state"], found["safe_height_m"]) == ("in_the_way", None)
+    assert "crosses Fire brigade at" in found["warnings"][0] and "waypoint" in found["warnings"][0]
+    assert found["warnings"][-1] == "No height of RTL_ALT is clear: use Hold and Land instead."
+
+
+def test_wires_across_the_way_home_ask_for_a_height_that_is_told_as_it_is_to_be_set(mission, uav):
+    power_line([things.tower((10.010, lat), height_m=60.0) for lat in (55.9965, 55.9985)])
+    rebuild()
+    read(uav)
+    found = told(mission)
+    assert found["state"] == "in_the_way"
+    assert "passes towers or wires too low" in found["warnings"][0]
+    assert found["safe_height_m"] == 75.0
+    assert found["warnings"][-1] == "Set RTL_ALT on it to at least 7500 (75 m), or use Hold and Land instead."
+    read(uav, RTL_ALT=7_500.0)
+    assert told(mission)["state"] == "clear"
+
+
+def test_a_hill_is_looked_at_where_there_is_terrain(uav, tmp_path):
+    ground(tmp_path / "hill.tif", 300.0)
+    towers = world().towers
+    mission = planned(an_operator(), [uav], [towers[0], towers[5]])
+    read(uav)
+    assert told(mission)["state"] == "clear"
+
+
+@pytest.mark.parametrize(("facts", "words"), [({"RTL_ALT_TYPE": 1.0}, "does not return straight")])
+def test_what_cannot_be_checked_is_said(facts, words, mission, uav):
+    read(uav, **facts)
+    found = told(mission)
+    assert found["state"] == "not_checked" and words in found["warnings"][0]
+
+
+def test_a_companions_return_is_its_own(mission, uav):
+    Uav.objects.filter(pk=uav.pk).update(link=LinkKind.HTTP)
+    found = told(mission)
+    assert found["state"] == "not_checked" and "companion of Tern" in found["warnings"][0]
+
+
+def test_another_organisations_mission_is_not_there(mission):
+    stranger: Client = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    assert stranger.get(f"/api/v1/missions/{mission.pk}/returns").status_code == 404

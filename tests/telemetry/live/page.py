@@ -1,0 +1,58 @@
+"""An open page as a test plays it: what it shows by what it was told."""
+
+import json
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from websocket import WebSocket, WebSocketTimeoutException
+
+from tests.workspace.front_door import PATIENCE_S
+
+KINDS = ("uavs", "missions", "alerts", "commands", "offers")
+
+
+@dataclass
+class Page:
+    """`shows` by kind and id. It confirms what it takes."""
+
+    socket: WebSocket
+    shows: dict[str, dict[Any, Any]] = field(default_factory=lambda: {kind: {} for kind in KINDS})
+    sequence: int = 0
+
+    def take(self) -> dict[str, Any]:
+        message = self.hear()
+        if message["type"] != "still-there":
+            self.say({"type": "have", "sequence": message["sequence"]})
+        return message
+
+    def hear(self) -> dict[str, Any]:
+        """Takes in a message that it does not confirm."""
+        message: dict[str, Any] = json.loads(self.socket.recv())
+        if message["type"] == "snapshot":
+            self.shows = {kind: {entry["id"]: entry for entry in message["live"][kind]} for kind in KINDS}
+            self.sequence = message["sequence"]
+        elif message["type"] == "changes":
+            assert message["sequence"] == self.sequence + 1, "a gap"
+            self.sequence = message["sequence"]
+            for kind in KINDS:
+                self.shows[kind] |= {entry["id"]: entry for entry in message[kind]}
+                for gone in message["gone"][kind]:
+                    self.shows[kind].pop(gone, None)
+        return message
+
+    def take_until(self, is_so: Callable[["Page"], Any], patience_s: float = PATIENCE_S) -> Any:
+        """What `is_so` finds."""
+        until_s = time.monotonic() + patience_s
+        while not (found := is_so(self)):
+            self.socket.settimeout(max(until_s - time.monotonic(), 0.01))
+            try:
+                self.take()
+            except WebSocketTimeoutException:
+                raise AssertionError("it was never told") from None
+        self.socket.settimeout(PATIENCE_S)
+        return found
+
+    def say(self, word: object) -> None:
+        self.socket.send(json.dumps(word))

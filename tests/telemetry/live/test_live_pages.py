@@ -1,0 +1,25 @@
+"""What live pages are told, through the real front door."""
+
+import pytest
+
+from telemetry.services import store_records
+from tests.missions.outbox import a_uav
+from tests.telemetry.live.page import Page
+from tests.telemetry.records import record
+from tests.workspace.front_door import Door
+from tests.workspace.people import somebody
+
+pytestmark = pytest.mark.django_db(transaction=True)
+
+
+def test_a_page_is_told_everything_and_then_what_changes(here: Door) -> None:
+    uav = a_uav("Tern")
+    store_records([record(uav, 1, battery_percent=80.0)])
+    page = Page(here.open("/ws/live", user=somebody()))
+    first = page.take()
+    assert (first["type"], first["sequence"]) == ("snapshot", 1)
+    assert page.shows["uavs"][uav.pk]["measured"]["battery_percent"] == 80.0
+    store_records([record(uav, 2, longitude_deg=10.5)])
+    told = page.take_until(lambda page: page.sequence == 2 and page.shows["uavs"][uav.pk]["measured"])
+    assert (told["position"], told["battery_percent"]) == ([10.5, 55.0], 80.0)
+    assert told["measured_at_of"]["battery"] < told["measured_at_of"]["position"] == told["measured_at"]

@@ -1,0 +1,51 @@
+"""Off the route and off the height, leg by leg, as far as was flown."""
+
+from dataclasses import replace
+
+import pytest
+
+from telemetry.mission_report.fix import Fix, in_order
+from telemetry.mission_report.flown_route import flown_route, track_of
+from tests.telemetry.mission_report.flights import flown, place, route
+
+
+def test_a_flight_along_the_route_is_off_it_nowhere() -> None:
+    found = flown_route(route(), flown())
+    assert found.across_max_m == pytest.approx(0.0, abs=0.1) and found.height_max_m == pytest.approx(0.0, abs=0.1)
+    assert found.flown_m == pytest.approx(990.0, abs=3.0)
+    assert [(leg.from_sequence, leg.to_sequence) for leg in found.legs] == [(0, 1), (1, 2), (2, 3)]
+    assert all(leg.reports for leg in found.legs)
+    assert (found.began_s, found.ended_s) == (1_001.0, 1_120.0)
+    assert found.battery_used_percent == pytest.approx(11.9) and found.battery_lowest_percent == pytest.approx(88.0)
+
+
+def test_a_flight_beside_and_above_it_is_off_by_as_much() -> None:
+    first, second, _ = flown_route(route(), flown(aside_m=4.0, higher_m=3.0)).legs
+    assert first.across_rms_m == pytest.approx(4.0, abs=0.1) and second.across_max_m == pytest.approx(4.0, abs=0.1)
+    assert first.height_max_m == pytest.approx(3.0, abs=0.1)  # about a waypoint the heights of both legs are right
+
+
+def test_a_flight_that_was_broken_off_tells_nothing_of_the_legs_after_it() -> None:
+    fixes = [fix for fix in flown() if fix.waypoint_sequence == 1]
+    legs = flown_route(route(), fixes).legs
+    assert legs[0].reports and not legs[2].reports
+    assert legs[2].across_rms_m is None and legs[2].began_s is None
+
+
+def test_what_is_said_on_the_ground_and_on_the_way_home_is_not_off_the_route() -> None:
+    parked = [Fix(900.0 + second, place(80.0, 80.0), 0.0, 100.0, None, is_in_air=False) for second in range(20)]
+    home = [Fix(1_200.0 + second, place(600.0 - 5 * second, 380.0 - 5 * second), 60.0, 80.0, 3, is_in_air=True) for second in range(1, 60)]
+    found = flown_route(route(), in_order([*parked, *flown(), *home]))
+    assert found.across_max_m == pytest.approx(0.0, abs=0.1)
+
+
+def test_without_reports_there_are_legs_and_no_figures() -> None:
+    found = flown_route(route(), [])
+    assert len(found.legs) == 3 and found.across_rms_m is None and found.flown_m == 0.0 and found.began_s is None
+
+
+def test_a_track_is_broken_where_nothing_was_heard_for_long_and_one_of_a_moment_is_kept() -> None:
+    fixes = flown()
+    late = [replace(fix, at_s=fix.at_s + 600.0) for fix in fixes[:5]]
+    lines = track_of(in_order([*late, *fixes, *fixes]))
+    assert [len(line) for line in lines] == [len(fixes), 5]

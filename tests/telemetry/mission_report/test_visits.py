@@ -1,0 +1,53 @@
+"""Whether a UAV was at its targets is told by where it was, however seldom it reports."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from telemetry.mission_report.fix import Fix, in_order
+from telemetry.mission_report.visits import visits_of
+from tests.telemetry.mission_report.flights import HOLD_S, flown, route
+
+FASTEST_MPS = 15.0
+
+
+@pytest.mark.parametrize("every_s", [1, 5, 10, 30])
+def test_a_target_that_was_flown_to_and_held_is_done_however_seldom_it_is_told(every_s: int) -> None:
+    first, second = visits_of(route(), flown(every_s=every_s), fastest_mps=FASTEST_MPS)
+    assert first.is_done and second.is_done
+    assert (first.target, first.waypoint_sequence, second.target) == (0, 1, 1)
+    assert first.reached_s == pytest.approx(1_030.0, abs=every_s + 1)
+
+
+@pytest.mark.parametrize("every_s", [1, 5])
+def test_one_that_was_left_out_is_not_done_whatever_the_vehicle_counts(every_s: int) -> None:
+    first, second = visits_of(route(), flown(leaves_out=2, every_s=every_s), fastest_mps=FASTEST_MPS)
+    assert first.is_done and not second.is_done
+    assert second.closest_m is not None and 150.0 < second.closest_m < 250.0
+
+
+def test_one_that_was_not_held_long_enough_is_not_done() -> None:
+    first, second = visits_of(route(), flown(held_s=HOLD_S - 10), fastest_mps=FASTEST_MPS)
+    assert first.can_have_reached and not first.is_done
+    assert second.is_done
+
+
+def test_without_a_report_nothing_was_reached() -> None:
+    assert [(visit.is_done, visit.closest_m, visit.reached_s) for visit in visits_of(route(), [], fastest_mps=FASTEST_MPS)] == [
+        (False, None, None)
+    ] * 2
+
+
+def test_a_place_that_is_passed_on_another_leg_does_not_count() -> None:
+    fixes = [Fix(fix.at_s, fix.position, fix.altitude_relative_m, None, 3, is_in_air=True) for fix in flown()]
+    away = [Fix(fix.at_s - 5.0, flown()[0].position, 30.0, None, 1, is_in_air=True) for fix in fixes[:3]]
+    first, _ = visits_of(route(), [*away, *fixes], fastest_mps=FASTEST_MPS)
+    assert not first.is_done
+
+
+@given(st.randoms(use_true_random=False), st.floats(0.0, 1.0))
+def test_lost_reports_never_make_a_target_that_was_reached_a_missed_one(chance, kept: float) -> None:
+    fixes = [fix for fix in flown() if chance.random() < kept]
+    ends = [flown()[0], flown()[-1]]
+    for visit in visits_of(route(), in_order([*fixes, *ends]), fastest_mps=FASTEST_MPS):
+        assert visit.is_done

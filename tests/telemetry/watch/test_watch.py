@@ -1,0 +1,105 @@
+"""The watch estimates UAVs of missions on their way, and keeps what it estimated."""
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from missions.models import Mission, MissionState, Uav
+from telemetry.decoding.measurement import Measurement
+from telemetry.models import PositionEstimate, UavWatch
+from telemetry.services import NewRecord, store_records
+from telemetry.watch.options import Options
+from telemetry.watch.process import Watch
+from tests.missions.flights import carry, dispatched, fleet, ground
+from tests.missions.worlds import UAV_AT, world
+from tests.workspace.people import somebody
+
+pytestmark = pytest.mark.django_db
+
+NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)
+
+
+@pytest.fixture
+def uav(tmp_path) -> Uav:
+    ground(tmp_path / "ground.tif")
+    here, [uav] = world(), fleet()
+    mission = dispatched(somebody(), [uav], [here.towers[3]])
+    carry(uav)
+    Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
+    return uav
+
+
+def report(uav: Uav, second: float, **values) -> None:
+    at = NOW + timedelta(seconds=second)
+    told = {"longitude_deg": UAV_AT.lon, "latitude_deg": UAV_AT.lat, "altitude_relative_m": 30.0, "is_in_air": True} | values
+    store_records([NewRecord(uav.pk, "mavlink", "boot", int(second * 1_000), at, at, Measurement(**told))])
+
+
+def watch(name: str = "one", run: str = "1", **options) -> Watch:
+    return Watch(Options(name, 100, run, **options))
+
+
+def seconds(**of) -> list[float]:
+    return [(at - NOW).total_seconds() for at in PositionEstimate.objects.filter(**of).values_list("estimated_for", flat=True)]
+
+
+def test_seconds_without_a_report_are_estimated_and_kept(uav):
+    report(uav, 0.4)
+    one = watch()
+    for second in range(1, 6):
+        one.round(NOW.timestamp() + second + 0.01)
+    row = UavWatch.objects.get(uav=uav)
+    assert row.holder == "one/1"
+    assert row.mission is not None
+    assert row.estimated["at"] == "2026-11-22T12:00:05.000Z"
+    assert row.estimated["report_at"] == "2026-11-22T12:00:00.400Z"
+    assert seconds() == [2.0, 3.0, 4.0, 5.0]
+    estimate = PositionEstimate.objects.first()
+    assert estimate.mission == row.mission
+    assert abs(estimate.position.x - UAV_AT.lon) < 1e-3
+
+
+def test_a_report_that_comes_late_replaces_what_was_estimated_for_its_second(uav):
+    report(uav, 0.4)
+    one = watch()
+    for second in range(1, 6):
+        one.round(NOW.timestamp() + second + 0.01)
+    report(uav, 2.7)
+    one.round(NOW.timestamp() + 6.01)
+    assert seconds(replaced_at__isnull=False) == [3.0]
+    assert seconds(replaced_at=None) == [2.0, 4.0, 5.0, 6.0]
+
+
+def test_a_mission_that_is_over_leaves_no_estimate(uav):
+    report(uav, 0.4)
+    one = watch()
+    one.round(NOW.timestamp() + 1)
+    Mission.objects.update(state=MissionState.COMPLETED)
+    one.round(NOW.timestamp() + 2)
+    row = UavWatch.objects.get(uav=uav)
+    assert (row.holder, row.mission, row.estimated) == ("", None, None)
+    assert one.held == {}
+
+
+def test_one_watch_at_a_time_holds_a_uav(uav):
+    report(uav, 0.4)
+    one, other = watch(), watch("other")
+    one.round(NOW.timestamp() + 1)
+    other.round(NOW.timestamp() + 1)
+    assert (list(one.held), list(other.held)) == ([uav.pk], [])
+    UavWatch.objects.update(lease_expires_at=datetime.now(UTC) - timedelta(seconds=1))
+    other.round(NOW.timestamp() + 2)
+    one.round(NOW.timestamp() + 2)
+    assert (list(one.held), list(other.held)) == ([], [uav.pk])
+    assert UavWatch.objects.get(uav=uav).estimated["at"] == "2026-11-22T12:00:02.000Z"
+
+
+def test_a_watch_that_stops_gives_its_uavs_back(uav):
+    report(uav, 0.4)
+    one = watch()
+    one.round(NOW.timestamp() + 1)
+    one.stop()
+    one.run()
+    row = UavWatch.objects.get(uav=uav)
+    assert row.holder == ""
+    assert row.estimated is not None

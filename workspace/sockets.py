@@ -1,0 +1,89 @@
+"""What every websocket of a signed-in person has in common: who is there, for how long they may be, and how it is hung up."""
+
+import asyncio
+import logging
+from collections.abc import Coroutine
+from contextlib import suppress
+from importlib import import_module
+from typing import Any
+
+from channels.auth import get_user
+from channels.db import database_sync_to_async
+from channels.generic.websocket import AsyncWebsocketConsumer
+from django.conf import settings
+from django.db import Error as DatabaseError
+
+from workspace.authentication import bearer_token, user_of_token
+from workspace.models import User
+
+logger = logging.getLogger(__name__)
+
+CHECK_PERSON_EVERY_S = 4.0
+STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is silent
+
+ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY = 1000, 1011, 4401, 4400
+
+
+class SignedInSocket(AsyncWebsocketConsumer):
+    """For browsers by their session, for programs by `Authorization: Bearer`."""
+
+    channel_layer_alias = "none"  # it listens by itself: a socket lives on while Redis is away
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
+        self._tasks: list[asyncio.Task[None]] = []
+        self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
+        try:
+            await asyncio.wait({spoken, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
+            if spoken.done():
+                return await spoken
+            spoken.cancel()
+            with suppress(asyncio.CancelledError):
+                await spoken
+            await send({"type": "websocket.close", "code": self._hung_up.result()})
+        finally:
+            for task in (spoken, *self._tasks):
+                task.cancel()
+
+    def _hang_up(self, code: int) -> None:
+        if not self._hung_up.done():
+            self._hung_up.set_result(code)
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Beside the socket, and no longer than it. Work that fails takes the socket with it: nobody stays in unwatched."""
+        task = asyncio.create_task(work)
+        self._tasks.append(task)
+        task.add_done_callback(self._look_how_it_ended)
+
+    def _look_how_it_ended(self, task: asyncio.Task[None]) -> None:
+        if not task.cancelled() and (error := task.exception()) is not None:
+            logger.error("a websocket is closed: %r", error, exc_info=error)
+            self._hang_up(FAILED)
+
+    async def _user(self) -> User | None:
+        """Whoever listens, if they still may."""
+        token = bearer_token(self.scope)
+        if token is not None:
+            return await database_sync_to_async(user_of_token)(token)
+        key = await database_sync_to_async(lambda: self.scope["session"].session_key)()
+        if key is None:
+            return None
+        store = import_module(settings.SESSION_ENGINE).SessionStore
+        user = await get_user({"session": store(session_key=key)})  # a store of its own: the first one keeps what it has read
+        return user if isinstance(user, User) and user.is_active else None
+
+    async def _same_user(self, before: User) -> User | None:
+        """Whoever was there before, as they are now; None once they may not listen any more, or work for somebody else."""
+        now = await self._user()
+        is_same = now is not None and (now.pk, now.organisation_id) == (before.pk, before.organisation_id)
+        return now if is_same else None
+
+    async def _watch_person(self, user: User) -> None:
+        """Until they may not be there any more: then the socket is closed. Somebody whose role has changed comes in again."""
+        while True:
+            await asyncio.sleep(CHECK_PERSON_EVERY_S)
+            with suppress(DatabaseError):  # away for a moment: the next look tells
+                now = await self._same_user(user)
+                if now is None or now.role != user.role:
+                    return self._hang_up(SIGNED_OUT)
