@@ -20,7 +20,7 @@ OFF_ROUTE_M = 0.8  # standard deviation across the route, each way
 OFF_ROUTE_S = 4.0  # until it is as far as that
 OFF_HEIGHT_M = 0.5
 BESIDE_SHARE = 0.3  # of what a velocity beside the route's makes, that may be otherwise
-SPEED_SD_MPS, SPEED_SHARE, SPEED_S = 0.35, 0.05, 4.0
+SPEED_SD_MPS, SPEED_SHARE, SPEED_S = 0.38, 0.06, 4.0
 BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
 STEERED_S = 6.0  # how long a velocity tells of one that a person steers
@@ -77,7 +77,7 @@ def after(state: State, after_s: float) -> Belief:
     if state.phase is Phase.GROUND:
         return _plain(state, after_s, 0.0, 0.0, 0.02 * after_s, 0.0)
     if state.phase is Phase.HOLD or state.phase is Phase.LAND:
-        return _plain(state, after_s, BRAKES_S, DRIFT_MPS * after_s, 0.1 * state_speed(state), 0.3)
+        return _plain(state, after_s, BRAKES_S, DRIFT_MPS * after_s, 0.3 * state_speed(state), 0.3)
     return _plain(state, after_s, STEERED_S, STEERED_MPS2 * min(after_s, 12.0) * math.sqrt(after_s + 0.25), 0.0, 1.0)
 
 
