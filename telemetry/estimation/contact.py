@@ -63,7 +63,3 @@ class Hearing:
             return max(state.report_s + float(np.interp(begins_m, self.profile.along_m, clock)) - middle_s, at_s)
         end = end_of(state, track)
         return None if end is None or end.latest_s < at_s else max(end.at_s, at_s)
-
-
-def is_silent(received_s: float, usual_interval_s: float, at_s: float) -> bool:
-    return at_s - received_s > max(SILENT_S, SILENT_INTERVALS * usual_interval_s)

@@ -5,6 +5,7 @@ The clock knows accelerations, turns, climbs, wind and tasks; what really happen
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +59,7 @@ class Profile:
     reached: IntArray
     ends_in_air: bool
 
-    @property
+    @cached_property
     def nominal_s(self) -> FloatArray:
         return self.moving_s + self.standing_s
 

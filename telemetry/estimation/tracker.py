@@ -4,13 +4,15 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from statistics import median
 
 import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from telemetry.estimation.belief import Belief
-from telemetry.estimation.contact import PROMPT_S, Hearing, is_silent
+from telemetry.estimation.contact import PROMPT_S, SILENT_INTERVALS, SILENT_S, Hearing
 from telemetry.estimation.estimate import Arrival, Ellipse, Estimate
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import State, after
@@ -51,7 +53,8 @@ class Tracker:
 
     def is_silent(self, at_s: float) -> bool:
         """Nothing has come for longer than usual, though something had."""
-        return bool(self._reports) and is_silent(self._received_s, self._usual_interval_s(), at_s)
+        quiet_s = at_s - self._received_s
+        return bool(self._reports) and quiet_s > SILENT_S and quiet_s > SILENT_INTERVALS * self._usual_interval_s()
 
     def learn(self, places: Sequence[LonLat]) -> None:
         """Where on earlier flights something was heard promptly."""
@@ -114,7 +117,7 @@ class Tracker:
 
     def _usual_interval_s(self) -> float:
         last = [report.measured_s for report in self._reports[-10:]]
-        return float(np.median(np.diff(last))) if len(last) > 1 else 1.0
+        return median(later - earlier for earlier, later in pairwise(last)) if len(last) > 1 else 1.0
 
     def _forget(self) -> None:
         oldest_s = self._reports[-1].measured_s - KEPT_S
