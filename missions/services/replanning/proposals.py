@@ -16,9 +16,9 @@ from missions.services.planning import make_plan
 from missions.services.replanning.composing import Continued, continued_route
 from missions.services.replanning.leaving import LEAD_S, CannotLeave, Leaving, leaving_of
 from missions.services.replanning.rest import Cause, Rest
+from missions.services.replanning.zones_ahead import zone_ahead
 from missions.services.requests import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
 from missions.services.wishes import with_bases
-from missions.zone_selectors import flown_route, zones_met
 
 MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
 
@@ -92,13 +92,13 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
     for rest in rests:
         if rest.is_out:
             continue
-        zone, before = _zone_ahead(rest, now)
-        if zone:
-            zones[rest.place] = zone
+        zone = zone_ahead(rest, now)
+        if zone is not None:
+            zones[rest.place] = zone.name
         elif cause.code == "battery-short" and rest.uav is not None and rest.uav.pk == cause.uav:
             short.add(rest.place)
         try:
-            leavings[rest.place] = leaving_of(rest, conditions, before=before)
+            leavings[rest.place] = leaving_of(rest, conditions, before=None if zone is None else zone.breach.leg + 1)
         except CannotLeave as error:
             troubles.setdefault(rest.place, str(error))
     return Field(
@@ -111,19 +111,6 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
         targets=dict(enumerate(asked.targets)),
         departs_at=now + timedelta(seconds=LEAD_S),
     )
-
-
-def _zone_ahead(rest: Rest, now: datetime) -> tuple[str, int | None]:
-    """The first zone across what it would still fly, by the zones of now, and the waypoint that it must not fly to any more."""
-    if rest.here is None:
-        return "", None
-    began_s = now.timestamp() - rest.here.at_s(rest.points)
-    (met,) = zones_met([flown_route(rest.route, began_s)])
-    ahead = [meeting for meeting in met if meeting.breach.leg >= rest.here.ahead - 1]
-    if not ahead:
-        return "", None
-    first = min(ahead, key=lambda meeting: meeting.breach.leg)
-    return first.name, first.breach.leg + 1
 
 
 def proposals(field: Field) -> Iterator[Proposal]:
