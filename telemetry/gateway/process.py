@@ -298,11 +298,10 @@ class Gateway:
                 continue
             other, last_s = session.second_sender
             if now_s - last_s < SECOND_SENDER_GONE_S:
-                words = f"Two senders say that they are {session.uav.name}: {session.peer.name}, which is believed, and {other}."
-                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
+                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other)
             else:
                 session.second_sender = None
-                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, words="")
+                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id)
 
     async def _tell_flown(self) -> None:
         """In order, each as often as it takes. What cannot be told of one UAV holds up no other."""
