@@ -13,6 +13,7 @@ from missions.serializers.commands import command_json
 from telemetry.live.missions import missions_json
 from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
+from telemetry.selectors.alerts import alert_words
 from telemetry.selectors.live import Key
 from workspace.stored_words import in_words
 
@@ -47,7 +48,7 @@ def _alerts(ids: list[str]) -> list[dict[str, Any]]:
             "level": alert.level,
             "code": alert.code,
             "subject": alert.subject,
-            "message": in_words(alert.message),
+            "message": alert_words(alert.message, alert.values),
             "details": alert.details,
             "opened_at": alert.opened_at,
             "closed_at": alert.closed_at,
