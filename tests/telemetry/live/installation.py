@@ -69,6 +69,12 @@ class Installation:
     port: int
     udp_port: int
     programs: dict[str, Kept]
+    sockets: Path
+
+    def serves(self, name: str) -> bool:
+        """Whether a program that listens on a socket of its own accepts."""
+        with socket.socket(socket.AF_UNIX) as caller:
+            return caller.connect_ex(str(self.sockets / f"{name}.sock")) == 0
 
 
 def _command(program: Program) -> list[str]:
@@ -104,7 +110,7 @@ def installation(folder: Path) -> Iterator[Installation]:
         for program in kept.values():
             program.start()
         time.sleep(1.0)
-        yield Installation(port, udp_port, kept)
+        yield Installation(port, udp_port, kept, folder)
     finally:
         for program in kept.values():
             program.end()

@@ -24,6 +24,7 @@ from websocket import WebSocket, WebSocketException, create_connection
 
 from missions.models import OPEN_COMMANDS, CommandState, CredentialKind, LinkKind, Mission, MissionState, Uav, UavCommand
 from missions.services.credentials import make_credential
+from scripts.places import WEB_PROGRAMS
 from telemetry.models import TelemetryRecord
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.outbox import a_uav
@@ -43,7 +44,7 @@ ROUNDS = int(os.environ.get("SPANWISE_KILL_ROUNDS", "10"))
 AGAIN_WITHIN_S = 10.0
 FIRST_WITHIN_S = 60.0
 SYSTEM = 7
-KILLED = ("redis", "gateway", "estimator", "live", "web-1", "web-2")
+KILLED = ("redis", "gateway", "estimator", "live", *WEB_PROGRAMS)
 
 
 @pytest.fixture
@@ -214,6 +215,8 @@ def _kill_all_in_turn(site: Installation, halves: dict[str, Callable[[], datetim
     for _ in range(ROUNDS):
         for name in chance.sample(KILLED, len(KILLED)):
             time.sleep(chance.random())
+            for other in WEB_PROGRAMS:  # of two that do the same, one is there
+                wait_until(lambda other=other: site.serves(other), FIRST_WITHIN_S)
             killed_at = datetime.now(UTC)
             site.programs[name].kill()
             wait_until(lambda since=killed_at + timedelta(seconds=0.5): _are_since(halves, since), 6 * AGAIN_WITHIN_S)
