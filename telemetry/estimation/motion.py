@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 # Calibrated on the truth generator, on seeds that no test uses; see tests/telemetry/estimation/calibration.py.
 ASIDE_S = 8.0  # how long it stays beside its route
 TURNS_S = 1.6  # how long it keeps a velocity that is not its route's
-OFF_ROUTE_M = 1.3  # standard deviation across the route, each way
+OFF_ROUTE_M = 0.8  # standard deviation across the route, each way
 OFF_ROUTE_S = 4.0  # until it is as far as that
 OFF_HEIGHT_M = 0.5
 BESIDE_SHARE = 0.3  # of what a velocity beside the route's makes, that may be otherwise
@@ -25,7 +25,7 @@ BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
 STEERED_S = 6.0  # how long a velocity tells of one that a person steers
 STEERED_MPS2 = 0.9
-SHARED_M, SHARED_HEIGHT_M = 1.25, 1.0  # errors that reports share: of GPS, and of the barometer
+SHARED_M, SHARED_HEIGHT_M = 1.15, 1.0  # errors that reports share: of GPS, and of the barometer
 
 
 @dataclass(frozen=True, eq=False)

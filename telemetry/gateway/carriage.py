@@ -70,7 +70,7 @@ class Carriage:
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
                 if task.take_off is not None:
-                    self.session.own_return.ask_anew(time.monotonic())
+                    self.session.questions.own_return.ask_anew(time.monotonic())
                 task = await self._reason_against(task) or await self._beyond_limits(task) or task
             if isinstance(task, Task):
                 task = as_begun(task, self.session.state)

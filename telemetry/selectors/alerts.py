@@ -5,12 +5,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
-from uuid import UUID
 
 from django.utils.translation import gettext
 
-from missions.models import Mission, Uav
 from telemetry.models import Alert
+
+MIXED = "mission-mixed"  # a code
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +33,6 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
     for row in rows.values_list("pk", "uav_id", "code", "subject", "level", "message", "values", "written_at"):
         found[row[1]].append(OpenRow(*row))
     return found
-
-
-def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[tuple[int, UUID], tuple[Mapping[str, float], Mapping[str, float]]]:
-    """Of UAVs in missions, what the type and the mission state of alerts' limits."""
-    of_type = dict(Uav.objects.filter(pk__in={uav for uav, _ in pairs}).values_list("pk", "uav_type__alert_limits"))
-    of_mission = dict(Mission.objects.filter(pk__in={mission for _, mission in pairs}).values_list("pk", "alert_limits"))
-    return {(uav, mission): (of_type.get(uav) or {}, of_mission.get(mission) or {}) for uav, mission in pairs}
 
 
 def alert_words(message: str, values: Mapping[str, Any]) -> str:

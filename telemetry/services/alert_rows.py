@@ -6,6 +6,7 @@ from datetime import datetime, timedelta
 
 from django.db import connection, transaction
 from django.db.models import F, QuerySet
+from django.db.models.functions import Now
 
 from missions.models import MissionState
 from telemetry.alerting.book import RANK, Closed, Opened
@@ -69,9 +70,10 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
     return organisations
 
 
-def close_alerts_of_ended_missions(*, codes: Collection[str], now: datetime) -> set[int]:
-    """Nobody watches their UAVs any more. Returns the organisations."""
+def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[int], now: datetime) -> set[int]:
+    """Unless a watch still watches their UAVs for them: this one those of `but`. Returns the organisations."""
     over = Alert.objects.filter(closed_at=None, code__in=codes, mission__isnull=False).exclude(mission__state__in=WATCHED_STATES)
+    over = over.exclude(uav__in=but).exclude(uav__watch__mission=F("mission"), uav__watch__lease_expires_at__gt=Now())
     found = dict(over.values_list("pk", "organisation_id"))
     if found:
         _close(Alert.objects.filter(pk__in=sorted(found)), MISSION_ENDED, now)

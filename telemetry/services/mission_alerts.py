@@ -2,9 +2,8 @@
 
 from missions.models import UavCommand
 from telemetry.models import AlertLevel
+from telemetry.selectors.alerts import MIXED
 from telemetry.services.alerts import close_alert, open_alert
-
-MIXED = "mission-mixed"
 
 
 def tell_of_mission(command: UavCommand, *, is_mixed: bool, words: str) -> None:

@@ -9,7 +9,8 @@ import { returnLines, returnOf } from "./own_return.js";
 import { confirmAct } from "./panels/confirm.js";
 
 const POLL_MS = 2000;
-const RETURNS_EVERY_MS = 20_000;
+const CONNECTIONS_EVERY_MS = 20_000;
+const RETURNS_EVERY_MS = 60_000; // they take the server longer, and seldom change
 const LATE = t("If it cannot be reached in time, the command expires and is not carried out later.");
 const WHY = { name: "why", label: t("Why (kept in the history)") };
 
@@ -31,6 +32,7 @@ const ASKED = {
 export function createFlying(store, { failed, page }) {
   let timer = 0;
   let isAsking = false;
+  let connectionsAt = 0;
   let returnsAt = 0;
 
   const mission = () => store.state.mission;
@@ -61,6 +63,7 @@ export function createFlying(store, { failed, page }) {
 
   /** store.connections: by UAV, what is known of it and of what is on board; null while that could not be read. */
   async function readConnections() {
+    connectionsAt = Date.now();
     const uavs = flyersOf(mission()).map(({ uav }) => uav).filter((uav) => uav !== null);
     const read = await Promise.all(uavs.map((uav) => get(`/uavs/${uav}/connection`).then(({ data }) => [uav, data], () => [uav, null])));
     store.update({ connections: new Map(read) });
@@ -70,7 +73,6 @@ export function createFlying(store, { failed, page }) {
   async function readReturns() {
     if (!mission()) return;
     returnsAt = Date.now();
-    void readConnections();
     try {
       store.update({ returns: (await get(`/missions/${mission().id}/returns`)).data.results });
     } catch (error) {
@@ -194,11 +196,13 @@ export function createFlying(store, { failed, page }) {
       const isBusy = mission() && (isOnItsWay(mission()) || commands?.some(isOpen));
       if (document.hidden || !isBusy) return;
       void readCommands();
+      if (Date.now() - connectionsAt >= CONNECTIONS_EVERY_MS) void readConnections();
       if (Date.now() - returnsAt >= RETURNS_EVERY_MS) void readReturns();
     }, POLL_MS);
     store.listen(["mission"], ({ mission: now }) => {
       if (!now || store.state.commands !== null) return;
       void readCommands();
+      void readConnections();
       void readReturns();
     });
     document.addEventListener("visibilitychange", () => !document.hidden && void readCommands());
