@@ -13,6 +13,11 @@ export const STATES = {
   complete: { words: t("Complete"), image: "circle-check", rank: 5 },
 };
 
+const REASONS = { "flight-failed": t("Its flight failed."), "not-reached": t("The UAV went past it at a distance."), "not-held": t("The UAV did not stay long enough.") };
+
+/** Why a target was skipped or failed: a known code in words, anything else as it is. */
+export const reasonWords = (reason) => REASONS[reason] ?? reason ?? "";
+
 /** Number of each target on its route, by its place in the mission; from the mission as the REST API shows it. */
 export function numbersOf(detail) {
   const numbers = new Map();
@@ -56,6 +61,6 @@ function rowOf(mission, target, uav, numbers) {
     state,
     at: isToCome ? (state === "held" ? null : (arrival?.at ?? null)) : target.state_at,
     isExpected: isToCome,
-    reason: target.state_reason,
+    reason: reasonWords(target.state_reason),
   };
 }

@@ -2,7 +2,7 @@
 
 import { KINDS } from "../mission/flying.js";
 import { t } from "../text.js";
-import { STATES } from "./board.js";
+import { reasonWords, STATES } from "./board.js";
 
 const STEPS = [
   ["created_at", () => t("given"), "send"],
@@ -30,7 +30,7 @@ function ofAlert({ id, level, message, opened_at, closed_at, acknowledged_at, ac
 function ofMission({ id, name, started_at, ended_at, targets }) {
   const rows = targets
     .filter(({ state, state_at }) => state_at && state !== "pending")
-    .map(({ place, label, state, state_at, state_reason }) => ({ key: `target ${id} ${place} ${state}`, at: state_at, image: STATES[state].image, words: `${label}: ${STATES[state].words}${state_reason ? `, ${state_reason}` : ""}` }));
+    .map(({ place, label, state, state_at, state_reason }) => ({ key: `target ${id} ${place} ${state}`, at: state_at, image: STATES[state].image, words: `${label}: ${STATES[state].words}${state_reason ? `, ${reasonWords(state_reason)}` : ""}` }));
   if (started_at) rows.push({ key: `mission ${id} started`, at: started_at, image: "plane-takeoff", words: t("“{name}” has begun", { name }) });
   if (ended_at) rows.push({ key: `mission ${id} ended`, at: ended_at, image: "plane-landing", words: t("“{name}” has ended", { name }) });
   return rows;

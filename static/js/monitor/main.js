@@ -84,20 +84,27 @@ startChrome({
   ],
 });
 
-// What comes in
+// What comes in is drawn together, once a frame at most; what nobody looks at, by and by.
+
+const HIDDEN_MS = 500;
+let waiting = null; // the kinds that have changed since the last drawing
 
 function take(touched) {
   const kinds = touched ? KINDS.filter((kind) => touched[kind].size) : KINDS;
-  const told = Object.fromEntries(kinds.map((kind) => [kind, [...feed.shown[kind].values()]]));
+  if (waiting) return void kinds.forEach((kind) => waiting.add(kind));
+  waiting = new Set(kinds);
+  if (document.hidden) setTimeout(show, HIDDEN_MS);
+  else requestAnimationFrame(show);
+}
+
+function show() {
+  const told = Object.fromEntries([...waiting].map((kind) => [kind, [...feed.shown[kind].values()]]));
+  waiting = null;
   store.update({ ...told, now_ms: feed.now_ms() });
   store.update({ isWhole: true }); // from here on what comes is news
 }
 
-const feed = openFeed({
-  mission: page.mission,
-  onChange: (touched) => queueMicrotask(() => take(touched)),
-  onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
-});
+const feed = openFeed({ mission: page.mission, onChange: take, onState: ({ state, since_ms }) => store.update({ link: state, since_ms }) });
 setInterval(() => store.update({ now_ms: feed.now_ms() }), TICK_MS);
 addEventListener("pagehide", () => feed.close());
 

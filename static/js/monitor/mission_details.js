@@ -9,7 +9,7 @@ const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what w
 export function flownParts(features) {
   const flown = new Map();
   for (const { geometry, properties } of features) {
-    if (geometry) addReport(flown, properties.uav, geometry.coordinates, Date.parse(properties.measured_at));
+    if (geometry && !properties.is_from_future) addReport(flown, properties.uav, geometry.coordinates, Date.parse(properties.measured_at));
   }
   return flown;
 }

@@ -1,6 +1,6 @@
 /** The fleet: a card for each UAV. Parts that a second changes are renewed in place, so that focus and pointer stay. */
 
-import { byId, h, icon, keyedList } from "../../dom.js";
+import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
 import { commandWords, isOpen, timesOf } from "../../mission/flying.js";
 import { t, tn } from "../../text.js";
@@ -28,12 +28,12 @@ export function mountCards(store, { pick, jumpTo, follow }) {
 
   function make(uav) {
     const at = {
-      letter: h("span", { class: "letter" }), name: h("strong", {}), chip: h("span", { class: "chip" }), age: h("span", { class: "age" }), mission: h("p", { class: "caption of-mission" }),
+      letter: h("span", { class: "letter" }), name: h("strong", {}), chip: h("span", { class: "chip" }), simulated: h("span", { class: "chip draft", title: t("No real aircraft") }, t("simulated")), age: h("span", { class: "age" }), mission: h("p", { class: "caption of-mission" }),
       estimate: h("p", { class: "estimate" }), figures: h("dl", { class: "figures" }), strip: h("div", { class: "strip-place" }), next: h("p", { class: "next" }), command: h("p", { class: "card-command" }), alerts: h("ul", { class: "card-alerts" }),
       jump: h("button", { type: "button", class: "text-button", onclick: () => jumpTo(uav.id) }, t("Show on the map")), follow: h("button", { type: "button", class: "text-button", "aria-pressed": "false", onclick: follow }, t("Follow")),
     };
     at.acts = h("div", { class: "card-acts" }, at.jump, at.follow);
-    at.head = h("button", { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) }, at.letter, at.name, at.chip);
+    at.head = h("button", { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) }, at.letter, at.name, at.chip, at.simulated);
     const card = h("li", { class: "card", onclick: (event) => !event.target.closest("button, a") && pick(uav.id) }, h("div", { class: "card-top" }, at.head, at.age), at.mission, at.command, at.estimate, at.figures, at.strip, at.next, at.alerts, at.acts);
     parts.set(card, at);
     return card;
@@ -53,24 +53,26 @@ export function mountCards(store, { pick, jumpTo, follow }) {
     const state = stateOf(uav);
     at.chip.textContent = state.words;
     at.chip.className = `chip ${state.level === "warning" ? "aborted" : state.level === "active" ? "draft" : ""}`;
+    at.simulated.hidden = !uav.is_simulated;
     const age = ageWords(uav, now_ms);
-    at.age.replaceChildren(...(age.isLate ? [icon("signal", "small")] : []), age.words);
+    refill(at.age, `${age.isLate} ${age.words}`, () => [age.isLate && icon("signal", "small"), age.words]);
     at.age.classList.toggle("late", age.isLate);
     at.mission.hidden = missions.length < 2 && uav.mission !== null;
     at.mission.textContent = mission ? mission.name : t("not in a mission");
     const estimate = estimateWords(uav, certainty);
     at.estimate.hidden = estimate === null;
-    if (estimate) at.estimate.replaceChildren(icon("circle-dashed"), h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`));
-    at.figures.replaceChildren(...figuresOf(uav, certainty).map(({ figure, unit, words }) => h("div", {}, h("dt", {}, words), h("dd", {}, figure, unit && h("small", {}, ` ${unit}`)))));
+    if (estimate) refill(at.estimate, `${estimate.strong} ${estimate.rest}`, () => [icon("circle-dashed"), h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`)]);
+    const figures = figuresOf(uav, certainty);
+    refill(at.figures, JSON.stringify(figures), () => figures.map(({ figure, unit, words }) => h("div", {}, h("dt", {}, words), h("dd", {}, figure, unit && h("small", {}, ` ${unit}`)))));
     drawStrip(at, uav, detail, mission, certainty);
     const numbers = numbersOf(detail);
     const next = nextOf(uav, (place) => { const target = mission?.targets[place]; return target ? `${pillOf(target, numbers)} ${target.label}` : t("a target"); });
     at.next.hidden = !next.next && !next.toGo;
-    at.next.replaceChildren(h("span", {}, next.next && [t("Next"), " ", h("strong", {}, next.next), next.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${next.at}`]), h("span", { class: "quiet-text" }, next.toGo));
+    refill(at.next, JSON.stringify([next, certainty]), () => [h("span", {}, next.next && [t("Next"), " ", h("strong", {}, next.next), next.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${next.at}`]), h("span", { class: "quiet-text" }, next.toGo)]);
     drawCommand(at.command, commandOf(uav, commands, now_ms));
     const open = alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert));
     at.alerts.hidden = open.length === 0;
-    at.alerts.replaceChildren(...open.map(({ level, message, acknowledged_at }) => h("li", { class: acknowledged_at ? "known" : level }, icon(acknowledged_at ? "check" : LEVEL_ICONS[level], "small"), h("span", {}, message))));
+    refill(at.alerts, JSON.stringify(open.map(({ id, revision, level, message }) => [id, revision, level, message])), () => open.map(({ level, message, acknowledged_at }) => h("li", { class: acknowledged_at ? "known" : level }, icon(acknowledged_at ? "check" : LEVEL_ICONS[level], "small"), h("span", {}, message))));
     at.acts.hidden = !isChosen;
     at.follow.setAttribute("aria-pressed", `${isFollowing && isChosen}`);
     at.follow.textContent = isFollowing && isChosen ? t("Following") : t("Follow");
@@ -97,7 +99,7 @@ export function mountCards(store, { pick, jumpTo, follow }) {
     if (!command) return;
     const said = commandWords(command);
     place.className = `card-command ${said.level ?? ""}`;
-    place.replaceChildren(icon(said.image, "small"), h("span", {}, h("strong", {}, said.words), h("small", {}, timesOf(command, exactClockText))));
+    refill(place, `${command.id} ${command.state} ${said.words}`, () => [icon(said.image, "small"), h("span", {}, h("strong", {}, said.words), h("small", {}, timesOf(command, exactClockText)))]);
   }
 
   const draw = keyedList(list, ({ id }) => id, make, refresh);

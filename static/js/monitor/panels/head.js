@@ -30,9 +30,9 @@ export function staleWords({ link, since_ms, now_ms }) {
 export function mountHead(store, page) {
   const chip = byId("mission-state");
   const stale = byId("stale");
-  store.listen(["missions", "uavs", "now_ms", "details"], ({ missions, uavs, now_ms, details }) => {
+  store.listen(["missions", "uavs", "now_ms"], ({ missions, uavs, now_ms }) => {
     const mission = page.mission ? missions.find(({ id }) => id === page.mission) : null;
-    const name = mission?.name ?? details.get(page.mission)?.name ?? t("Live");
+    const name = mission?.name ?? page.missionName ?? t("Live");
     if (byId("page-title").textContent !== name) {
       byId("page-title").textContent = name;
       byId("bar-title").textContent = name;
