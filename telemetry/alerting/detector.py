@@ -4,9 +4,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from telemetry.alerting.finding import Finding
+from telemetry.alerting.limits import Limits
 from telemetry.alerting.situation import Situation
 
 LOOK_EVERY_S = 1.0
+
+
+def _none(_limits: Limits, _interval_s: float) -> float:
+    return 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +21,8 @@ class Detector:
     `detect` returns what is there now; None: that cannot be told now, and what was open stays open. A cause must last for `raise_after_s`
     before there is an alert, and be gone for `clear_after_s` before it is over. `reports` is how many reports it takes to see it at most.
     Of a UAV that is not `in_flight` nothing is found where it `needs_flight`. `hidden_by` names what this would be a consequence of: as
-    long as an alert of one of these codes is open, nothing is said of this.
+    long as an alert of one of these codes is open, nothing is said of this. `own_delay_s` is what it takes by its limits, at an interval
+    of reports [s].
     """
 
     code: str
@@ -26,7 +32,9 @@ class Detector:
     reports: int = 1
     needs_flight: bool = True
     hidden_by: tuple[str, ...] = ()
+    own_delay_s: Callable[[Limits, float], float] = _none
 
-    def delay_s(self, report_interval_s: float = 1.0) -> float:
-        """From a fault until its alert is open, at most."""
-        return self.reports * report_interval_s + self.raise_after_s + LOOK_EVERY_S
+    def delay_s(self, limits: Limits, report_interval_s: float = 1.0) -> float:
+        """From a fault until its alert is open, at most, where reports come so often."""
+        waits_s = self.own_delay_s(limits, report_interval_s) + self.raise_after_s
+        return self.reports * report_interval_s + waits_s + LOOK_EVERY_S

@@ -11,7 +11,7 @@ from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.timing import timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, Waypoints
 from missions.mavlink.frozen import HOVER, Flight
-from telemetry.alerting.route_line import Place
+from telemetry.alerting.route_line import NEAR_VERTEX_M, Place
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,15 +23,18 @@ class EnergyPlan:
     until_percent: tuple[float, ...]
     reserve_percent: float
 
-    def used_at(self, place: Place) -> float:
+    def used_at(self, place: Place, climbed_share: float = 1.0) -> float:
+        """climbed_share: of the way from the ground up to the first waypoint."""
+        if place.along_m <= NEAR_VERTEX_M and climbed_share < 1.0:
+            return self.used_percent[0] * climbed_share
         end = min(place.leg + 1, len(self.used_percent) - 1)
         start_percent = self.used_percent[place.leg]
         return start_percent + place.share * (self.used_percent[end] - start_percent)
 
-    def rest_at(self, place: Place) -> float:
+    def rest_at(self, place: Place, used_percent: float) -> float:
         """Still to be used, to the end of the flight or to where it charges next."""
         end = min(place.leg + 1, len(self.used_percent) - 1)
-        return max(0.0, self.until_percent[end] - self.used_at(place))
+        return max(0.0, self.until_percent[end] - used_percent)
 
 
 def energy_plan(

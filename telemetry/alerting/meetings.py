@@ -4,9 +4,12 @@ import math
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from telemetry.alerting.memory import position_of
+from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Meeting
 
 STEP_S = 2.0
@@ -30,6 +33,37 @@ class Moving:
     climb_mps: float
     bound_m: float
     bound_height_m: float
+
+
+def moving_of(situation: Situation, within_s: float) -> Moving | None:
+    """None where it is not in flight, or where nobody knows where it is."""
+    uav, place, model = situation.uav, situation.place, situation.model
+    estimate, newest = uav.estimate, uav.newest
+    position = estimate.position if estimate is not None else None if newest is None else position_of(newest)
+    if position is None or newest is None or not situation.is_in_flight:
+        return None
+    told = newest.measurement
+    north_mps, east_mps = told.velocity_north_mps or 0.0, told.velocity_east_mps or 0.0
+    speed_mps = math.hypot(north_mps, east_mps)
+    degree_east_m = DEGREE_M * math.cos(math.radians(position.lat))
+    seconds = [STEP_S * step for step in range(int(within_s / STEP_S) + 2)]
+    if place is not None and model is not None and situation.flies_mission and place.across_m <= situation.limits.off_route_m:
+        line = model.line
+        here = line.at(place.along_m)
+        ways = [line.at(place.along_m + speed_mps * after_s) for after_s in seconds]
+        ahead = [(position.lon + (east - here[0]) / degree_east_m, position.lat + (north - here[1]) / DEGREE_M) for east, north in ways]
+    else:
+        ahead = [(position.lon + east_mps * after_s / degree_east_m, position.lat + north_mps * after_s / DEGREE_M) for after_s in seconds]
+    return Moving(
+        uav_id=uav.uav_id,
+        name=uav.name,
+        organisation=uav.organisation_id,
+        ahead=tuple(ahead),
+        height_m=told.altitude_amsl_m if estimate is None or estimate.altitude_amsl_m is None else estimate.altitude_amsl_m,
+        climb_mps=-(told.velocity_down_mps or 0.0),
+        bound_m=0.0 if estimate is None else max(estimate.bound.along_m, estimate.bound.across_m),
+        bound_height_m=0.0 if estimate is None else estimate.bound_height_m,
+    )
 
 
 def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meeting]]:
@@ -86,3 +120,22 @@ def _height_between_m(first: Moving, second: Moving, at_s: float) -> float:
     now_m = first.height_m - second.height_m
     then_m = now_m + (first.climb_mps - second.climb_mps) * at_s
     return 0.0 if now_m * then_m < 0.0 else min(abs(now_m), abs(then_m))
+
+
+def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float) -> Moving:
+    """One that another watch estimates, as estimation/as_json.py writes it: straight on."""
+    lon, lat = estimated["position"]
+    heading_rad, speed_mps = math.radians(estimated["heading_deg"] or 0.0), estimated["speed_mps"]
+    degree_east_m = DEGREE_M * math.cos(math.radians(lat))
+    seconds = [STEP_S * step for step in range(int(within_s / STEP_S) + 2)]
+    east, north = speed_mps * math.sin(heading_rad) / degree_east_m, speed_mps * math.cos(heading_rad) / DEGREE_M
+    return Moving(
+        uav_id=uav_id,
+        name=name,
+        organisation=organisation,
+        ahead=tuple((lon + east * after_s, lat + north * after_s) for after_s in seconds),
+        height_m=estimated["altitude_amsl_m"],
+        climb_mps=0.0,
+        bound_m=max(estimated["bound"]["along_m"], estimated["bound"]["across_m"]),
+        bound_height_m=estimated["bound"]["height_m"],
+    )

@@ -6,9 +6,10 @@ from statistics import median
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.route_line import Place, RouteLine
-from telemetry.alerting.watched import Report
+from telemetry.estimation.report import Report
 
 INTERVALS_KEPT = 5
+UNKNOWN_INTERVAL_S = 10.0  # as slow as some links are
 BATTERY_STEP_PERCENT = 1.0  # of the flight's plan, between two entries
 BATTERY_STEPS_KEPT = 10
 
@@ -21,13 +22,13 @@ class Cause:
     gone_s: float | None = None
 
 
-@dataclass
+@dataclass(frozen=True, slots=True)
 class Progress:
-    """How far it has come, and when that was seen first."""
+    """How far it had come at a time."""
 
+    at_s: float
     along_m: float
     height_m: float | None
-    at_s: float
 
 
 @dataclass
@@ -38,7 +39,7 @@ class Memory:
     before: Report | None = None
     place: Place | None = None
     line: RouteLine | None = None
-    progress: Progress | None = None
+    progress: deque[Progress] = field(default_factory=deque)
     jumped_s: float | None = None
     jump_m: float = 0.0
     drained: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=BATTERY_STEPS_KEPT + 1))
@@ -48,8 +49,9 @@ class Memory:
     def take(self, report: Report | None, line: RouteLine | None = None) -> bool:
         """Whether it is a new one."""
         if line is not self.line:
-            self.line, self.place, self.progress = line, None, None
+            self.line, self.place = line, None
             self.drained.clear()
+            self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
             return False
         if self.newest is not None:
@@ -65,8 +67,8 @@ class Memory:
 
     @property
     def usual_interval_s(self) -> float:
-        """Between reports, as the last few came; 0 as long as that is not known."""
-        return median(self._intervals_s) if self._intervals_s else 0.0
+        """Between reports, as the last few came."""
+        return median(self._intervals_s) if self._intervals_s else UNKNOWN_INTERVAL_S
 
 
 def position_of(report: Report) -> LonLat | None:

@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
 import numpy as np
@@ -13,6 +13,7 @@ from missions.mavlink.frozen import HOVER, Flight
 
 NEAR_VERTEX_M = 15.0  # an autopilot takes a waypoint for reached before it is there, and climbs or sinks beside it
 LEGS_BACK, LEGS_ON = 2, 1  # of the leg to the waypoint that is told, which may be some seconds old
+LEG_OFF_M = 15.0  # for each leg that it would be from the one that is expected
 BACK_M, ON_M = 60.0, 600.0  # of where it was before, where no waypoint is told
 
 
@@ -65,7 +66,10 @@ class RouteLine:
         return bisect_right(self.sequences, sequence) - 1
 
     def place(self, position: LonLat, sequence: int | None = None, before: Place | None = None) -> Place:
-        """The nearest point of the legs that it may be on: about the waypoint that it flies to, or else about where it was before."""
+        """The nearest point of the legs that it may be on: about the waypoint that it flies to, or else about where it was before.
+
+        A way out and back lies twice over the same ground: the leg that is expected is taken unless another is clearly nearer.
+        """
         east, north = self.east_north(position)
         vertex = self.vertex_of(sequence)
         first, last = 0, max(len(self.vertices) - 2, 0)
@@ -74,12 +78,10 @@ class RouteLine:
         elif before is not None:
             first = max(bisect_right(self.along_m, before.along_m - BACK_M) - 1, 0)
             last = min(max(bisect_right(self.along_m, before.along_m + ON_M) - 1, first), last)
-        best: Place | None = None
-        for leg in range(first, last + 1):
-            found = self._beside(leg, east, north)
-            if best is None or found.across_m < best.across_m:
-                best = found
-        return best or Place(0.0, math.dist((east, north), self.vertices[0]), 0, 0.0)
+        expected = before.leg if vertex is None and before is not None else None if vertex is None else max(vertex - 1, 0)
+        found = [self._beside(leg, east, north) for leg in range(first, last + 1)]
+        nearest = min(found, key=lambda place: place.across_m + (0.0 if expected is None else LEG_OFF_M * abs(place.leg - expected)))
+        return replace(nearest, across_m=min(place.across_m for place in found))
 
     def _beside(self, leg: int, east: float, north: float) -> Place:
         (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
@@ -123,15 +125,15 @@ class RouteLine:
         share = 0.0 if length_m <= 0.0 else min(1.0, max(0.0, (along_m - self.along_m[leg]) / length_m))
         return east_1 + share * (east_2 - east_1), north_1 + share * (north_2 - north_1)
 
-    def between(self, from_m: float, to_m: float) -> list[tuple[float, float]]:
-        """The line from one length along it to another: its ends and the vertices between."""
-        inner = [vertex for vertex, along_m in zip(self.vertices, self.along_m, strict=True) if from_m < along_m < to_m]
-        return [self.at(from_m), *inner, self.at(to_m)]
+    def agl_between(self, from_m: float, to_m: float) -> list[float]:
+        """Heights above ground of the waypoints from one length along it to another."""
+        first, last = bisect_right(self.along_m, from_m), bisect_right(self.along_m, to_m)
+        return [self.heights_m[vertex] - self.grounds_m[vertex] for vertex in range(first, last)]
 
     def planned_hold_s(self, along_m: float) -> float:
-        """The longest that it stays at a waypoint near here; without end at one where it charges."""
+        """How long it stays at waypoints near here; without end at one where it charges."""
         holds_s = 0.0
         for vertex, at_m in enumerate(self.along_m):
             if abs(at_m - along_m) <= 2.0 * NEAR_VERTEX_M:
-                holds_s = math.inf if vertex in self.charges_at else max(holds_s, self.hold_s[vertex])
+                holds_s = math.inf if vertex in self.charges_at else holds_s + self.hold_s[vertex]
         return holds_s

@@ -8,10 +8,12 @@ from telemetry.alerting.memory import Memory
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
 from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
-from telemetry.alerting.watched import Report, WatchedUav
+from telemetry.alerting.watched import WatchedUav
+from telemetry.estimation.report import Report
 
 Key = tuple[str, str]  # code and subject
 FRESH_S, FRESH_INTERVALS = 5.0, 2.5
+AFTER_JUMP_S = 10.0  # for so long a position that has jumped says nothing of the route
 AIRBORNE_M = 5.0  # above take-off, where nothing says whether it flies
 
 
@@ -52,6 +54,10 @@ class Situation:
     def place(self) -> Place | None:
         """On its line, by the newest report; None without a position, or when that is old."""
         return None if self.fresh is None else self.memory.place
+
+    @property
+    def has_just_jumped(self) -> bool:
+        return self.memory.jumped_s is not None and self.now_s - self.memory.jumped_s < AFTER_JUMP_S
 
     @property
     def mode(self) -> ModeKind | None:

@@ -55,7 +55,7 @@ class FlightModel:
 class NearZone:
     """A zone whose box a UAV may touch soon. `polygon` is a prepared shapely geometry in lon/lat; heights are above ground.
 
-    `spans` are the times at which it applies, about now; None: always. `is_new`: it was saved after the approval.
+    `spans` are the times at which it applies, about now; None: always.
     """
 
     zone_id: int
@@ -64,7 +64,6 @@ class NearZone:
     floor_agl_m: float
     ceiling_agl_m: float
     spans: tuple[tuple[float, float], ...] | None = None
-    is_new: bool = False
 
     def applies_at(self, moment_s: float) -> bool:
         return self.spans is None or any(start <= moment_s <= end for start, end in self.spans)
@@ -72,9 +71,9 @@ class NearZone:
     def applies_between(self, from_s: float, to_s: float) -> bool:
         return self.spans is None or any(start <= to_s and from_s <= end for start, end in self.spans)
 
-    def reaches(self, agl_m: float | None) -> bool:
-        """A height that is not known counts as reached."""
-        return agl_m is None or self.floor_agl_m <= agl_m <= self.ceiling_agl_m
+    def reaches(self, low_agl_m: float | None, high_agl_m: float | None) -> bool:
+        """Between two heights; one that is not known counts as reached."""
+        return low_agl_m is None or high_agl_m is None or (self.floor_agl_m <= high_agl_m and low_agl_m <= self.ceiling_agl_m)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,35 +3,24 @@
 from dataclasses import dataclass
 from uuid import UUID
 
-from missions.mavlink.frozen import FrozenRoute
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.estimate import Estimate
-
-
-@dataclass(frozen=True, slots=True)
-class Report:
-    """What a UAV said of one moment, by its clock and by the server's."""
-
-    measured_s: float
-    received_s: float
-    measurement: Measurement
+from telemetry.estimation.report import Report
 
 
 @dataclass(frozen=True, slots=True)
 class WatchedUav:
-    """A UAV of a mission that was sent to it or flies.
+    """A UAV of a mission that was sent to it or flies, or that is still in the air after its mission ended.
 
-    `approval_id` and `route` are of the approval in force, `flight` is the one of the route that it flies or will fly next, from 1 on.
-    `newest` is its newest report that is not from the future, None before the first. All else (its link, what it holds, commands, zones)
-    is looked up by telemetry/services/alerting.py.
+    `approval_id` is of the approval in force, `flight` the one of its route that it flies or will fly next, from 1 on; one past the last
+    after all were flown. `newest` is its newest report that is not from the future, None before the first. All else (its link, what it
+    holds, commands, zones) is looked up by telemetry/services/alerting.py.
     """
 
     uav_id: int
     organisation_id: int
     name: str
     mission_id: UUID
-    approval_id: UUID | None
-    route: FrozenRoute | None
+    approval_id: UUID
     flight: int = 1
     newest: Report | None = None
     estimate: Estimate | None = None

@@ -1,4 +1,4 @@
-"""Alerts as they are, and in words."""
+"""Alerts as they are."""
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping
@@ -7,10 +7,12 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from django.utils.translation import gettext
+from django.db.models import Count, QuerySet
 
-from missions.models import Mission, Uav
 from telemetry.models import Alert
+from workspace.models import Organisation
+
+MIXED = "mission-mixed"  # a code
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,16 +37,32 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
     return found
 
 
-def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[tuple[int, UUID], tuple[Mapping[str, float], Mapping[str, float]]]:
-    """Of UAVs in missions, what the type and the mission state of alerts' limits."""
-    of_type = dict(Uav.objects.filter(pk__in={uav for uav, _ in pairs}).values_list("pk", "uav_type__alert_limits"))
-    of_mission = dict(Mission.objects.filter(pk__in={mission for _, mission in pairs}).values_list("pk", "alert_limits"))
-    return {(uav, mission): (of_type.get(uav) or {}, of_mission.get(mission) or {}) for uav, mission in pairs}
+def alerts_of_organisation(organisation: Organisation) -> QuerySet[Alert]:
+    return Alert.objects.filter(organisation=organisation).select_related("acknowledged_by").annotate(note_count=Count("notes"))
 
 
-def alert_words(message: str, values: Mapping[str, Any]) -> str:
-    """What an alert says, in the reader's language; a message without values is as it was stored."""
-    try:
-        return gettext(message) % values if values else gettext(message) if message else ""
-    except (KeyError, TypeError, ValueError):
-        return message
+@dataclass(frozen=True, slots=True)
+class AlertFilter:
+    """None, or empty: whatever it is."""
+
+    is_open: bool | None = None
+    is_acknowledged: bool | None = None
+    levels: tuple[str, ...] = ()
+    codes: tuple[str, ...] = ()
+    uav_id: int | None = None
+    mission_id: UUID | None = None
+    opened_from: datetime | None = None
+    opened_before: datetime | None = None
+
+
+def alerts_that_match(organisation: Organisation, wanted: AlertFilter) -> QuerySet[Alert]:
+    alerts = alerts_of_organisation(organisation)
+    if wanted.is_open is not None:
+        alerts = alerts.filter(closed_at__isnull=wanted.is_open)
+    if wanted.is_acknowledged is not None:
+        alerts = alerts.filter(acknowledged_at__isnull=not wanted.is_acknowledged)
+    values: dict[str, Any] = {
+        "level__in": wanted.levels, "code__in": wanted.codes, "uav": wanted.uav_id, "mission": wanted.mission_id,
+        "opened_at__gte": wanted.opened_from, "opened_at__lt": wanted.opened_before,
+    }  # fmt: skip
+    return alerts.filter(**{name: value for name, value in values.items() if value})

@@ -1,20 +1,29 @@
 """What the watch sees of UAVs becomes alerts: opened, raised and closed in bulk."""
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from telemetry.alerting.book import Closed, Opened, changes
+from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import InvalidLimits, Limits, limits_of
-from telemetry.alerting.memory import Memory
+from telemetry.alerting.meetings import elsewhere, meetings, moving_of
+from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.situation import Situation
-from telemetry.alerting.surroundings import LinkFacts
+from telemetry.alerting.surroundings import Held, LinkFacts, NearZone
 from telemetry.alerting.watched import WatchedUav
-from telemetry.models import UavLink
-from telemetry.selectors.alerts import open_alerts_of, stated_limits
+from telemetry.ground_station.flavour import Flavour
+from telemetry.selectors.alert_facts import Loaded, estimated_by_other_watches, links_of, orders_to, stated_limits
+from telemetry.selectors.alerts import MIXED, open_alerts_of
 from telemetry.services.alert_rows import close_alerts_of_ended_missions, settle
+from telemetry.services.approved_flights import approved_content, flight_model
+from telemetry.services.replan_hooks import suggest_for_findings
+from telemetry.services.zones_about import ZonesAbout, zones_about
+from workspace.live import publish_live
+
+LEAST_REACH_M, FASTEST_MPS = 200.0, 40.0  # within which zones are looked at: as far as it comes in the time ahead
 
 
 @dataclass
@@ -35,44 +44,98 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
     """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again."""
     memories = _OF_THIS_PROCESS if memories is None else memories
     memories.keep_only(uav.uav_id for uav in watched)
-    close_alerts_of_ended_missions(codes=CODES, now=now)
-    if not watched:
-        return
-    uav_ids = [uav.uav_id for uav in watched]
-    links, open_rows = _links(uav_ids), open_alerts_of(uav_ids, CODES)
-    limits = _limits(watched)
-    found: list[tuple[WatchedUav, Opened | Closed]] = []
-    for uav in watched:
-        memory = memories.of_uav[uav.uav_id]
-        memory.take(uav.newest)
-        situation = Situation(
-            now_s=now.timestamp(),
-            uav=uav,
-            limits=limits[uav.uav_id],
-            memory=memory,
-            link=links.get(uav.uav_id, LinkFacts()),
-            open_levels={(row.code, row.subject): row.level for row in open_rows[uav.uav_id]},
+    told = close_alerts_of_ended_missions(codes=CODES, but=[uav.uav_id for uav in watched], now=now)
+    if watched:
+        open_rows = open_alerts_of([uav.uav_id for uav in watched], (*CODES, MIXED))
+        levels = {uav_id: {(row.code, row.subject): row.level for row in rows} for uav_id, rows in open_rows.items()}
+        situations = _with_meetings(list(_situations(watched, now.timestamp(), memories, levels)))
+        found: list[tuple[WatchedUav, Opened | Closed]] = [
+            (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
+        ]
+        told |= settle(found, open_rows=open_rows, now=now)
+        suggest_for_findings(
+            (uav.mission_id, uav.uav_id, change.finding)
+            for uav, change in found
+            if isinstance(change, Opened) and _is_new(change.finding, levels.get(uav.uav_id, {}))
         )
-        found += [(uav, change) for change in changes(situation, DETECTORS)]
-    settle(found, open_rows=open_rows, now=now)
+    for organisation_id in told:
+        publish_live(organisation_id)
 
 
-def _links(uav_ids: Sequence[int]) -> dict[int, LinkFacts]:
-    rows = UavLink.objects.filter(uav__in=uav_ids).values_list("uav_id", "heard_at", "mode", "is_armed", "is_in_air")
-    return {
-        uav_id: LinkFacts(None if heard_at is None else heard_at.timestamp(), mode, is_armed, is_in_air)
-        for uav_id, heard_at, mode, is_armed, is_in_air in rows
-    }
+def _is_new(finding: Finding, levels: Mapping[tuple[str, str], str]) -> bool:
+    """Or worse than it was. levels: of the open alerts of its UAV."""
+    return levels.get((finding.code, finding.subject)) != finding.level
 
 
-def _limits(watched: Sequence[WatchedUav]) -> dict[int, Limits]:
-    stated = stated_limits({(uav.uav_id, uav.mission_id) for uav in watched})
-    return {uav.uav_id: _sound(stated.get((uav.uav_id, uav.mission_id), ())) for uav in watched}
+def _situations(
+    watched: Sequence[WatchedUav], now_s: float, memories: Memories, levels: Mapping[int, Mapping[tuple[str, str], str]]
+) -> Iterator[Situation]:
+    flying = [(uav.uav_id, uav.mission_id) for uav in watched]
+    links, orders, stated, zones = links_of([uav_id for uav_id, _ in flying]), orders_to(flying), stated_limits(flying), zones_about(now_s)
+    for uav in watched:
+        memory, model = memories.of_uav[uav.uav_id], flight_model(uav.approval_id, uav.uav_id, uav.flight)
+        memory.take(uav.newest, None if model is None else model.line)
+        link, loaded = links.get(uav.uav_id, (LinkFacts(), Loaded()))
+        order, is_changing = orders.get(uav.uav_id, (None, False))
+        limits = _sound(stated[uav.uav_id])
+        yield Situation(
+            now_s=now_s,
+            uav=uav,
+            limits=limits,
+            memory=memory,
+            link=link,
+            open_levels=levels.get(uav.uav_id, {}),
+            model=model,
+            held=_held(uav, loaded, is_changing=is_changing),
+            order=order,
+            zones=_zones(uav, limits, zones),
+        )
+
+
+def _with_meetings(situations: list[Situation]) -> list[Situation]:
+    within_s = max(situation.limits.converging_s for situation in situations)
+    moving = [moved for situation in situations if (moved := moving_of(situation, within_s)) is not None]
+    if not moving:
+        return situations
+    organisations = {situation.uav.organisation_id for situation in situations}
+    others = estimated_by_other_watches(organisations, [situation.uav.uav_id for situation in situations])
+    moving += [
+        elsewhere(uav_id, name, organisation_id, estimated, within_s)
+        for organisation_id, of_organisation in others.items()
+        for uav_id, name, estimated in of_organisation
+    ]
+    met = meetings(moving, within_s)
+    return [
+        replace(situation, meetings=tuple(met[situation.uav.uav_id])) if situation.uav.uav_id in met else situation
+        for situation in situations
+    ]
+
+
+def _zones(uav: WatchedUav, limits: Limits, zones: ZonesAbout) -> tuple[NearZone, ...]:
+    position = None if uav.newest is None else position_of(uav.newest)
+    return () if position is None else zones.within(position, max(LEAST_REACH_M, FASTEST_MPS * limits.zone_ahead_s))
+
+
+def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> Held:
+    if loaded.approval_id is None or loaded.flight is None:
+        return Held(doubt=loaded.doubt, is_changing=is_changing)
+    content = approved_content(loaded.approval_id, uav.uav_id, loaded.flight)
+    is_approved = loaded.approval_id == uav.approval_id and content is not None and content.content_sha256 == loaded.sha256
+    return Held(
+        approval_id=loaded.approval_id,
+        is_approved=is_approved,
+        doubt=loaded.doubt,
+        is_changing=is_changing,
+        items=None if content is None else content.items,
+        first_item=1 if loaded.autopilot == Flavour.ARDUPILOT else 0,
+    )
 
 
 def _sound(stated: Sequence[Mapping[str, float]]) -> Limits:
-    """Limits that were stored past their check do not blind the watch."""
-    try:
-        return limits_of(*stated)
-    except InvalidLimits:
-        return Limits()
+    """A mission's that do not fit its UAV's type are passed over, and limits stored past their check do not blind the watch."""
+    for believed in (stated, stated[:1]):
+        try:
+            return limits_of(*believed)
+        except InvalidLimits:
+            continue
+    return Limits()

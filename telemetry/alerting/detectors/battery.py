@@ -3,6 +3,7 @@
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.memory import Memory
+from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.situation import Situation
 
 CODE = "battery-short"
@@ -18,16 +19,16 @@ RATES = (1.0, 4.0)
 def detect(situation: Situation) -> list[Finding] | None:
     fresh, limits = situation.fresh, situation.limits
     left_percent = None if fresh is None else fresh.measurement.battery_percent
-    if left_percent is None:
+    if fresh is None or left_percent is None or situation.has_just_jumped:
         return None
     place, model = situation.place, situation.model
     reserve_percent = 20.0 if model is None else model.reserve_percent
     rate, expected_percent = 1.0, left_percent
     if situation.flies_mission and place is not None and model is not None and model.energy is not None:
-        used_percent = model.energy.used_at(place)
+        used_percent = model.energy.used_at(place, _climbed_share(model.line, fresh.measurement.altitude_relative_m))
         situation.memory.note_battery(used_percent, left_percent)
         rate = drain_rate(situation.memory, used_percent, left_percent)
-        expected_percent = left_percent - rate * model.energy.rest_at(place)
+        expected_percent = left_percent - rate * model.energy.rest_at(place, used_percent)
     warns_below = max(reserve_percent - limits.battery_margin_percent, limits.battery_critical_percent)
     if expected_percent >= warns_below + (CLEARS_ABOVE_PERCENT if situation.is_open(CODE) else 0.0):
         return []
@@ -38,6 +39,10 @@ def detect(situation: Situation) -> list[Finding] | None:
         values |= {"percent": str(round(expected_percent)), "reserve": str(round(reserve_percent))}
     details = {"left_percent": left_percent, "expected_percent": round(expected_percent, 1), "rate": round(rate, 2)}
     return [Finding(CODE, level, words, values, details=details)]
+
+
+def _climbed_share(line: RouteLine, height_m: float | None) -> float:
+    return 1.0 if height_m is None else min(max(height_m / max(line.heights_m[0], 1.0), 0.0), 1.0)
 
 
 def drain_rate(memory: Memory, used_percent: float, left_percent: float) -> float:

@@ -17,7 +17,7 @@ def detect(situation: Situation) -> list[Finding]:
         subject = str(meeting.other_id)
         share = CLEAR_SHARE if situation.is_open(CODE, subject) else 1.0
         lateral_m, height_m = limits.separation_m * share, limits.separation_height_m * share
-        if meeting.least_lateral_m >= lateral_m or meeting.least_height_m >= height_m:
+        if meeting.in_s > limits.converging_s or meeting.least_lateral_m >= lateral_m or meeting.least_height_m >= height_m:
             continue
         is_near = meeting.lateral_m < limits.separation_m and meeting.height_m < limits.separation_height_m
         values = {"uav": situation.uav.name, "other": meeting.other_name, "metres": round(meeting.lateral_m)}

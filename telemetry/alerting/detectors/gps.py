@@ -7,7 +7,7 @@ from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.memory import position_of
 from telemetry.alerting.situation import Situation
-from telemetry.alerting.watched import Report
+from telemetry.estimation.report import Report
 
 CODE = "gps"
 NO_FIX = "%(uav)s does not know where it is: its GPS has no fix."
@@ -50,7 +50,7 @@ def _jump_m(situation: Situation, fresh: Report) -> float | None:
     """Of its last jump, as long as that is news. The memory is written to."""
     memory = situation.memory
     before = memory.before
-    if before is not None and memory.newest is fresh and memory.jumped_s != fresh.received_s:
+    if before is not None and memory.jumped_s != fresh.received_s:
         here, there = position_of(fresh), position_of(before)
         seconds = fresh.measured_s - before.measured_s
         if here is not None and there is not None and 0.0 < seconds <= BETWEEN_S:

@@ -2,6 +2,7 @@
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.limits import Limits
 from telemetry.alerting.situation import Situation
 
 CODE = "link-lost"
@@ -10,22 +11,22 @@ LOST = "The link to %(uav)s is lost: nothing has been heard of it for %(seconds)
 LATE_INTERVALS, LOST_INTERVALS = 2.5, 5.0
 
 
-def late_after_s(situation: Situation) -> float:
-    return max(situation.limits.link_late_s, LATE_INTERVALS * situation.memory.usual_interval_s)
+def late_after_s(limits: Limits, report_interval_s: float) -> float:
+    return max(limits.link_late_s, LATE_INTERVALS * report_interval_s)
 
 
-def lost_after_s(situation: Situation) -> float:
-    return max(situation.limits.link_lost_s, LOST_INTERVALS * situation.memory.usual_interval_s)
+def lost_after_s(limits: Limits, report_interval_s: float) -> float:
+    return max(limits.link_lost_s, LOST_INTERVALS * report_interval_s)
 
 
 def detect(situation: Situation) -> list[Finding]:
     heard_s = situation.heard_s
     if heard_s is None:
         return []
-    silent_s = situation.now_s - heard_s
-    if silent_s < late_after_s(situation):
+    silent_s, interval_s = situation.now_s - heard_s, situation.memory.usual_interval_s
+    if silent_s < late_after_s(situation.limits, interval_s):
         return []
-    is_lost = silent_s >= lost_after_s(situation)
+    is_lost = silent_s >= lost_after_s(situation.limits, interval_s)
     expected_s = None if situation.uav.estimate is None else situation.uav.estimate.contact_expected_s
     return [
         Finding(
@@ -38,4 +39,4 @@ def detect(situation: Situation) -> list[Finding]:
     ]
 
 
-DETECTOR = Detector(CODE, detect, raise_after_s=0.0, clear_after_s=2.0, reports=0)
+DETECTOR = Detector(CODE, detect, raise_after_s=0.0, clear_after_s=2.0, reports=0, own_delay_s=late_after_s)

@@ -7,14 +7,13 @@ from telemetry.alerting.situation import Situation
 CODE = "off-route"
 WORDS = "%(uav)s is %(metres)s m beside its route; %(limit)s m are allowed."
 CLEAR_SHARE = 0.8  # of the limit, below which it is over
-AFTER_JUMP_S = 10.0  # for so long a position that has jumped says nothing of the route
 
 
 def detect(situation: Situation) -> list[Finding] | None:
     if not situation.flies_mission:
         return []
-    place, memory, limits = situation.place, situation.memory, situation.limits
-    if place is None or (memory.jumped_s is not None and situation.now_s - memory.jumped_s < AFTER_JUMP_S):
+    place, limits = situation.place, situation.limits
+    if place is None or situation.has_just_jumped:
         return None
     if place.across_m <= limits.off_route_m * (CLEAR_SHARE if situation.is_open(CODE) else 1.0):
         return []

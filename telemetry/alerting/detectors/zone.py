@@ -30,12 +30,14 @@ def detect(situation: Situation) -> list[Finding] | None:
         return []
     point = shapely.Point(position)
     ways = list(_ways(situation, position))
+    agl_m = situation.agl_m
+    low_m, high_m = _heights_ahead(situation, agl_m)
     found = []
     for zone in situation.zones:
-        if not zone.reaches(situation.agl_m):
-            continue
-        if zone.applies_at(situation.now_s) and zone.polygon.intersects(point):
+        if zone.applies_at(situation.now_s) and zone.reaches(agl_m, agl_m) and zone.polygon.intersects(point):
             found.append(_finding(situation, zone, 0.0))
+            continue
+        if not zone.reaches(low_m, high_m):
             continue
         in_s = min((seconds for way in ways if (seconds := _reached_in_s(way, zone, situation)) is not None), default=None)
         if in_s is not None:
@@ -45,10 +47,22 @@ def detect(situation: Situation) -> list[Finding] | None:
 
 def _finding(situation: Situation, zone: NearZone, in_s: float) -> Finding:
     values = {"uav": situation.uav.name, "zone": zone.name} | ({"seconds": round(in_s)} if in_s > 0.0 else {})
-    details = {"zone": zone.zone_id, "in_s": round(in_s, 1), "is_new": zone.is_new}
+    details = {"zone": zone.zone_id, "in_s": round(in_s, 1)}
     return Finding(
         CODE, WARNING if in_s > 0.0 else CRITICAL, AHEAD if in_s > 0.0 else INSIDE, values, subject=str(zone.zone_id), details=details
     )
+
+
+def _heights_ahead(situation: Situation, agl_m: float | None) -> tuple[float | None, float | None]:
+    """The lowest and the highest above ground within the time ahead, by its climb and by its route."""
+    told, place, model = situation.uav.newest, situation.place, situation.model
+    if agl_m is None or told is None:
+        return None, None
+    heights_m = [agl_m, agl_m - (told.measurement.velocity_down_mps or 0.0) * situation.limits.zone_ahead_s]
+    if place is not None and model is not None and situation.flies_mission:
+        speed_mps = math.hypot(told.measurement.velocity_north_mps or 0.0, told.measurement.velocity_east_mps or 0.0)
+        heights_m += model.line.agl_between(place.along_m, place.along_m + speed_mps * situation.limits.zone_ahead_s)
+    return min(heights_m), max(heights_m)
 
 
 def _ways(situation: Situation, position: LonLat) -> Iterator[list[tuple[float, float]]]:

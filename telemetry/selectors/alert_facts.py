@@ -1,0 +1,97 @@
+"""What detectors have to know of UAVs besides their reports, for all of them at once."""
+
+import json
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+from uuid import UUID
+
+from django.db import connection
+
+from missions.models import OPEN_COMMANDS, CommandAxis, CommandState, Mission, Uav
+from telemetry.alerting.surroundings import LinkFacts, Order
+from telemetry.models import UavLink
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """What was read back from a UAV."""
+
+    sha256: str = ""
+    approval_id: UUID | None = None
+    flight: int | None = None
+    doubt: str = ""
+    autopilot: str = ""
+
+
+def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
+    rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
+        "uav_id", "heard_at", "mode", "is_armed", "is_in_air",
+        "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot",
+    )  # fmt: skip
+    return {
+        row[0]: (LinkFacts(None if row[1] is None else row[1].timestamp(), *row[2:5]), Loaded(*row[5:]))
+        for row in rows
+    }  # fmt: skip
+
+
+_ORDERS = """
+SELECT wanted.uav, command.kind, command.finished_at, command.state,
+    EXISTS (SELECT 1 FROM missions_uavcommand open WHERE open.uav_id = wanted.uav
+        AND (open.axis = %(mission_axis)s OR open.parameters ? 'hand_over') AND open.state = ANY(%(open)s))
+FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LEFT JOIN LATERAL (
+    SELECT kind, finished_at, state FROM missions_uavcommand command
+    WHERE uav_id = wanted.uav AND axis = %(flight_axis)s AND state = ANY(%(counting)s)
+        AND (mission_id = wanted.mission OR (mission_id IS NULL AND created_at > now() - interval '4 hours'))
+    ORDER BY sequence DESC LIMIT 1
+) command ON true
+"""
+
+
+def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | None, bool]]:
+    """To UAVs with their missions: the last command about the flight that counts, and whether a mission is being brought or taken off.
+
+    It is also while a UAV is held to be given another one.
+    """
+    values = {
+        "uavs": [uav for uav, _ in flying], "missions": [mission for _, mission in flying],
+        "mission_axis": CommandAxis.MISSION, "flight_axis": CommandAxis.FLIGHT,
+        "open": list(OPEN_COMMANDS), "counting": [*OPEN_COMMANDS, CommandState.APPLIED],
+    }  # fmt: skip
+    with connection.cursor() as cursor:
+        cursor.execute(_ORDERS, values)
+        rows = cursor.fetchall()
+    return {uav: (_order(kind, finished_at, state), is_changing) for uav, kind, finished_at, state, is_changing in rows}
+
+
+def _order(kind: str | None, finished_at: datetime | None, state: str | None) -> Order | None:
+    if kind is None:
+        return None
+    return Order(kind, finished_at.timestamp() if state == CommandState.APPLIED and finished_at is not None else None)
+
+
+def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mapping[str, float], Mapping[str, float]]]:
+    """Of UAVs in missions, what the type and the mission state of alerts' limits."""
+    of_type = dict(Uav.objects.filter(pk__in={uav for uav, _ in pairs}).values_list("pk", "uav_type__alert_limits"))
+    of_mission = dict(Mission.objects.filter(pk__in={mission for _, mission in pairs}).values_list("pk", "alert_limits"))
+    return {uav: (of_type.get(uav) or {}, of_mission.get(mission) or {}) for uav, mission in pairs}
+
+
+_OTHERS = """
+SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated
+FROM telemetry_uavwatch watch JOIN missions_uav uav ON uav.id = watch.uav_id
+WHERE watch.organisation_id = ANY(%s) AND NOT watch.uav_id = ANY(%s) AND watch.estimated IS NOT NULL AND watch.lease_expires_at > now()
+"""
+
+
+def estimated_by_other_watches(organisations: Collection[int], uav_ids: Collection[int]) -> dict[int, list[tuple[int, str, Any]]]:
+    """By organisation: UAVs, their names and estimates as stored (estimation/as_json.py)."""
+    with connection.cursor() as cursor:
+        cursor.execute(_OTHERS, [sorted(organisations), sorted(uav_ids)])
+        rows = cursor.fetchall()
+    found: dict[int, list[tuple[int, str, Any]]] = defaultdict(list)
+    for uav_id, name, organisation_id, estimated in rows:
+        found[organisation_id].append((uav_id, name, json.loads(estimated) if isinstance(estimated, str) else estimated))
+    return found

@@ -1,0 +1,65 @@
+"""What detectors know of an approved flight, worked out once: an approval never changes."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+from uuid import UUID
+
+from django.conf import settings
+
+from missions.flight_plan.conditions import conditions_from_json
+from missions.flight_plan.performance import performance_from_json
+from missions.models import Approval
+from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load
+from telemetry.alerting.energy import energy_plan
+from telemetry.alerting.route_line import RouteLine
+from telemetry.alerting.surroundings import FlightModel
+
+
+@dataclass(frozen=True, slots=True)
+class ApprovedContent:
+    """`items` is None for a UAV with a companion computer."""
+
+    content_sha256: str
+    items: int | None
+
+
+@lru_cache(maxsize=1_024)
+def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | None:
+    """None after its last flight, and of a document that is damaged."""
+    found = _approved(approval_id, uav_id, flight)
+    if found is None:
+        return None
+    approved, document = found
+    route = approved.route
+    figures = next(row["figures"] for row in document["routes"] if row["uav"] == uav_id)
+    performance, of_flight = performance_from_json(figures["performance"]), route.flights[flight - 1]
+    plan = energy_plan(
+        of_flight, cruise_speed_mps=route.cruise_speed_mps, performance=performance,
+        conditions=conditions_from_json(document["conditions"]), rules=settings.FLIGHT_RULES, charging=route.charging_stops,
+    )  # fmt: skip
+    return FlightModel(
+        line=RouteLine(of_flight, route.charging_stops),
+        energy=plan,
+        max_airspeed_mps=performance.max_airspeed_mps or route.cruise_speed_mps,
+        reserve_percent=performance.reserve_percent,
+    )
+
+
+@lru_cache(maxsize=1_024)
+def approved_content(approval_id: UUID, uav_id: int, flight: int) -> ApprovedContent | None:
+    found = _approved(approval_id, uav_id, flight)
+    if found is None:
+        return None
+    approved, _document = found
+    return ApprovedContent(approved.content_sha256, None if approved.load is None else len(approved.load.mission))
+
+
+def _approved(approval_id: UUID, uav_id: int, flight: int) -> tuple[ApprovedLoad, dict[str, Any]] | None:
+    approval = Approval.objects.filter(pk=approval_id).first()
+    if approval is None:
+        return None
+    try:
+        return approved_load(approval, uav_id=uav_id, flight=flight), approval.document
+    except (DamagedApproval, LookupError, StopIteration):
+        return None

@@ -1,0 +1,89 @@
+"""Generated faults: each is told within the delay that its detector states, by one alert; and flights without faults alarm nobody."""
+
+import numpy as np
+import pytest
+
+from telemetry.alerting.finding import CRITICAL
+from telemetry.alerting.order import DETECTORS
+from telemetry.alerting.surroundings import LinkFacts
+from telemetry.alerting.watched import WatchedUav
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
+from tests.telemetry.alerting.faults import FAULTS, LIMITS, Fault
+from tests.telemetry.alerting.truth import MISSION, START_S, Instruments, TrueFlight, true_flight
+from tests.telemetry.alerting.watch import Watch
+
+BY_CODE = {detector.code: detector for detector in DETECTORS}
+INTERVALS_S = (1, 1, 1, 2, 5, 10)
+BEFORE_S = 40  # of flight are watched before a fault
+
+
+def flown(flight: TrueFlight, seed: int, fault: Fault | None, *, interval_s: int) -> Watch:
+    watch, instruments = Watch(), Instruments(flight, seed)
+    uav = WatchedUav(1, 1, "Tern", MISSION, MISSION)
+    heard_s, newest = None, None
+    begins, ends = (0, len(flight.states)) if fault is None else (max(fault.begins_s - BEFORE_S, 0), fault.begins_s + fault.lasts_s)
+    for second in range(begins, ends):
+        state = flight.states[min(second, len(flight.states) - 1)]
+        state = fault.truth(state) if fault else state
+        now_s = START_S + state.seconds
+        values = instruments.values(state)
+        if (second + seed) % interval_s == 0:
+            told = fault.told(state, values) if fault else values
+            if told is not None:
+                newest = Report(now_s, now_s, Measurement(**told))
+        heard_s = now_s if fault is None or fault.is_heard(state) else heard_s
+        seen = WatchedUav(uav.uav_id, 1, uav.name, MISSION, MISSION, newest=newest)
+        around = {"model": flight.model, "link": LinkFacts(heard_s if interval_s < 5 else None)}
+        watch.look(watch.situation(now_s, seen, **{**around, **(fault.around(state, seen) if fault else {})}))
+    return watch
+
+
+def wrong_with(make, seed: int) -> str:
+    """In words; empty: it was told in time, and nothing else was."""
+    flight = true_flight(seed, least_leg_m=700.0 if make.__name__ == "zone_ahead" else 250.0)
+    random = np.random.default_rng(seed)
+    fault = make(flight, random)
+    interval_s = min(int(random.choice(INTERVALS_S)), fault.extra.get("most_interval_s", 99))
+    watch = flown(flight, seed, fault, interval_s=interval_s)
+    words = []
+    for code, levels, from_s in fault.due:
+        reached_s = watch.reached(code, levels)
+        late_s = np.inf if reached_s is None else reached_s - START_S - from_s - BY_CODE[code].delay_s(LIMITS, interval_s)
+        if late_s > 0:
+            words.append(f"{code} {'/'.join(levels)} {late_s:.1f} s late")
+        if reached_s is not None and reached_s - START_S < fault.begins_s - 1:
+            words.append(f"{code} told before it began")
+    wanted = {code for code, _, _ in fault.due}
+    opened = [(event.code, event.subject) for event in watch.opened()]
+    if (wanted and len(opened) != 1) or (not wanted and {code for code, _ in opened} - {"battery-short"}):
+        words.append(f"opened {opened}")
+    return f"{fault.name}, seed {seed}, reports each {interval_s} s: {', '.join(words)}" if words else ""
+
+
+def alarms_of_calm_flight(seed: int) -> list[tuple[str, str]]:
+    flight = true_flight(seed)
+    watch = flown(flight, seed, None, interval_s=INTERVALS_S[seed % len(INTERVALS_S)])
+    return [(event.code, event.level) for event in watch.events if event.what != "closed"]
+
+
+@pytest.mark.parametrize("make", FAULTS, ids=lambda make: make.__name__)
+def test_a_fault_is_told_in_time_and_once(make):
+    assert [words for seed in range(5) if (words := wrong_with(make, seed))] == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("make", FAULTS, ids=lambda make: make.__name__)
+def test_each_fault_fifty_times(make):
+    assert [words for seed in range(100, 150) if (words := wrong_with(make, seed))] == []
+
+
+def test_flights_without_faults_alarm_nobody():
+    assert {seed: alarms for seed in range(5) if (alarms := alarms_of_calm_flight(seed))} == {}
+
+
+@pytest.mark.long
+def test_fifty_flights_without_faults():
+    alarms = {seed: found for seed in range(200, 250) if (found := alarms_of_calm_flight(seed))}
+    assert not [found for of_flight in alarms.values() for found in of_flight if found[1] == CRITICAL]
+    assert len(alarms) <= 1, alarms  # a warning for nothing in one of fifty flights at most

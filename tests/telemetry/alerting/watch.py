@@ -1,0 +1,60 @@
+"""A watch without rows: looks once a second, and keeps what is open."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from telemetry.alerting.book import RANK, Closed, changes
+from telemetry.alerting.limits import Limits
+from telemetry.alerting.memory import Memory
+from telemetry.alerting.order import DETECTORS
+from telemetry.alerting.situation import Situation
+from telemetry.alerting.surroundings import Held
+from telemetry.alerting.watched import WatchedUav
+
+
+@dataclass
+class Event:
+    """An alert that opened, rose or closed."""
+
+    at_s: float
+    what: str
+    code: str
+    subject: str
+    level: str
+
+
+@dataclass
+class Watch:
+    """Of one UAV."""
+
+    limits: Limits = field(default_factory=Limits)
+    memory: Memory = field(default_factory=Memory)
+    open_levels: dict[tuple[str, str], str] = field(default_factory=dict)
+    events: list[Event] = field(default_factory=list)
+
+    def situation(self, now_s: float, uav: WatchedUav, **around) -> Situation:
+        model = around.get("model")
+        self.memory.take(uav.newest, None if model is None else model.line)
+        around.setdefault("held", Held(approval_id=uav.approval_id, is_approved=True))
+        return Situation(now_s=now_s, uav=uav, limits=self.limits, memory=self.memory, open_levels=dict(self.open_levels), **around)
+
+    def look(self, situation: Situation, detectors=DETECTORS) -> None:
+        for change in changes(situation, detectors):
+            if isinstance(change, Closed):
+                level = self.open_levels.pop((change.code, change.subject))
+                self.events.append(Event(situation.now_s, "closed", change.code, change.subject, level))
+                continue
+            finding = change.finding
+            key = finding.code, finding.subject
+            before = self.open_levels.get(key)
+            if before is None or RANK[finding.level] > RANK[before]:
+                self.events.append(Event(situation.now_s, "opened" if before is None else "rose", *key, finding.level))
+            self.open_levels[key] = finding.level
+            finding.message % finding.values  # every value is there
+
+    def opened(self) -> list[Event]:
+        return [event for event in self.events if event.what == "opened"]
+
+    def reached(self, code: str, levels: Iterable[str]) -> float | None:
+        """When an alert of the code was first open at one of the levels."""
+        return next((event.at_s for event in self.events if event.what != "closed" and event.code == code and event.level in levels), None)
