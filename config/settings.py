@@ -294,12 +294,22 @@ CELERY_BROKER_TRANSPORT_OPTIONS = {
     "interval_max": 0.1,
 }
 CELERY_TASK_DEFAULT_QUEUE = "data"
-CELERY_TASK_ROUTES = {"missions.tasks.expire_commands": {"queue": "data"}, "missions.tasks.*": {"queue": "planning"}}
+CELERY_TASK_ROUTES = {
+    "missions.tasks.expire_commands": {"queue": "data"},
+    "missions.tasks.look_after_offers": {"queue": "data"},
+    "missions.tasks.*": {"queue": "planning"},
+}
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
     "look for gaps in a changed ground": {"task": "inspection.tasks.find_gaps", "schedule": 10.0, "options": {"expires": 10}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 3.0, "options": {"expires": 3}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
+    "look after offers of another plan": {"task": "missions.tasks.look_after_offers", "schedule": 2.0, "options": {"expires": 2}},
+    "tell of UAVs that wait for their other route": {
+        "task": "telemetry.tasks.tell_of_hand_overs",
+        "schedule": 2.0,
+        "options": {"expires": 2},
+    },
     "end commands to UAVs whose time is over": {"task": "missions.tasks.expire_commands", "schedule": 5.0, "options": {"expires": 5}},
     "fetch zone sets whose time has come": {
         "task": "inspection.tasks.fetch_due_subscriptions",

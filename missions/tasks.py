@@ -9,15 +9,17 @@ from django.conf import settings
 from inspection.selectors import NoGraph
 from missions import services
 from missions.models import Mission
-from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands
+from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands, replanning
 from missions.services.best_so_far import OnPlanProgress, PlanProgress
 from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
-from workspace.models import Job
+from workspace.models import Job, JobState
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
+from workspace.tasks import send_job
 
 SOFT_LIMIT_S = 540
 HARD_LIMIT_S = 600
+SHARES_OF_A_SEARCH = 10  # that one way of several gets: somebody waits while UAVs fly
 
 STOPPED = "Stopped; the best plan until then is kept"
 NO_GRAPH = "There is no network yet: import infrastructure first, or wait until it has been linked."
@@ -91,6 +93,27 @@ def plan_mission(job_id: str) -> None:
         )
 
     _work(job_id, do)
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def replan_mission(job_id: str) -> None:
+    """What is left of a mission that flies, planned anew and offered."""
+
+    def do(job: Job, watch: JobWatch) -> None:
+        replanning.work_out_for_job(
+            job=job, stop=watch.stop, search_s=settings.ROUTING_RULES.large_plan_search_s / SHARES_OF_A_SEARCH, note=watch.note
+        )
+
+    _work(job_id, do)
+
+
+@shared_task(time_limit=60, soft_time_limit=55)
+def look_after_offers() -> None:
+    """Marks offers outdated, looks for zones that have come across routes, and sends the jobs of what services have suggested."""
+    replanning.settle_offers()
+    replanning.suggest_for_zones()
+    for job in Job.objects.filter(task=replanning.REPLAN, state=JobState.QUEUED, attempts=0, lease_expires_at=None):
+        send_job(job)
 
 
 @shared_task(time_limit=30, soft_time_limit=25)

@@ -9,6 +9,7 @@ from missions.views.commands import CommandDetail, MissionCommands, UavCommands
 from missions.views.explanations import WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
+from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.returns import MissionReturns
 from missions.views.selections import SelectionDetail, SelectionList
 
@@ -38,6 +39,10 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/abort", MissionAbort.as_view(), name="api-mission-abort"),
     path("missions/<uuid:mission_id>/returns", MissionReturns.as_view(), name="api-mission-returns"),
     path("missions/<uuid:mission_id>/commands", MissionCommands.as_view(), name="api-mission-commands"),
+    path("missions/<uuid:mission_id>/replan-offers", MissionReplanOffers.as_view(), name="api-mission-replan-offers"),
+    path("replan-offers/<uuid:offer_id>", ReplanOfferDetail.as_view(), name="api-replan-offer"),
+    path("replan-offers/<uuid:offer_id>/accept", ReplanOfferAccept.as_view(), name="api-replan-offer-accept"),
+    path("replan-offers/<uuid:offer_id>/decline", ReplanOfferDecline.as_view(), name="api-replan-offer-decline"),
     path("leg-checks", LegChecks.as_view(), name="api-leg-checks"),
     path("missions/<uuid:mission_id>/history", views.MissionHistory.as_view(), name="api-mission-history"),
     path("uavs", views.UavList.as_view(), name="api-uavs"),

@@ -3,8 +3,14 @@
 from celery import shared_task
 
 from telemetry import services
+from telemetry.services.hand_over_alerts import settle_hand_over_alerts
 
 
 @shared_task(time_limit=120, soft_time_limit=110)
 def forget_old_telemetry() -> None:
     services.forget_old_telemetry()
+
+
+@shared_task(time_limit=30, soft_time_limit=25)
+def tell_of_hand_overs() -> None:
+    settle_hand_over_alerts()

@@ -4,6 +4,7 @@ from django.urls import path, register_converter
 
 from telemetry.views.alert_limits import MissionAlertLimits, UavTypeAlertLimits
 from telemetry.views.alerts import AlertAcknowledgement, AlertDetail, AlertNotes, Alerts
+from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
@@ -45,6 +46,7 @@ urlpatterns = [
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
     path("missions/<uuid:mission_id>/record.zip", MissionRecordFile.as_view(), name="api-mission-record-file"),
+    path("missions/<uuid:mission_id>/estimates", MissionEstimates.as_view(), name="api-mission-estimates"),
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),

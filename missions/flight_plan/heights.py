@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
@@ -14,6 +15,7 @@ from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import RoutePoints, Waypoints
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 GroundHeights = Callable[[FloatArray], FloatArray]  # positions (n, 2) to metres above sea level (n,), NaN where unknown
 
 SAMPLE_SPACING_M = 50.0  # how densely the ground under a leg is looked at
@@ -68,50 +70,76 @@ def with_heights(points: RoutePoints, ground_heights_m: GroundHeights | None, ru
     flat = Waypoints(points, None, points.agl_m)
     if ground_heights_m is None or not points:
         return flat, bool(points)
-    position = points.position
-    shares = [np.arange(count) / count for count in _sample_counts(position)]  # from each leg's start up to but without its end
-    samples = [start + share[:, None] * (end - start) for start, end, share in zip(position[:-1], position[1:], shares, strict=True)]
-    ground_m = ground_heights_m(np.concatenate([*samples, position[-1:]]))
+    counts = _sample_counts(points.position)
+    ground_m = ground_heights_m(_sampled(points.position, counts))
     if np.isnan(ground_m).any():
         return flat, True
 
     take_off_m = float(ground_m[0])
-    legs: list[int] = []  # with a bend, of which `bent` are the shares
-    bent: list[float] = []
-    under = [take_off_m]
-    first = 0
-    for leg, share in enumerate(shares):
-        under_m = ground_m[first : first + len(share) + 1]  # the next leg's first sample is this leg's end
-        first += len(share)
-        for bend in _bends(np.append(share, 1.0), under_m, rules.terrain_tolerance_m):
-            legs.append(leg)
-            bent.append(float(share[bend]))
-            under.append(float(under_m[bend]))
-        under.append(float(under_m[-1]))
-    flown = points.with_points_between(np.array(legs, dtype=np.int64), np.array(bent, dtype=np.float64)) if legs else points
-    ground = np.array(under)
+    legs, bent, ground = _bends(counts, ground_m, rules.terrain_tolerance_m)
+    flown = points.with_points_between(legs, bent) if len(legs) else points
     above_sea_m = amsl_m(flown.agl_m, "AGL", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
     above_take_off_m = counted_from(above_sea_m, "RELATIVE", ground_amsl_m=ground, take_off_amsl_m=take_off_m)
     return Waypoints(flown, above_sea_m, above_take_off_m), False
 
 
-def _sample_counts(position: FloatArray) -> list[int]:
-    return [max(1, math.ceil(length_m / SAMPLE_SPACING_M)) for length_m in distance_m(position[:-1], position[1:]).tolist()]
+def _sample_counts(position: FloatArray) -> IntArray:
+    """Of each leg, its end not counted."""
+    length_m = distance_m(position[:-1], position[1:])
+    return np.maximum(1, np.ceil(length_m / SAMPLE_SPACING_M)).astype(np.int64)
 
 
-def _bends(share: FloatArray, ground_m: FloatArray, tolerance_m: float) -> list[int]:
-    """The samples needed so that straight lines between them stay within the tolerance of the ground's shape (Douglas-Peucker)."""
-    bends: list[int] = []
-    open_spans = [(0, len(share) - 1)]
-    while open_spans:
-        first, last = open_spans.pop()
-        if last - first < 2:
-            continue
-        inner = slice(first + 1, last)
-        line_m = np.interp(share[inner], share[[first, last]], ground_m[[first, last]])
-        off_m = np.abs(ground_m[inner] - line_m)
-        if off_m.max() > tolerance_m:
-            bend = first + 1 + int(off_m.argmax())
-            bends.append(bend)
-            open_spans += [(first, bend), (bend, last)]
-    return sorted(bends)
+@njit(cache=True, nogil=True)
+def _sampled(position: FloatArray, counts: IntArray) -> FloatArray:
+    """Evenly on the straight lon/lat lines between positions (n, 2), counts (n - 1,) on each, and the last position: (counts + 1, 2)."""
+    samples, at = np.empty((counts.sum() + 1, 2)), 0
+    for leg in range(len(counts)):
+        for step in range(counts[leg]):
+            share = step / counts[leg]
+            samples[at] = position[leg] + share * (position[leg + 1] - position[leg])
+            at += 1
+    samples[at] = position[-1]
+    return samples
+
+
+@njit(cache=True, nogil=True)
+def _bends(counts: IntArray, ground_m: FloatArray, tolerance_m: float) -> tuple[IntArray, FloatArray, FloatArray]:
+    """The samples needed so that straight lines between them stay within the tolerance of the ground's shape (Douglas-Peucker).
+
+    Their legs and their shares of them, (k,) each; and the ground under all points, these among them.
+    """
+    is_bend = np.zeros(len(ground_m), dtype=np.bool_)
+    stack = np.empty((counts.max() + 2 if len(counts) else 0, 2), dtype=np.int64)
+    first = 0
+    for count in counts:
+        stack[0, 0], stack[0, 1], depth = 0, count, 1
+        while depth:
+            depth -= 1
+            low, high = stack[depth, 0], stack[depth, 1]
+            low_m = ground_m[first + low]
+            slope_m = (ground_m[first + high] - low_m) / (high / count - low / count)
+            worst_m, bend = tolerance_m, -1
+            for sample in range(low + 1, high):
+                off_m = abs(ground_m[first + sample] - (slope_m * (sample / count - low / count) + low_m))
+                if off_m > worst_m:
+                    worst_m, bend = off_m, sample
+            if bend >= 0:
+                is_bend[first + bend] = True
+                stack[depth, 0], stack[depth, 1] = low, bend
+                stack[depth + 1, 0], stack[depth + 1, 1] = bend, high
+                depth += 2
+        first += count
+    bends = is_bend.sum()
+    legs, shares = np.empty(bends, dtype=np.int64), np.empty(bends)
+    under_m = np.empty(bends + len(counts) + 1)
+    under_m[0] = ground_m[0]
+    first, found, under = 0, 0, 1
+    for leg in range(len(counts)):
+        for sample in range(counts[leg]):
+            if is_bend[first + sample]:
+                legs[found], shares[found], under_m[under] = leg, sample / counts[leg], ground_m[first + sample]
+                found, under = found + 1, under + 1
+        first += counts[leg]
+        under_m[under] = ground_m[first]
+        under += 1
+    return legs, shares, under_m

@@ -9,7 +9,8 @@ from missions.fields import AboveZeroField, FiniteFloatField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import FASTEST_MPS
 from missions.serializers.shapes import WaypointSerializer
-from missions.services.hand_checks import MOST_WAYPOINTS, HandLook, HandPoint
+from missions.services.hand_checks import HandLook
+from missions.services.hand_points import MOST_WAYPOINTS, HandPoint
 from missions.services.plan_json import column_to_json, timing_to_json, waypoints_to_json
 
 MOST_LEGS = 200

@@ -13,7 +13,8 @@ from missions.services.fleet import (
     restore_uav_type,
 )
 from missions.services.fleet_rows import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdTaken
-from missions.services.hand_checks import HandPoint, look_by_hand
+from missions.services.hand_checks import look_by_hand
+from missions.services.hand_points import HandPoint
 from missions.services.mission_copies import duplicate_mission
 from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan, take_plan
 from missions.services.missions import (

@@ -14,16 +14,15 @@ from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
 from missions.models import Mission, Route, Waypoint
 from missions.services.hand_checks import (
     HIGHER_M,
-    MOVED_M,
-    HandPoint,
-    apart_m,
+    HandGround,
     faults_as_flown,
     flown_by_hand,
-    list_faults,
+    hand_ground,
     obstacle_faults,
     point_faults,
-    route_points,
 )
+from missions.services.hand_points import HandPoint, are_moved, list_faults, route_points
+from missions.services.kept_route import KeptWaypoint, kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest, task_from_json
@@ -42,13 +41,15 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
     """
     with transaction.atomic():
         locked, route = _locked_route(mission, uav, expected_revision)
-        until_now = list(route.waypoints.select_related("asset", "target"))
-        _refuse(list_faults(points, until_now) or point_faults(points, until_now))
+        rows, ground = list(route.waypoints.select_related("asset", "target")), hand_ground()
+        until_now = kept_waypoints(rows)
+        _refuse(list_faults(points, until_now) or point_faults(points, until_now, ground))
         if len(route.before_hand) == MOST_STEPS:  # the route as planned is forgotten, and with it what was proven of it
             locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
-        route.before_hand = [*route.before_hand, [_step_row(waypoint) for waypoint in until_now]][-MOST_STEPS:]
-        by_hand = {_place(point.position, point.agl_m) for point in points if _is_by_hand(point, until_now)}
-        _fly(locked, route, uav, route_points(points, until_now), by_hand)
+        route.before_hand = [*route.before_hand, [_step_row(row) for row in rows]][-MOST_STEPS:]
+        moved = zip(points, are_moved(points, until_now), strict=True)
+        by_hand = {_place(point.position, point.agl_m) for point, is_moved in moved if is_moved or _is_by_hand(point, until_now)}
+        _fly(locked, route, uav, route_points(points, until_now), by_hand, ground)
         note(locked, actor, "by-hand", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
 
@@ -62,7 +63,7 @@ def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revisi
         *route.before_hand, rows = route.before_hand
         points = _step_points(rows)
         by_hand = {_place(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
-        _fly(locked, route, uav, RoutePoints.of(points), by_hand)
+        _fly(locked, route, uav, RoutePoints.of(points), by_hand, hand_ground())
         note(locked, actor, "by-hand-undone", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
 
@@ -77,12 +78,14 @@ def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> 
     return locked, route
 
 
-def _fly(locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: set[tuple[float, float, float]]) -> None:
+def _fly(
+    locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: HandGround
+) -> None:
     """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
-    _refuse(obstacle_faults(wished))
+    _refuse(obstacle_faults(wished, ground))
     request = request_of_mission(mission=locked)
-    flown = flown_by_hand(request, uav, wished, route.departs_s)
-    for faults in faults_as_flown(flown, wished, locked, request, uav):
+    flown = flown_by_hand(request, uav, wished, route.departs_s, ground)
+    for faults in faults_as_flown(flown, wished, locked, request, uav, ground):
         _refuse(faults)
     _store(locked, route, flown, by_hand)
     locked.total_length_m = round(sum(own.length_m for own in locked.routes.all()), 3)
@@ -180,12 +183,13 @@ def _task(point: RoutePoint) -> dict[str, Any] | None:
     return None if point.task is None else {"kind": point.task.kind.value, "hold_s": point.task.hold_s}
 
 
-def _is_by_hand(point: HandPoint, until_now: Sequence[Waypoint]) -> bool:
+def _is_by_hand(point: HandPoint, until_now: Sequence[KeptWaypoint]) -> bool:
+    """Of one that stays at its place."""
     if point.was is None:
         return True
     waypoint = until_now[point.was]
-    is_elsewhere = apart_m(point, waypoint) > MOVED_M or abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
-    return waypoint.is_by_hand or is_elsewhere or not _is_same_speed(point.speed_mps, waypoint.speed_mps)
+    is_higher = abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
+    return waypoint.is_by_hand or is_higher or not _is_same_speed(point.speed_mps, waypoint.speed_mps)
 
 
 def _is_same_speed(one_mps: float | None, other_mps: float | None) -> bool:

@@ -21,6 +21,7 @@ from workspace.live import publish_live
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
 FLIGHT_FAILED = "flight-failed"  # why a target has failed of which nobody reported anything
+NOT_REACHED, NOT_HELD = "not-reached", "not-held"  # why one was skipped that the vehicle counted as passed
 
 
 class FlightEnd(StrEnum):
@@ -62,6 +63,17 @@ def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
             return False
         found = InspectionTarget.objects.filter(mission=held, sequence=target)
         return _put(held, found.exclude(state=state), state) or found.exists()
+
+
+def mark_missed(*, mission_id: UUID, target: int, reason: str) -> bool:
+    """Where a UAV was shows that a target, by its place in the mission, was not done, though it counts as passed: it is skipped.
+
+    reason: NOT_REACHED or NOT_HELD. Returns whether it counted as complete before.
+    """
+    with transaction.atomic():
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
+        found = InspectionTarget.objects.filter(mission=held, sequence=target, state=TargetState.COMPLETE)
+        return _put(held, found, TargetState.SKIPPED, reason)
 
 
 def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:

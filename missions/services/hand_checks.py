@@ -1,21 +1,18 @@
 """What is wrong with a route as somebody wishes it by hand, and what it would take: the same whether it is dragged or to be kept."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 
-from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
 from inspection.models import AssetKind
-from inspection.selectors import ground_heights_m, has_terrain
-from inspection.selectors.planning import planning_read
+from inspection.selectors.planning import Edition, heights_at, planning_read
 from missions.flight_plan.clearance import TAKE_OFF
-from missions.flight_plan.heights import asset_height_m, with_heights
+from missions.flight_plan.heights import GroundHeights, asset_height_m, with_heights
 from missions.flight_plan.leg_speeds import ground_speeds, speeds_out_of_range
 from missions.flight_plan.obstacles import too_low
 from missions.flight_plan.power import NoHeadway
@@ -23,34 +20,34 @@ from missions.flight_plan.route_points import line_of, with_short_legs
 from missions.flight_plan.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
 from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
 from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from missions.flight_plan.waypoints import RoutePoints, WaypointKind, Waypoints
 from missions.leg_selectors import LegFlyer, speed_words, too_low_text
-from missions.models import EndAction, Mission, Waypoint
+from missions.models import EndAction, Mission
 from missions.routing.terminals import tallest_support_m
+from missions.services.hand_points import HandPoint, are_moved, list_faults, route_points
+from missions.services.kept_route import KeptWaypoint, kept_route
 from missions.services.last_look import flown_route
-from missions.services.missions import request_of_mission
 from missions.services.plan_json import PlannedRoute
-from missions.services.requests import InvalidRequest, PlanRequest, task_from_json
+from missions.services.requests import InvalidRequest, PlanRequest
 from missions.zone_selectors import MetZone, zones_met
 from workspace.number_text import number_text
 
-MOVED_M = 0.1  # less is rounding
 HIGHER_M = 0.05
-MOST_WAYPOINTS = 5_000
-LONGEST_M = 1_000_000.0
 
 
-@dataclass(frozen=True)
-class HandPoint:
-    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
+@dataclass(frozen=True, eq=False)
+class HandGround:
+    """What a look stands on. heights: of the terrain model; None: there is none."""
 
-    speed_mps: over ground on the leg that leads here; None: the UAV's own.
-    """
+    network: Network
+    heights: GroundHeights | None
+    edition: Edition
 
-    position: LonLat
-    agl_m: float
-    was: int | None = None
-    speed_mps: float | None = None
+
+def hand_ground() -> HandGround:
+    """Of now. Raises NoGraph."""
+    ground = planning_read().ground()
+    return HandGround(ground.network(), heights_at(ground.edition), ground.edition)
 
 
 @dataclass(frozen=True)
@@ -76,23 +73,22 @@ class HandLook:
 
 def look_by_hand(*, mission: Mission, uav: int, points: Sequence[HandPoint]) -> HandLook:
     """What would be refused of these points, and what flying them would take. Nothing is kept. Raises InvalidRequest where nobody flies."""
-    route = mission.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
+    ground = hand_ground()
+    route = kept_route(mission, uav, ground.edition)
     if route is None:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
-    until_now = list(route.waypoints.select_related("asset", "target"))
-    faults = list_faults(points, until_now)
+    faults = list_faults(points, route.waypoints)
     if faults:
         return HandLook(faults)
-    wished = route_points(points, until_now)
-    faults = obstacle_faults(wished) | point_faults(points, until_now)
-    request = request_of_mission(mission=mission)
+    wished = route_points(points, route.waypoints)
+    faults = obstacle_faults(wished, ground) | point_faults(points, route.waypoints, ground)
     try:
-        flown = flown_by_hand(request, uav, wished, route.departs_s)
+        flown = flown_by_hand(route.request, uav, wished, route.departs_s, ground)
     except InvalidRequest as error:
         return HandLook(error.faults | faults)
-    for found in faults_as_flown(flown, wished, mission, request, uav):
+    for found in faults_as_flown(flown, wished, mission, route.request, uav, ground):
         faults = found | faults
-    return HandLook(faults, flown, _points_flown(flown, wished, request, uav))
+    return HandLook(faults, flown, _points_flown(flown, wished, route.request, uav))
 
 
 def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest, uav: int) -> tuple[HandPointFlown, ...]:
@@ -118,30 +114,16 @@ def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest
     )
 
 
-def list_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> dict[str, str]:
-    """What is wrong with the list itself: with such a fault nothing else can be said of it."""
-    if len(points) > MOST_WAYPOINTS:
-        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MOST_WAYPOINTS}}
-    kept = [point.was for point in points if point.was is not None]
-    if any(not 0 <= was < len(until_now) for was in kept) or any(right <= left for left, right in pairwise(kept)):
-        return {"waypoints": _("The waypoints are not in the order of the route.")}
-    fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
-    if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
-        return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
-    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
-        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(LONGEST_M / 1_000)}}
-    return {}
-
-
-def point_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> dict[str, str]:
+def point_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint], ground: HandGround) -> dict[str, str]:
     """What is wrong with single points: their places, heights and speeds."""
     faults: dict[str, str] = {}
-    flight, network = settings.FLIGHT_RULES, planning_read().ground().network()
-    for number, point in enumerate(points):
+    flight, network = settings.FLIGHT_RULES, ground.network
+    heights_m = _node_heights_m(network, {waypoint.asset.key for waypoint in until_now if waypoint.asset is not None})
+    for number, (point, is_moved) in enumerate(zip(points, are_moved(points, until_now), strict=True)):
         waypoint = None if point.was is None else until_now[point.was]
-        if waypoint is not None and waypoint.kind != WaypointKind.PASS and apart_m(point, waypoint) > MOVED_M:
+        if waypoint is not None and waypoint.kind != WaypointKind.PASS and is_moved:
             faults[f"waypoints.{number}.position"] = _("Start, end and targets stay where they are.")
-        low_m = _least_agl_m(waypoint, network, is_moved=waypoint is None or apart_m(point, waypoint) > MOVED_M)
+        low_m = flight.transit_agl_m if waypoint is None or is_moved else _least_agl_m(waypoint, network, heights_m)
         if not low_m - HIGHER_M <= point.agl_m <= flight.max_agl_m + HIGHER_M:
             limits = {"low": number_text(low_m), "high": number_text(flight.max_agl_m)}
             faults[f"waypoints.{number}.altitude_agl_m"] = _("Between %(low)s and %(high)s m above ground here.") % limits
@@ -150,16 +132,18 @@ def point_faults(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> 
     return faults
 
 
-def obstacle_faults(points: RoutePoints) -> dict[str, str]:
+def obstacle_faults(points: RoutePoints, ground: HandGround) -> dict[str, str]:
     """Where waypoints and legs as they are wished, straight from one to the next, pass something tall too low."""
-    flight, ground = settings.FLIGHT_RULES, ground_heights_m if has_terrain() else None
-    under_m = np.full(len(points), np.nan) if ground is None else ground(points.position)
+    flight = settings.FLIGHT_RULES
+    under_m = np.full(len(points), np.nan) if ground.heights is None else ground.heights(points.position)
     amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
-    waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(planning_read().ground().network())
-    low = too_low(waypoints, spans, ground, flight)
+    waypoints, spans = Waypoints(points, amsl_m, points.agl_m), spans_of(ground.network)
+    low = too_low(waypoints, spans, ground.heights, flight)
     if low is None:
         return {}
-    near = legs_too_near(waypoints, spans, ground, flight)  # rounded to centimetres a planned route may seem too low, but is not too near
+    near = legs_too_near(
+        waypoints, spans, ground.heights, flight
+    )  # rounded to centimetres a planned route may seem too low, but is not too near
     stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # straight up or down to the next one
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
@@ -169,55 +153,41 @@ def obstacle_faults(points: RoutePoints) -> dict[str, str]:
     return faults
 
 
-def _wire_faults(flown: PlannedRoute) -> dict[str, str]:
+def _wire_faults(flown: PlannedRoute, ground: HandGround) -> dict[str, str]:
     """The last look at the route as it is drawn over the ground."""
     assert flown.waypoints is not None  # noqa: S101 - just drawn
-    ground = None if flown.is_flat else ground_heights_m
-    near = spans_too_near(flown.waypoints, spans_of(planning_read().ground().network()), ground, settings.FLIGHT_RULES)
+    heights = None if flown.is_flat else ground.heights
+    near = spans_too_near(flown.waypoints, spans_of(ground.network), heights, settings.FLIGHT_RULES)
     return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
 
 
-def _least_agl_m(waypoint: Waypoint | None, network: Network, *, is_moved: bool) -> float:
-    """How low a point may be: with clearance above what is there, and where that is not known as high as between targets."""
-    flight = settings.FLIGHT_RULES
-    if waypoint is None or is_moved:
-        return flight.transit_agl_m
-    if waypoint.asset is not None:
-        asset = waypoint.asset
-        height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
-        if waypoint.target is not None and waypoint.target.stretch is not None:
-            course = [LonLat(*vertex) for vertex in waypoint.target.stretch.coords]
-            height_m = max(height_m, tallest_support_m(network, asset.pk, course))
-        elif asset.kind in {AssetKind.TOWER, AssetKind.BRIDGE}:  # by its line's voltage it may be taken to be taller
-            height_m = float(np.fmax.reduce(network.node_height_m[network.node_asset == asset.pk], initial=height_m))
-        least_m = height_m + flight.clearance_m
-        return least_m if waypoint.target_id is not None else max(least_m, flight.transit_agl_m)
-    return min(waypoint.altitude_agl_m, flight.transit_agl_m)
+def _least_agl_m(waypoint: KeptWaypoint, network: Network, node_heights_m: Mapping[int, float]) -> float:
+    """How low a waypoint may be that stays: with clearance above what is there, and where that is not known as high as between targets."""
+    flight, asset = settings.FLIGHT_RULES, waypoint.asset
+    if asset is None:
+        return min(waypoint.altitude_agl_m, flight.transit_agl_m)
+    height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
+    if waypoint.stretch is not None:
+        height_m = max(height_m, tallest_support_m(network, asset.key, waypoint.stretch))
+    elif asset.kind in {AssetKind.TOWER, AssetKind.BRIDGE}:  # by its line's voltage it may be taken to be taller
+        height_m = max(height_m, node_heights_m.get(asset.key, height_m))
+    least_m = height_m + flight.clearance_m
+    return least_m if waypoint.target is not None else max(least_m, flight.transit_agl_m)
 
 
-def apart_m(point: HandPoint, waypoint: Waypoint) -> float:
-    return float(distance_m(np.array([point.position]), np.array([waypoint.position.coords]))[0])
+def _node_heights_m(network: Network, assets: Collection[int]) -> dict[int, float]:
+    """The greatest known height of each asset's nodes."""
+    nodes = np.flatnonzero(np.isin(network.node_asset, np.array(sorted(assets), dtype=np.int64)) & ~np.isnan(network.node_height_m))
+    found: dict[int, float] = {}
+    for asset, height_m in zip(network.node_asset[nodes].tolist(), network.node_height_m[nodes].tolist(), strict=True):
+        found[asset] = max(height_m, found.get(asset, height_m))
+    return found
 
 
-def route_points(points: Sequence[HandPoint], until_now: Sequence[Waypoint]) -> RoutePoints:
-    """A point that was moved passes nothing."""
-    drawn = []
-    for point in points:
-        waypoint = None if point.was is None else until_now[point.was]
-        if waypoint is None or (waypoint.kind == WaypointKind.PASS and apart_m(point, waypoint) > MOVED_M):
-            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m, speed_mps=point.speed_mps))
-            continue
-        target = None if waypoint.target is None else waypoint.target.sequence
-        at = LonLat(*waypoint.position.coords)
-        task = task_from_json(waypoint.task)
-        drawn.append(RoutePoint(at, WaypointKind(waypoint.kind), point.agl_m, waypoint.asset_id, target, task, point.speed_mps))
-    return RoutePoints.of(drawn)
-
-
-def flown_by_hand(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float) -> PlannedRoute:
+def flown_by_hand(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float, ground: HandGround) -> PlannedRoute:
     flight, action = settings.FLIGHT_RULES, request.end_action(uav)
     points, length_m = with_short_legs(points, flight.longest_leg_m)
-    waypoints, is_flat = with_heights(points, ground_heights_m if has_terrain() else None, flight)
+    waypoints, is_flat = with_heights(points, ground.heights, flight)
     clock = _clock(waypoints, request, uav)
     return PlannedRoute(
         waypoints=waypoints, line=line_of(waypoints.points), length_m=length_m, duration_s=clock.total_s, end_action=action,
@@ -241,12 +211,14 @@ def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
         raise InvalidRequest({"waypoints": _("The wind is too strong for %(uav)s on a leg.") % {"uav": asked.name}}) from error
 
 
-def faults_as_flown(flown: PlannedRoute, wished: RoutePoints, mission: Mission, request: PlanRequest, uav: int) -> Iterator[dict[str, str]]:
+def faults_as_flown(
+    flown: PlannedRoute, wished: RoutePoints, mission: Mission, request: PlanRequest, uav: int, ground: HandGround
+) -> Iterator[dict[str, str]]:
     """What is wrong with a route as it is drawn, one kind after the other: speeds, wires, zones at their times, range and battery."""
     assert flown.waypoints is not None  # noqa: S101 - just drawn
     leads_to = _leads_to(wished, flown.waypoints.points)
     yield _speed_faults(flown, leads_to, request, uav)
-    yield _wire_faults(flown)
+    yield _wire_faults(flown, ground)
     yield _zone_faults(flown, leads_to, mission)
     yield _reach_faults(flown, request, uav)
 

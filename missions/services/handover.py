@@ -4,9 +4,6 @@ Each step is given when the one before was seen to be done, in the same transact
 flight meanwhile ends it: that command counts. Where a step fails the UAV stays where it is held.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Route, Uav, UavCommand
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import SUPERSEDED, queue_command
@@ -36,15 +33,11 @@ def _is_to_fly(mission: Mission, uav: Uav) -> bool:
     return mission.routes.filter(mission_uav__uav=uav, begun_by__isnull=False, continued_by=None, has_failed=False).exists()
 
 
-@dataclass(frozen=True)
-class Stuck:
-    """A UAV that was held to be given another route, and hovers without it: `command` has failed or expired."""
+def stuck_hand_overs() -> list[UavCommand]:
+    """The steps that failed, or expired, of UAVs that hover since, without their other route.
 
-    command: UavCommand
-
-
-def stuck_hand_overs() -> Sequence[Stuck]:
-    """Of missions on their way. One to which somebody has given another command about its flight since is in their hands."""
+    One to which somebody has given another command about its flight since is in their hands.
+    """
     routes = Route.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, begun_by__isnull=False, continued_by=None)
     found = []
     for uav, mission in routes.filter(has_failed=False, mission_uav__uav__isnull=False).values_list("mission_uav__uav", "mission"):
@@ -53,5 +46,5 @@ def stuck_hand_overs() -> Sequence[Stuck]:
         if last is None or last.mission_id != mission or not last.parameters.get(HAND_OVER) or last.state in OPEN_COMMANDS:
             continue
         if last.state != CommandState.APPLIED and last.outcome_code != SUPERSEDED:
-            found.append(Stuck(last))
+            found.append(last)
     return found

@@ -19,12 +19,12 @@ PLACES = 12
 SPREAD = np.linspace(-2.8, 2.8, 15)
 SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
-# Calibrated on the truth generator, on seeds that no test uses; see tests/telemetry/estimation/calibration.py.
+# Calibrated on the truth generator, on seeds that no test uses; see benchmarks/estimator.py.
 PACE_SD = 0.06  # of a UAV that has not flown yet
 PACE_WANDERS = 0.004  # in a second
 LEAST_PACE, MOST_PACE = 0.4, 1.8
-GUST_SD, GUST_S = 0.05, 12.0  # of speed, and for how long one lasts
-SMALLEST_S = 0.06
+GUST_SD, GUST_S = 0.025, 18.0  # of speed, and for how long one lasts
+SMALLEST_S = 0.04
 NOW_S = 25.0  # for how long the speed of this moment tells of what comes
 NOW_SHARE = 0.8
 EVEN_S = (-4.0, -2.0, 2.0)  # from now: where it must fly as it does now

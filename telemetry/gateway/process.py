@@ -16,38 +16,28 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, message_of
-from missions.services.credentials import note_mavlink_key_use
-from missions.services.own_return import note_own_return
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_EVERY_S, Flights
 from telemetry.gateway.hints import listen
-from telemetry.gateway.leases import served_until_s
+from telemetry.gateway.leasing import Leasing
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
+from telemetry.gateway.telling import Telling
 from telemetry.ground_station.flavour import flavour_of
-from telemetry.services.alerts import tell_of_second_sender
-from telemetry.services.flown import note_flown
 from telemetry.services.heard_by_gateway import HeardText
-from telemetry.services.links import LinkState, release_leases, renew_leases, take_leases
-from telemetry.services.loads import doubt_loaded
+from telemetry.services.links import LinkState, release_leases
 from telemetry.services.sightings import Sighting
 
 logger = logging.getLogger(__name__)
 
 FLEET_EVERY_S = 1.0
-LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
-KEYS_EVERY_S = 30.0
-FLOWN_EVERY_S = 0.2
-SENDERS_EVERY_S = 2.0
-SECOND_SENDER_GONE_S = 60.0
-WAITED_TOO_LONG_S = 15.0
 DESK_WITHIN_S = 5.0
 STOP_WITHIN_S = 4.0
 
@@ -65,13 +55,16 @@ class Gateway:
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
-        self.telling = DatabaseThread("gateway-tells")  # what may wait for missions: leases do not wait behind it
+        self.telling = Telling(self._all)
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.flights = Flights(self.options)
-        self.desk = Desk(self.options.holder, self.options.lease_s, lambda: list(self.sessions.values()))
+        self.desk = Desk(self.options.holder, self.options.lease_s, self._all)
+        self.leasing = Leasing(self.options, self.database, self._all, self._receive_known, self.flights.end)
         self.listeners = Listeners(self.receive)
         self._stop = asyncio.Event()
-        self._wants_lease = asyncio.Event()
+
+    def _all(self) -> list[Session]:
+        return list(self.sessions.values())
 
     # Frames
 
@@ -94,7 +87,7 @@ class Gateway:
         session.receive(frame, peer, now_s)
         if session.lease is None:
             if session.waiting:
-                self._wants_lease.set()
+                self.leasing.wanted.set()
             return
         self.flights.watch(session, now_s)
 
@@ -156,18 +149,14 @@ class Gateway:
     def _loops(self) -> dict[str, Coroutine[Any, Any, None]]:
         return {
             "fleet": self._every(FLEET_EVERY_S, self._read_fleet),
-            "leases": self._lease_loop(),
+            "leases": self.leasing.run(),
             "store": self._store_loop(),
             "commands": self.desk.run(),
             "hints": listen(self.desk.hint),
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_EVERY_S, self._sync_logs),
-            "senders": self._every(SENDERS_EVERY_S, self._tell_second_senders),
-            "flown": self._every(FLOWN_EVERY_S, self._tell_flown),
-            "returns": self._every(FLOWN_EVERY_S, self._tell_own_returns),
-            "doubts": self._every(FLOWN_EVERY_S, self._tell_doubts),
-            "keys": self._every(KEYS_EVERY_S, self._note_keys),
             "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
+            **{name: self._every(every_s, tell) for name, (every_s, tell) in self.telling.loops().items()},
         }
 
     async def _every(self, interval_s: float, do: Callable[[], Coroutine[Any, Any, None]]) -> None:
@@ -189,13 +178,13 @@ class Gateway:
             async with asyncio.timeout(STOP_WITHIN_S):
                 while await self.store.flush():
                     pass
-                await self._tell_flown()
-                await self.flights.write_rows(self.telling)
+                await self.telling.flown()
+                await self.flights.write_rows(self.telling.database)
                 await self.database.run(release_leases, holder=self.options.holder)
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
-        self.telling.close()
+        self.telling.database.close()
 
     async def _close_desk(self) -> None:
         try:
@@ -221,47 +210,6 @@ class Gateway:
         while self._early:
             frame, peer, now_s = self._early.popleft()
             self.receive([frame], peer, now_s)
-
-    async def _lease_loop(self) -> None:
-        while True:
-            try:
-                await self._lease()
-            except DatabaseAway:
-                await asyncio.sleep(RETRY_S)
-            self._wants_lease.clear()
-            await asyncio.sleep(0.05)
-            try:
-                await asyncio.wait_for(self._wants_lease.wait(), LEASES_EVERY_S)
-            except TimeoutError:
-                continue
-
-    async def _lease(self) -> None:
-        now_s, asked_s = time.time(), time.monotonic()
-        held = {session.uav.uav_id: session for session in self.sessions.values() if session.lease is not None}
-        still = await self.database.run(renew_leases, uav_ids=list(held), holder=self.options.holder, lease_s=self.options.lease_s)
-        for uav_id in held.keys() - still:
-            logger.warning("another gateway serves %s now", held[uav_id].uav.name)
-            self.flights.end(held[uav_id], now_s)
-            held[uav_id].lose()
-        for uav_id in still:
-            held[uav_id].held_until_s = served_until_s(asked_s, self.options.lease_s)
-        wanted = {}
-        for session in self.sessions.values():
-            while session.waiting and now_s - session.waiting[0][2] > WAITED_TOO_LONG_S:
-                session.waiting.popleft()
-            if session.lease is None and session.waiting:
-                wanted[session.uav.uav_id] = session
-        if not wanted:
-            return
-        asked_s = time.monotonic()
-        leases = await self.database.run(take_leases, uav_ids=list(wanted), holder=self.options.holder, lease_s=self.options.lease_s)
-        for lease in leases:
-            session = wanted[lease.uav_id]
-            logger.info("serves %s", session.uav.name)
-            waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
-            session.serve(lease, served_until_s(asked_s, self.options.lease_s))
-            for frame, peer, at_s in waiting:
-                self._receive_known(session, frame, peer, at_s)
 
     async def _store_loop(self) -> None:
         while True:
@@ -290,58 +238,9 @@ class Gateway:
         for session in self.sessions.values():
             session.tick(now_s)
 
-    async def _tell_second_senders(self) -> None:
-        """Two who bear one system id, where nothing is signed: which of them is the UAV nobody can know."""
-        now_s = time.time()
-        for session in self.sessions.values():
-            if session.second_sender is None or session.peer is None:
-                continue
-            other, last_s = session.second_sender
-            if now_s - last_s < SECOND_SENDER_GONE_S:
-                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other)
-            else:
-                session.second_sender = None
-                await self.telling.run(tell_of_second_sender, uav_id=session.uav.uav_id)
-
-    async def _tell_flown(self) -> None:
-        """In order, each as often as it takes. What cannot be told of one UAV holds up no other."""
-        for session in list(self.sessions.values()):
-            while session.flown:
-                flown = session.flown[0]
-                try:
-                    await self.telling.run(note_flown, uav_id=session.uav.uav_id, flown=flown)
-                except DatabaseAway:
-                    raise
-                except Exception:
-                    logger.exception("what %s has flown could not be told: %s", session.uav.name, flown)
-                session.flown.pop(0)
-
-    async def _tell_own_returns(self) -> None:
-        for session in list(self.sessions.values()):
-            told = session.own_return.news(session.state)
-            if told is not None:
-                uav_id = session.uav.uav_id
-                await self.telling.run(note_own_return, uav_id=uav_id, autopilot=told.autopilot, parameters=told.parameters)
-                session.own_return.note(told)
-
-    async def _tell_doubts(self) -> None:
-        for session in list(self.sessions.values()):
-            while session.lists.found:
-                doubt, at_s = session.lists.found[0]
-                await self.telling.run(doubt_loaded, uav_id=session.uav.uav_id, doubt=doubt, ago_s=time.monotonic() - at_s)
-                if session.lists.found[:1] == [(doubt, at_s)]:
-                    session.lists.found.pop(0)
-
-    async def _note_keys(self) -> None:
-        signed = [session for session in self.sessions.values() if session.has_signed]
-        for session in signed:
-            session.has_signed = False
-        if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
-            await self.telling.run(note_mavlink_key_use, credential_ids=used)
-
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())
-        await self.flights.write_rows(self.telling)
+        await self.flights.write_rows(self.telling.database)
 
     async def _tell_counts(self) -> None:
         counts = {**self.damages, **self.listeners.damages}

@@ -21,8 +21,8 @@ from telemetry.gateway import greeting
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
-from telemetry.gateway.own_return import OwnReturn
 from telemetry.gateway.peers import Peer
+from telemetry.gateway.questions import Questions
 from telemetry.ground_station.ends import AUTOPILOT
 from telemetry.ground_station.flavour import MISSION_MODES, Flavour
 from telemetry.ground_station.flown import FlightWatch
@@ -36,10 +36,7 @@ logger = logging.getLogger(__name__)
 
 MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
 SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
-ASK_AGAIN_S = 5.0  # for positions that do not come; for what is told once after ever longer
-ASK_SELDOM_S = 60.0
 GREET_AGAIN_S = 1.0
-LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
@@ -68,8 +65,7 @@ class Session:
     second_sender: tuple[str, float] | None = None  # who, and when last
     is_unsaved: bool = False
     has_signed: bool = False  # since somebody asked last
-    limit_questions_left: int = LIMIT_QUESTIONS
-    own_return: OwnReturn = field(default_factory=OwnReturn)
+    questions: Questions = field(default_factory=Questions)
     lists: ListWatch = field(default_factory=ListWatch)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
@@ -80,10 +76,7 @@ class Session:
     _quality: LinkQuality = field(default_factory=LinkQuality)
     _flight: FlightWatch = field(default_factory=FlightWatch)
     _position_s: float = 0.0
-    _asked_s: float = 0.0
     _greeted_s: float = 0.0
-    _questioned_s: float = 0.0
-    _question_again_s: float = ASK_AGAIN_S
 
     def __post_init__(self) -> None:
         self.state = VehicleState(self.uav.system)
@@ -178,26 +171,9 @@ class Session:
         if self.lease is None or self.peer is None:
             return
         self._send([greeting.heartbeat()], now_s)  # tells it to do nothing, and without it a vehicle may think that it is left alone
-        flavour = self.state.flavour
-        is_here = _is_within(self.heard_s, now_s, SENDER_SILENT_S)
-        if flavour is None or not is_here:
-            return
-        if not _is_within(self._position_s, now_s, POSITIONS_MISSING_S) and not _is_within(self._asked_s, now_s, ASK_AGAIN_S):
-            self._asked_s = now_s
-            self.send(greeting.requests(self.uav.system, flavour), now_s)
-        self.send(self.own_return.questions(self.state, time.monotonic()), now_s)
-        questions = self._questions()
-        if questions and not _is_within(self._questioned_s, now_s, self._question_again_s):
-            self._questioned_s = now_s
-            self._question_again_s = min(2 * self._question_again_s, ASK_SELDOM_S)
-            self.limit_questions_left -= self.may_ask_limits
-            self.send(questions, now_s)
-
-    def _questions(self) -> list[Message]:
-        """For what is told once, and was not yet."""
-        is_told = self.state.firmware is not None and self.state.home is not None
-        limits = greeting.limit_questions(self.uav.system) if self.may_ask_limits else []
-        return [*([] if is_told else greeting.questions(self.uav.system)), *limits]
+        if _is_within(self.heard_s, now_s, SENDER_SILENT_S):
+            has_position = _is_within(self._position_s, now_s, POSITIONS_MISSING_S)
+            self.send(self.questions.due(self.state, time.monotonic(), has_position=has_position), now_s)
 
     # What is known
 
@@ -205,10 +181,6 @@ class Session:
     def limits(self) -> dict[str, float]:
         """Of ground_station.limits.PARAMETERS those that the vehicle has told, in metres."""
         return {name: self.state.parameters[name] for name in PARAMETERS if name in self.state.parameters}
-
-    @property
-    def may_ask_limits(self) -> bool:
-        return self.flavour is Flavour.PX4 and self.limit_questions_left > 0 and len(self.limits) < len(PARAMETERS)
 
     def link_state(self) -> LinkState:
         state, clock = self.state, self.time.clock
@@ -284,6 +256,11 @@ class Session:
             self._record(message, stamp, now_s)
         for listener in list(self.listeners):
             listener(message, monotonic_s)
+
+    def forget_flown(self) -> None:
+        """Another list was put on it: what it reached before is none of that one's."""
+        self._flight.forget()
+        self.flown.clear()
 
     def _note_flown(self, flown: list[FlownItem]) -> None:
         """Of items that were reached and wait to be told the last one tells of all; the first may be being told."""

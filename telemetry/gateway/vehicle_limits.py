@@ -26,8 +26,8 @@ async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: C
     """Legs that the vehicle would refuse. It is asked if it has not told, and again before it is refused: it may have been set anew."""
     if session.flavour is not Flavour.PX4:
         return None
-    if not session.limits or session.may_ask_limits or leg_warnings(load, session.limits, session.state.position):
-        session.limit_questions_left = 0
+    if not session.limits or session.questions.may_ask_limits(session.state) or leg_warnings(load, session.limits, session.state.position):
+        session.questions.limits_left = 0
         rules = replace(settings.TRANSFER_RULES, retries=RETRIES)
         reading = ParameterReading(PARAMETERS, session.state, Ends(session.uav.system), rules)
         await Conversation(session, reading, is_wanted).run(on_change=lambda: None)

@@ -134,3 +134,15 @@ def test_where_nobody_flies_there_is_nothing_to_look_at(here: World, client: Cli
     assert post(client, f"missions/{uuid4()}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 404
     viewer = client_of(somebody(Role.VIEWER))
     assert post(viewer, f"missions/{mission['id']}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 403
+
+
+def test_a_look_after_a_change_stands_on_the_route_as_it_is_kept_now(here: World, client: Client) -> None:
+    """What is read of a route for looks is kept for its revision alone."""
+    mission = planned_with(here, client)
+    wished = as_wished(mission)
+    wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
+    before = look(client, mission, as_wished(mission))
+    kept = put(client, mission, wished).json()
+    after = look(client, kept, as_wished(kept))
+    assert after["length_m"] == kept["plan"]["routes"][0]["length_m"] > before["length_m"] + 100
+    assert "waypoints" in look(client, kept, as_wished(mission))["faults"]  # the old list is not the route's any more

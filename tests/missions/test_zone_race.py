@@ -56,7 +56,8 @@ def test_no_answer_after_a_save_crosses_the_zone() -> None:
         for one in running:
             one.result()
 
-    assert len(answers) > 50
+    print(f"{len(answers):,} answers, {len(answers) / LASTS_S:.0f} a second, among {len(saved)} saves")
+    assert len(answers) > 50 * LASTS_S
     crossing = [
         (answered_s - from_s, zone.name)
         for answered_s, plan in answers

@@ -42,7 +42,7 @@ class Leaving:
     stored: UavRequest
 
 
-def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None, is_forced: bool = False) -> Leaving:
+def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None) -> Leaving:
     """before: the waypoint that it must not fly to any more. Raises CannotLeave, in words for whoever decides."""
     if rest.here is None or rest.uav is None or rest.trouble:
         raise CannotLeave(rest.trouble or _("Nobody knows where %(uav)s is.") % {"uav": rest.name})

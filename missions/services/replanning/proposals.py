@@ -16,9 +16,9 @@ from missions.services.planning import make_plan
 from missions.services.replanning.composing import Continued, continued_route
 from missions.services.replanning.leaving import LEAD_S, CannotLeave, Leaving, leaving_of
 from missions.services.replanning.rest import Cause, Rest
+from missions.services.replanning.zones_ahead import zone_ahead
 from missions.services.requests import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
 from missions.services.wishes import with_bases
-from missions.zone_selectors import flown_route, zones_met
 
 MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
 
@@ -27,13 +27,15 @@ MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
 class Field:
     """All that the proposals for one mission have in common, UAVs by their places in it.
 
-    `forced` cannot go on as they do; `zones`: of those before which a zone lies its name. `troubles`: why others cannot do anything else.
+    `forced` cannot go on as they do, `recalled` can do nothing else either. `zones`: the names of those across routes. `troubles`: why
+    others cannot do anything else.
     """
 
     mission: Mission
     rests: Sequence[Rest]
     leavings: Mapping[int, Leaving]
     forced: frozenset[int]
+    recalled: frozenset[int]
     zones: Mapping[int, str]
     troubles: Mapping[int, str]
     targets: Mapping[int, TargetRequest]
@@ -92,13 +94,13 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
     for rest in rests:
         if rest.is_out:
             continue
-        zone, before = _zone_ahead(rest, now)
-        if zone:
-            zones[rest.place] = zone
+        zone = zone_ahead(rest, now)
+        if zone is not None:
+            zones[rest.place] = zone.name
         elif cause.code == "battery-short" and rest.uav is not None and rest.uav.pk == cause.uav:
             short.add(rest.place)
         try:
-            leavings[rest.place] = leaving_of(rest, conditions, before=before)
+            leavings[rest.place] = leaving_of(rest, conditions, before=None if zone is None else zone.breach.leg + 1)
         except CannotLeave as error:
             troubles.setdefault(rest.place, str(error))
     return Field(
@@ -106,24 +108,12 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
         rests,
         leavings,
         forced=frozenset(short | set(zones)),
+        recalled=frozenset(short - set(leavings)),
         zones=zones,
         troubles=troubles,
         targets=dict(enumerate(asked.targets)),
         departs_at=now + timedelta(seconds=LEAD_S),
     )
-
-
-def _zone_ahead(rest: Rest, now: datetime) -> tuple[str, int | None]:
-    """The first zone across what it would still fly, by the zones of now, and the waypoint that it must not fly to any more."""
-    if rest.here is None:
-        return "", None
-    began_s = now.timestamp() - rest.here.at_s(rest.points)
-    (met,) = zones_met([flown_route(rest.route, began_s)])
-    ahead = [meeting for meeting in met if meeting.breach.leg >= rest.here.ahead - 1]
-    if not ahead:
-        return "", None
-    first = min(ahead, key=lambda meeting: meeting.breach.leg)
-    return first.name, first.breach.leg + 1
 
 
 def proposals(field: Field) -> Iterator[Proposal]:
@@ -132,7 +122,7 @@ def proposals(field: Field) -> Iterator[Proposal]:
     for way in _ways(field):
         if way not in seen:
             seen.add(way)
-            yield _proposal(field, way, frozenset())
+            yield _proposal(field, way, field.recalled)
 
 
 def _ways(field: Field) -> Iterator[_Way]:

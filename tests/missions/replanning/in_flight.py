@@ -6,11 +6,12 @@ from typing import Any
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 
+from missions.flight_plan.performance import Performance
 from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route, Uav
 from missions.routing.problem import Objective
 from missions.routing.solver import never
 from missions.selectors import mission_of_organisation
-from missions.services import PlanRequest, UavRequest, create_mission, plan_mission
+from missions.services import create_mission, plan_mission
 from missions.services.approval import approve_mission
 from missions.services.dispatch import dispatch_mission
 from missions.services.flying import mark_waypoint_reached
@@ -67,30 +68,29 @@ def worked_out(offer: ReplanOffer, job: Job) -> ReplanOffer:
     return offer
 
 
-def two_in_the_air(author: User, *, towers: int = 10, **wishes: Any) -> Flight:
+def two_in_the_air(author: User, *, battery_wh: float | None = None, **wishes: Any) -> Flight:
     """Over a line of towers, one UAV from either end, each with its half of the line; both have just been started."""
+    uavs = fleet("Tern", "Kite", battery_wh=battery_wh)
+    return started(author, uavs, planned_over_a_line(author, uavs, battery_wh=battery_wh, **wishes))
+
+
+def planned_over_a_line(author: User, uavs: list[Uav], *, towers: int = 10, battery_wh: float | None = None, **wishes: Any) -> Mission:
     standing = [ground.tower((10.0 + SPACING_DEG * number, worlds.LINE_LAT)) for number in range(towers)]
     worlds.power_line(standing, voltages_v=[110_000])
     worlds.rebuild()
-    uavs = fleet("Tern", "Kite")
     east = 10.0 + SPACING_DEG * (towers - 1)
     starts = [(9.999, worlds.LINE_LAT - 0.003), (east + 0.001, worlds.LINE_LAT - 0.003)]
     asked = tuple(
-        _asked(uav, start, **{name: value for name, value in wishes.items() if name in {"performance", "end_action"}})
+        replace(worlds.uav(start, name=uav.name, end_action=EndAction.RETURN, performance=Performance(battery_wh=battery_wh)), uav=uav.pk)
         for uav, start in zip(uavs, starts, strict=True)
     )
-    more = {name: value for name, value in wishes.items() if name not in {"performance", "end_action"}}
-    request = worlds.request(*standing, uavs=asked, objective=Objective.MAKESPAN, **more)
-    return started(author, uavs, request)
-
-
-def _asked(uav: Uav, start: tuple[float, float], **facts: Any) -> UavRequest:
-    return replace(worlds.uav(start, name=uav.name, **{"end_action": EndAction.RETURN, **facts}), uav=uav.pk)
-
-
-def started(author: User, uavs: list[Uav], request: PlanRequest) -> Flight:
+    request = worlds.request(*standing, uavs=asked, objective=Objective.MAKESPAN, **wishes)
     draft = create_mission(organisation=author.organisation, author=author, name="Bexley spring", request=request)
-    mission = plan_mission(mission=draft, actor=author)
+    return plan_mission(mission=draft, actor=author)
+
+
+def started(author: User, uavs: list[Uav], mission: Mission) -> Flight:
+    """All of them, as rows tell it."""
     approve_mission(mission=mission, actor=author)
     dispatch_mission(mission=mission, actor=author)
     carry(*uavs)

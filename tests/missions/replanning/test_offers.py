@@ -134,7 +134,7 @@ def test_a_step_that_fails_is_the_last(flight):
     (upload,) = claim(flight.uavs[1])
     assert note_sent(upload.pk, **fence(upload))
     assert note_failed(upload.pk, "refused", "The vehicle has no room.", **fence(upload))
-    assert [stuck.command.pk for stuck in stuck_hand_overs()] == [upload.pk]
+    assert [command.pk for command in stuck_hand_overs()] == [upload.pk]
     assert not claim(*flight.uavs)
     give(flight.uavs[1], CommandKind.RETURN)
     assert not stuck_hand_overs()

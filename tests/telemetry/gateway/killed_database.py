@@ -9,7 +9,6 @@ import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
 from contextlib import suppress
@@ -54,12 +53,12 @@ def main(places: Places, sockets: Path) -> dict[str, Any]:
     try:
         django.setup()
         call_command("migrate", verbosity=0)
-        return _played(cluster)
+        return _played(cluster, places.state)
     finally:
         cluster.kill()
 
 
-def _played(cluster: Cluster) -> dict[str, Any]:
+def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
     from missions.models import OPEN_COMMANDS, CommandKind, CommandState, UavCommand  # noqa: PLC0415 - Django is set up by now
     from missions.services.commands import queue_command  # noqa: PLC0415
     from telemetry.models import TelemetryRecord  # noqa: PLC0415
@@ -76,7 +75,7 @@ def _played(cluster: Cluster) -> dict[str, Any]:
             self.told = [*getattr(self, "told", []), told[0].time_boot_ms]
             return told
 
-    folder, chance, port = Path(tempfile.mkdtemp()), random.Random(5), free_port()
+    chance, port = random.Random(5), free_port()
     uavs = [unsigned_uav(system) for system in range(1, UAVS + 1)]
     given, stored = [], set()
     with gateway_program(port, folder, name="killed") as program:

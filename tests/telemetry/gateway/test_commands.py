@@ -111,7 +111,7 @@ def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp
         flying.say(mavlink.MAVLink_mission_item_reached_message(at_target + offset))
         wait_for(lambda: mission.targets.filter(state=TargetState.IN_PROGRESS).exists(), "a target in progress")
 
-        flying.say(mavlink.MAVLink_mission_current_message(len(items) - 1 + offset))
+        vehicle.current_item = len(items) - 1 + offset  # as it tells each second
         wait_for(lambda: session.state.mission_item == len(items) - 1 + offset)
         last = {"mission_item": len(items) - 1 + offset, "waypoint_sequence": items[-1].waypoint}
         wait_for(lambda: mission.records.filter(**last).exists(), "a record at the last waypoint")

@@ -87,7 +87,7 @@ def test_one_watch_at_a_time_holds_a_uav(uav):
     one.round(NOW.timestamp() + 1)
     other.round(NOW.timestamp() + 1)
     assert (list(one.held), list(other.held)) == ([uav.pk], [])
-    UavWatch.objects.update(lease_expires_at=datetime.now(UTC) - timedelta(seconds=1))
+    UavWatch.objects.update(lease_expires_at=datetime.now(UTC) - timedelta(hours=1))
     other.round(NOW.timestamp() + 2)
     one.round(NOW.timestamp() + 2)
     assert (list(one.held), list(other.held)) == ([], [uav.pk])

@@ -1,0 +1,53 @@
+"""Offers of another plan in the shapes of the API."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from missions.models import OfferState, ReplanOffer
+from workspace.stored_words import in_words
+
+REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
+DECIDED = 3
+
+
+class ReplanOfferSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    mission = serializers.UUIDField(help_text="the mission that flies")
+    code = serializers.CharField(help_text="why: uav-out, zone-active, battery-short, asked-for")
+    cause = serializers.JSONField()
+    state = serializers.ChoiceField(choices=OfferState.choices)
+    revision = serializers.IntegerField(help_text="the ETag")
+    difference = serializers.JSONField(help_text="what would change, per UAV and target; see services/replanning/difference.py")
+    continuation = serializers.UUIDField(allow_null=True, help_text="the planned mission that is offered")
+    created_at = serializers.DateTimeField()
+    decided_by = serializers.CharField(allow_null=True)
+    decided_at = serializers.DateTimeField(allow_null=True)
+    outcome = serializers.CharField(help_text="why it is outdated or impossible")
+
+
+class ReplanOfferPageSerializer(serializers.Serializer):
+    results = ReplanOfferSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class ReplanAskedSerializer(serializers.Serializer):
+    job = serializers.UUIDField(help_text="its state: GET the address in Location")
+    offer = serializers.UUIDField()
+
+
+def offer_json(offer: ReplanOffer) -> dict[str, Any]:
+    return {
+        "id": str(offer.pk),
+        "mission": str(offer.mission_id),
+        "code": offer.code,
+        "cause": offer.cause,
+        "state": offer.state,
+        "revision": REVISIONS.get(OfferState(offer.state), DECIDED),
+        "difference": {name: value for name, value in offer.difference.items() if name != "basis"},
+        "continuation": None if offer.continuation_id is None else str(offer.continuation_id),
+        "created_at": offer.created_at,
+        "decided_by": offer.decided_by.username if offer.decided_by else None,
+        "decided_at": offer.decided_at,
+        "outcome": str(in_words(offer.outcome)),
+    }

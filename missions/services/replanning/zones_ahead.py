@@ -1,0 +1,48 @@
+"""Zones across what UAVs would still fly, by the zones of now."""
+
+from datetime import datetime
+
+from django.core.cache import cache
+from django.utils import timezone
+
+from inspection.selectors import ground_revision
+from missions.models import Mission, MissionState, ReplanOffer
+from missions.selectors import mission_of_organisation
+from missions.services.replanning.offers import suggest
+from missions.services.replanning.rest import Cause, Rest, rests_of
+from missions.zone_selectors import MetZone, flown_route, zones_met
+
+ZONE_ACTIVE = "zone-active"
+LOOKED_AT_FOR_S = 3_600
+
+
+def zone_ahead(rest: Rest, now: datetime) -> MetZone | None:
+    """The first that it would meet; its leg leads from the waypoint of the breach, to which it may still fly."""
+    if rest.here is None:
+        return None
+    began_s = now.timestamp() - rest.here.at_s(rest.points)
+    (met,) = zones_met([flown_route(rest.route, began_s)])
+    ahead = [meeting for meeting in met if meeting.breach.leg >= rest.here.ahead - 1]
+    return min(ahead, key=lambda meeting: meeting.breach.leg, default=None)
+
+
+def suggest_for_zones() -> list[ReplanOffer]:
+    """For missions that fly while the ground changes: once for each zone that has come across what is left of one.
+
+    What has been looked at is kept in the cache: without it, it is looked at again, and suggested no more than once all the same.
+    """
+    revision, now = ground_revision(), timezone.now()
+    flying = Mission.objects.filter(state=MissionState.ACTIVE, deleted_at=None).exclude(ground_revision=revision)
+    found = []
+    for mission in flying.select_related("organisation"):
+        if not cache.add(f"replan-zones:{mission.pk}:{revision}", 1, LOOKED_AT_FOR_S):
+            continue
+        loaded = mission_of_organisation(mission.organisation, mission.pk)
+        for rest in rests_of(loaded, Cause(ZONE_ACTIVE), now):
+            met = None if rest.is_out else zone_ahead(rest, now)
+            if met is None:
+                continue
+            uav = None if rest.uav is None else rest.uav.pk
+            offer = suggest(mission_id=mission.pk, code=ZONE_ACTIVE, cause={"zone": met.zone, "zone_name": met.name, "first_uav": uav})
+            found += [] if offer is None else [offer]
+    return found

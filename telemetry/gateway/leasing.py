@@ -1,0 +1,80 @@
+"""Which vehicles this gateway serves: leases taken, held on to, and lost to another gateway."""
+
+import asyncio
+import logging
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from missions.mavlink.frames import Frame
+from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.leases import served_until_s
+from telemetry.gateway.options import Options
+from telemetry.gateway.peers import Peer
+from telemetry.gateway.session import Session
+from telemetry.services.links import renew_leases, take_leases
+
+logger = logging.getLogger(__name__)
+
+LEASES_EVERY_S = 1.0
+RETRY_S = 0.5
+GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
+WAITED_TOO_LONG_S = 15.0
+
+
+@dataclass
+class Leasing:
+    """`receive` is given what a vehicle said while it was not served yet; `end_flight` the sessions that are lost, and when."""
+
+    options: Options
+    database: DatabaseThread
+    sessions: Callable[[], list[Session]]
+    receive: Callable[[Session, Frame, Peer, float], None]
+    end_flight: Callable[[Session, float], None]
+    wanted: asyncio.Event = field(default_factory=asyncio.Event)
+
+    async def run(self) -> None:
+        while True:
+            try:
+                await self._hold()
+                await self._take()
+            except DatabaseAway:
+                await asyncio.sleep(RETRY_S)
+            self.wanted.clear()
+            await asyncio.sleep(GATHERED_S)
+            try:
+                await asyncio.wait_for(self.wanted.wait(), LEASES_EVERY_S)
+            except TimeoutError:
+                continue
+
+    async def _hold(self) -> None:
+        now_s, asked_s = time.time(), time.monotonic()
+        held = {session.uav.uav_id: session for session in self.sessions() if session.lease is not None}
+        still = await self.database.run(renew_leases, uav_ids=list(held), holder=self.options.holder, lease_s=self.options.lease_s)
+        for uav_id in held.keys() - still:
+            logger.warning("another gateway serves %s now", held[uav_id].uav.name)
+            self.end_flight(held[uav_id], now_s)
+            held[uav_id].lose()
+        for uav_id in still:
+            held[uav_id].held_until_s = served_until_s(asked_s, self.options.lease_s)
+
+    async def _take(self) -> None:
+        now_s = time.time()
+        wanted = {}
+        for session in self.sessions():
+            while session.waiting and now_s - session.waiting[0][2] > WAITED_TOO_LONG_S:
+                session.waiting.popleft()
+            if session.lease is None and session.waiting:
+                wanted[session.uav.uav_id] = session
+        if not wanted:
+            return
+        asked_s = time.monotonic()
+        leases = await self.database.run(take_leases, uav_ids=list(wanted), holder=self.options.holder, lease_s=self.options.lease_s)
+        for lease in leases:
+            session = wanted[lease.uav_id]
+            logger.info("serves %s", session.uav.name)
+            waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
+            session.serve(lease, served_until_s(asked_s, self.options.lease_s))
+            for frame, peer, at_s in waiting:
+                self.receive(session, frame, peer, at_s)

@@ -1,0 +1,94 @@
+"""What vehicles were heard to do, told on to the missions, the fleet and whoever looks: what is not stored with the records."""
+
+import logging
+import time
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass, field
+from typing import Any
+
+from missions.services.credentials import note_mavlink_key_use
+from missions.services.own_return import note_own_return
+from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.session import Session
+from telemetry.services.alerts import tell_of_second_sender
+from telemetry.services.flown import note_flown
+from telemetry.services.loads import doubt_loaded
+
+logger = logging.getLogger(__name__)
+
+SECOND_SENDER_GONE_S = 60.0
+FLOWN_EVERY_S = 0.2
+KEYS_EVERY_S = 30.0
+SENDERS_EVERY_S = 2.0
+
+
+@dataclass
+class Telling:
+    """`database` is one of its own: it may wait for missions, and leases do not wait behind it."""
+
+    sessions: Callable[[], list[Session]]
+    database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-tells"))
+
+    def loops(self) -> dict[str, tuple[float, Callable[[], Coroutine[Any, Any, None]]]]:
+        """By name: how often [s], and what."""
+        return {
+            "senders": (SENDERS_EVERY_S, self.second_senders),
+            "flown": (FLOWN_EVERY_S, self.flown),
+            "returns": (FLOWN_EVERY_S, self.own_returns),
+            "doubts": (FLOWN_EVERY_S, self.doubts),
+            "keys": (KEYS_EVERY_S, self.keys),
+        }
+
+    async def second_senders(self) -> None:
+        """Two who bear one system id, where nothing is signed: which of them is the UAV nobody can know."""
+        now_s = time.time()
+        for session in self.sessions():
+            if session.second_sender is None or session.peer is None:
+                continue
+            other, last_s = session.second_sender
+            if now_s - last_s < SECOND_SENDER_GONE_S:
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other)
+            else:
+                session.second_sender = None
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id)
+
+    async def flown(self) -> None:
+        """In order, each as often as it takes."""
+        for session in self.sessions():
+            while session.flown:
+                flown = session.flown[0]
+                await self._tell(session, f"what it has flown ({flown})", note_flown, flown=flown)
+                session.flown.pop(0)
+
+    async def own_returns(self) -> None:
+        for session in self.sessions():
+            told = session.questions.own_return.news(session.state)
+            if told is not None:
+                await self._tell(session, "its own return", note_own_return, autopilot=told.autopilot, parameters=told.parameters)
+                session.questions.own_return.note(told)
+
+    async def doubts(self) -> None:
+        for session in self.sessions():
+            while session.lists.found:
+                doubt, at_s = session.lists.found[0]
+                await self._tell(
+                    session, f"what speaks for another list ({doubt})", doubt_loaded, doubt=doubt, ago_s=time.monotonic() - at_s
+                )
+                if session.lists.found[:1] == [(doubt, at_s)]:
+                    session.lists.found.pop(0)
+
+    async def keys(self) -> None:
+        signed = [session for session in self.sessions() if session.has_signed]
+        for session in signed:
+            session.has_signed = False
+        if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
+            await self.database.run(note_mavlink_key_use, credential_ids=used)
+
+    async def _tell(self, session: Session, what: str, note: Callable[..., Any], **values: Any) -> None:
+        """What cannot be told of one UAV holds up no other."""
+        try:
+            await self.database.run(note, uav_id=session.uav.uav_id, **values)
+        except DatabaseAway:
+            raise
+        except Exception:
+            logger.exception("of %s it could not be told: %s", session.uav.name, what)

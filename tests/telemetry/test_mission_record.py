@@ -1,0 +1,175 @@
+"""The record of a mission that was flown: in the API, in one file, and by the rule that says which targets were done."""
+
+import io
+import json
+import zipfile
+from datetime import datetime, timedelta
+from typing import Any
+
+import pytest
+from django.test import Client
+from django.utils import timezone
+
+from missions.models import Approval, InspectionTarget, Mission, MissionState, TargetState, Uav
+from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
+from telemetry.models import AlertLevel, InspectionResult, TelemetryStream
+from telemetry.services.alerts import open_alert
+from telemetry.services.targets_checked import TargetChecks
+from tests.missions.flights import an_operator, dispatched, fleet
+from tests.missions.worlds import World, world
+from tests.telemetry.flown import fly, route_of
+from tests.workspace.people import client_of, somebody
+from workspace.models import Organisation, Role, User
+
+pytestmark = pytest.mark.django_db
+EARLIER = timedelta(minutes=30)
+
+
+@pytest.fixture
+def here() -> World:
+    return world()
+
+
+@pytest.fixture
+def person() -> User:
+    return an_operator()
+
+
+@pytest.fixture
+def tern() -> Uav:
+    return fleet("Tern")[0]
+
+
+@pytest.fixture
+def mission(here: World, person: User, tern: Uav) -> Mission:
+    mission = dispatched(person, [tern], [here.towers[1], here.towers[3], here.bridge])
+    mark_started(mission_id=mission.pk, uav_id=tern.pk)
+    return mission
+
+
+@pytest.fixture
+def approval(mission: Mission) -> Approval:
+    return Approval.objects.get(mission=mission)
+
+
+@pytest.fixture
+def client() -> Client:
+    return client_of(somebody(Role.VIEWER))
+
+
+def began() -> datetime:
+    return timezone.now() - EARLIER
+
+
+def end(mission: Mission, uav: Uav) -> None:
+    mark_flight_ended(mission_id=mission.pk, uav_id=uav.pk, flight=1, end=FlightEnd.FLOWN)
+
+
+def age_states(mission: Mission) -> None:
+    InspectionTarget.objects.filter(mission=mission).update(state_at=timezone.now() - timedelta(seconds=10))
+
+
+def states(mission: Mission) -> list[tuple[str, str]]:
+    return list(mission.targets.order_by("sequence").values_list("state", "state_reason"))
+
+
+def record_of(client: Client, mission: Mission) -> dict[str, Any]:
+    answer = client.get(f"/api/v1/missions/{mission.pk}/record")
+    assert answer.status_code == 200, answer.content
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_a_flown_mission_is_told_by_leg_and_target(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
+    over = fly(approval, tern, began())
+    end(mission, tern)
+    open_alert(uav=tern, level=AlertLevel.WARNING, code="link-lost", message="no report for 12 s", mission=mission)
+    told = record_of(client, mission)
+    assert told["mission"]["state"] == MissionState.COMPLETED
+    assert told["mission"]["approval"]["content_sha256"] == approval.content_sha256
+    summary = told["summary"]
+    assert summary["targets"] == {"pending": 0, "in-progress": 0, "complete": 3, "skipped": 0, "failed": 0, "all": 3}
+    assert summary["alerts"] == {"critical": 0, "warning": 1, "advisory": 0}
+    assert summary["across_rms_m"] < 1.0 and summary["height_rms_m"] < 1.0
+    assert summary["flown"]["length_m"] == pytest.approx(summary["planned"]["length_m"], rel=0.02)
+    (route,) = told["routes"]
+    assert len(route["legs"]) == len(route["waypoints"]) - 1 and all(leg["reports"] for leg in route["legs"] if leg["length_m"] > 1.0)
+    assert datetime.fromisoformat(route["flown"]["ended_at"]) == pytest.approx(over, abs=timedelta(seconds=1))
+    for target in told["targets"]:
+        assert target["state"] == TargetState.COMPLETE and target["closest_m"] < 15.0 and target["reached_at"] is not None
+
+
+def test_a_mission_that_has_not_flown_has_a_record_without_figures(client: Client, mission: Mission) -> None:
+    told = record_of(client, mission)
+    assert told["summary"]["across_rms_m"] is None and told["summary"]["flown"]["length_m"] == 0.0
+    assert {target["closest_m"] for target in told["targets"]} == {None}
+
+
+def test_a_draft_has_a_record_that_says_so(client: Client) -> None:
+    told = record_of(client, Mission.objects.create(name="Draft"))
+    assert told["mission"]["approval"] is None and told["routes"] == []
+
+
+def test_another_organisations_record_is_not_there(mission: Mission) -> None:
+    stranger = client_of(somebody(Role.OPERATOR, Organisation.objects.create(name="Other")))
+    assert stranger.get(f"/api/v1/missions/{mission.pk}/record").status_code == 404
+    assert stranger.get(f"/api/v1/missions/{mission.pk}/record.zip").status_code == 404
+
+
+def test_all_data_come_in_one_file(client: Client, mission: Mission, approval: Approval, tern: Uav, person: User) -> None:
+    fly(approval, tern, began())
+    open_alert(uav=tern, level=AlertLevel.WARNING, code="link-lost", message="no report for 12 s", mission=mission)
+    answer = client.get(f"/api/v1/missions/{mission.pk}/record.zip", headers={"Accept": "text/html"})
+    assert answer.status_code == 200 and answer["Content-Type"] == "application/zip"
+    packed = zipfile.ZipFile(io.BytesIO(b"".join(answer.streaming_content)))  # type: ignore[attr-defined]
+    assert packed.testzip() is None
+    assert json.loads(packed.read("approval.json"))["content_sha256"] == approval.content_sha256
+    assert json.loads(packed.read("record.json"))["mission"]["name"] == mission.name
+    assert packed.read("telemetry.csv").count(b"\n") == packed.read("telemetry.geojson").count(b'"Feature"') + 1
+    assert [alert["code"] for alert in json.loads(packed.read("alerts.json"))] == ["link-lost"]
+    commands = json.loads(packed.read("commands.json"))
+    assert [(command["kind"], command["by"]) for command in commands] == [("upload-mission", person.username)]
+
+
+# Which targets were done
+
+
+def test_a_target_that_was_left_out_is_skipped_though_the_vehicle_went_on(mission: Mission, approval: Approval, tern: Uav) -> None:
+    visited = [waypoint for waypoint in route_of(approval, tern).waypoints if waypoint.target is not None]
+    fly(approval, tern, began(), leaves_out=visited[0].sequence)
+    mark_waypoint_reached(mission_id=mission.pk, uav_id=tern.pk, waypoint=visited[2].sequence + 1)
+    age_states(mission)
+    checks = TargetChecks()
+    assert checks.check([tern.pk]) == 1
+    left_out = visited[0].target
+    assert [state for state in states(mission) if state[1]] == [("skipped", "not-reached")]
+    assert states(mission)[left_out or 0] == ("skipped", "not-reached")
+    assert checks.check([tern.pk]) == 0
+    assert TargetChecks().check([tern.pk]) == 0
+
+
+def test_targets_that_were_reached_stay_complete_however_seldom_it_reports(mission: Mission, approval: Approval, tern: Uav) -> None:
+    fly(approval, tern, began(), every_s=10)
+    end(mission, tern)
+    age_states(mission)
+    assert TargetChecks().check([tern.pk]) == 0
+    assert {state for state, _ in states(mission)} == {"complete"}
+
+
+def test_what_a_uav_reports_of_a_target_itself_is_not_overruled(mission: Mission, approval: Approval, tern: Uav) -> None:
+    visited = [waypoint for waypoint in route_of(approval, tern).waypoints if waypoint.target is not None]
+    fly(approval, tern, began(), leaves_out=visited[0].sequence)
+    target = mission.targets.get(sequence=visited[0].target)
+    InspectionResult.objects.create(
+        stream=TelemetryStream.objects.create(uav=tern, link="http", key="results"), sequence=1, uav=tern, mission=mission,
+        approval=approval, place=target.sequence, target=target, measured_at=timezone.now(), outcome="complete",
+    )  # fmt: skip
+    end(mission, tern)
+    age_states(mission)
+    assert TargetChecks().check([tern.pk]) == 0
+
+
+def test_without_a_single_report_nothing_is_overruled(mission: Mission, tern: Uav) -> None:
+    end(mission, tern)
+    age_states(mission)
+    assert TargetChecks().check([tern.pk]) == 0
