@@ -33,6 +33,7 @@ class Alert(models.Model):
     close_reason = models.CharField(max_length=30, blank=True, db_default="", default="", help_text="cleared, landed, mission-ended")
     acknowledged_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     acknowledged_at = models.DateTimeField(null=True, blank=True)
+    course = models.JSONField(default=list, db_default=[], blank=True, help_text="what became of it: at, what, level, by, reason")
     revision = models.PositiveIntegerField(default=1, db_default=1, help_text="counts the changes")
 
     class Meta:

@@ -1,6 +1,7 @@
 """Offers of another plan while a mission flies: asked for, suggested, declined, outdated. Nothing here changes what is flown."""
 
 from datetime import datetime, timedelta
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -12,6 +13,7 @@ from missions.models import Mission, MissionState, OfferState, ReplanOffer
 from missions.services.missions import note
 from missions.services.refused import refuse
 from missions.services.replanning.staleness import why_outdated
+from workspace.live import publish_live
 from workspace.models import Job, User
 from workspace.services import create_job
 
@@ -96,6 +98,7 @@ def end_offer(offer: ReplanOffer, state: OfferState, words: str, *, actor: User 
     offer.save(update_fields=["state", "outcome", "decided_by", "decided_at"])
     if state != OfferState.ACCEPTED and offer.continuation_id is not None:
         Mission.objects.filter(pk=offer.continuation_id, state=MissionState.PLANNED).update(deleted_at=timezone.now())
+    transaction.on_commit(partial(publish_live, offer.mission.organisation_id))
     note(offer.mission, actor, f"replan-{state}", before=None, after={"offer": str(offer.pk), "code": offer.code, "why": words[:500]})
 
 
@@ -108,5 +111,6 @@ def _begin(mission: Mission, code: str, cause: dict[str, Any], actor: User | Non
     offer = ReplanOffer.objects.create(mission=mission, code=code, cause=cause)
     words = "Working out what is left"
     job = create_job(organisation=mission.organisation, created_by=actor, task=REPLAN, parameters={"offer": str(offer.pk)}, message=words)
+    transaction.on_commit(partial(publish_live, mission.organisation_id))
     note(mission, actor, "replan", before=None, after={"offer": str(offer.pk), "code": code, "cause": cause})
     return offer, job

@@ -27,13 +27,15 @@ MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
 class Field:
     """All that the proposals for one mission have in common, UAVs by their places in it.
 
-    `forced` cannot go on as they do; `zones`: of those before which a zone lies its name. `troubles`: why others cannot do anything else.
+    `forced` cannot go on as they do, `recalled` can do nothing else either. `zones`: the names of those across routes. `troubles`: why
+    others cannot do anything else.
     """
 
     mission: Mission
     rests: Sequence[Rest]
     leavings: Mapping[int, Leaving]
     forced: frozenset[int]
+    recalled: frozenset[int]
     zones: Mapping[int, str]
     troubles: Mapping[int, str]
     targets: Mapping[int, TargetRequest]
@@ -106,6 +108,7 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
         rests,
         leavings,
         forced=frozenset(short | set(zones)),
+        recalled=frozenset(short - set(leavings)),
         zones=zones,
         troubles=troubles,
         targets=dict(enumerate(asked.targets)),
@@ -119,7 +122,7 @@ def proposals(field: Field) -> Iterator[Proposal]:
     for way in _ways(field):
         if way not in seen:
             seen.add(way)
-            yield _proposal(field, way, frozenset())
+            yield _proposal(field, way, field.recalled)
 
 
 def _ways(field: Field) -> Iterator[_Way]:
