@@ -27,7 +27,8 @@ class MissionStagePage(SignedInPage):
     def page(self, **kwargs: Any) -> dict[str, Any]:
         mission_id: UUID = kwargs["mission_id"]
         user = self.request.user
-        name = Mission.objects.filter(organisation=user.organisation_id, deleted_at=None, pk=mission_id).values_list("name", flat=True).first()
+        own = Mission.objects.filter(organisation=user.organisation_id, deleted_at=None, pk=mission_id)
+        name = own.values_list("name", flat=True).first()
         if name is None:
             raise Http404
         return {

@@ -126,8 +126,8 @@ export function clockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
 }
 
-/** To the second: of the live page, the replay and logs. */
-export function secondText(iso) {
+/** With seconds: live pages and logs alone. */
+export function exactClockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
 }
 
