@@ -3,6 +3,8 @@
 from datetime import UTC, datetime, timedelta
 
 from django.contrib.gis.geos import Point
+from django.db import transaction
+from django.utils import timezone
 
 from missions.models import Approval, InspectionTarget, Mission
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
@@ -15,6 +17,7 @@ BEGAN_AT = datetime(2026, 9, 10, 9, 10, tzinfo=UTC)
 SILENT_FROM, SILENT_UNTIL = timedelta(minutes=4), timedelta(minutes=6)
 
 
+@transaction.atomic
 def fly_mission(mission_id: str, *, ends: bool = True) -> None:
     """The first UAV is silent for two minutes and estimated meanwhile; the second leaves a target out. An alert was opened of each."""
     mission = Mission.objects.get(pk=mission_id)
@@ -28,12 +31,13 @@ def fly_mission(mission_id: str, *, ends: bool = True) -> None:
             mark_waypoint_reached(mission_id=mission.pk, uav_id=uav.pk, waypoint=route_of(approval, uav).waypoints[-1].sequence)
             mark_flight_ended(mission_id=mission.pk, uav_id=uav.pk, flight=1, end=FlightEnd.FLOWN)
     _forget_a_stretch(mission, first.pk)
+    mission.alerts.all().delete()  # those of the watch, for which these UAVs are silent
     open_alert(uav=first, level=AlertLevel.WARNING, code="link-lost", message="no report for 12 s", mission=mission)
     open_alert(uav=second, level=AlertLevel.ADVISORY, code="off-route", message="300 m off its route", mission=mission)
     mission.alerts.filter(uav=first).update(opened_at=BEGAN_AT + SILENT_FROM + timedelta(seconds=12), closed_at=BEGAN_AT + SILENT_UNTIL)
     mission.alerts.filter(uav=second).update(opened_at=BEGAN_AT + timedelta(minutes=8), closed_at=BEGAN_AT + timedelta(minutes=9))
     if ends:
-        InspectionTarget.objects.filter(mission=mission).update(state_at=BEGAN_AT + timedelta(minutes=20))
+        InspectionTarget.objects.filter(mission=mission).update(state_at=timezone.now() - timedelta(seconds=10))
         TargetChecks().check([first.pk, second.pk])
         last = TelemetryRecord.objects.filter(mission=mission).latest("measured_at")
         Mission.objects.filter(pk=mission.pk).update(departs_at=BEGAN_AT, started_at=BEGAN_AT, ended_at=last.measured_at)

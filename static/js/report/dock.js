@@ -7,7 +7,7 @@ import { clockText, dateText, durationText, heightText, minutesAheadOfUtc, perce
 import { drawChart } from "./charts.js";
 import { drawStrip } from "./strip.js";
 import { plannedHeights, scaleOf, ticksOf } from "./timeline.js";
-import { ESTIMATED, linesOf, momentOf } from "./track.js";
+import { ESTIMATED, linesOf, MEASURED, momentOf, SILENT } from "./track.js";
 
 const MOST_READINGS = 6; // beside a chart; of more UAVs only the chosen one is read
 const MINUTE_MS = 60_000;
@@ -32,6 +32,11 @@ function nextWords({ track, targets, isOver }, at_ms) {
   const flight = track.flights.find(({ to_ms }) => to_ms > at_ms);
   if (flight) return t("lands in {time}", { time: waitText(flight.to_ms - at_ms) });
   return isOver || track.samples.at(-1).isInAir === false ? t("landed") : t("last heard {time}", { time: clockText(track.samples.at(-1).at_ms) });
+}
+
+function unsureWords(moment) {
+  if (moment?.kind === ESTIMATED) return t("estimated, ±{bound}", { bound: heightText(moment.sample.bound_m) });
+  return moment?.kind === SILENT ? t("no report") : "";
 }
 
 /** onChoose(place): a UAV's name was clicked. draw(shown, span); point(at_ms, chosen). */
@@ -101,7 +106,7 @@ export function createDock({ onChoose }) {
     last = [at_ms, looked, eventWords];
     cursor.style.left = `${scale.x(at_ms)}px`;
     byId("replay-clock").textContent = exactClockText(at_ms);
-    byId("replay-day").textContent = `${dateText(at_ms)}, ${zoneText(at_ms)}`;
+    byId("replay-day").textContent = `${dateText(at_ms)}, ${zoneText(new Date(at_ms).toISOString())}`;
     byId("replay-event").textContent = eventWords;
     slider.setAttribute("aria-valuemax", Math.round((shown.span.to_ms - shown.span.from_ms) / 1_000));
     slider.setAttribute("aria-valuenow", Math.round((at_ms - shown.span.from_ms) / 1_000));
@@ -109,7 +114,7 @@ export function createDock({ onChoose }) {
     const moments = new Map(shown.routes.map(({ place, track }) => [place, momentOf(track, at_ms)]));
     for (const { route, name, reading, row } of parts.strips) {
       const moment = moments.get(route.place);
-      reading.textContent = moment?.kind === ESTIMATED ? t("estimated, ±{bound}", { bound: heightText(moment.sample.bound_m) }) : nextWords(route, at_ms);
+      reading.textContent = unsureWords(moment) || nextWords(route, at_ms);
       name.setAttribute("aria-pressed", String(looked === route.place));
       row.classList.toggle("looked", looked === route.place);
     }
@@ -138,7 +143,7 @@ export function createDock({ onChoose }) {
 function readingsOf({ name }, moments) {
   const values = new Map();
   for (const [place, moment] of moments) {
-    if (moment?.kind !== "measured" || moment.sample[name] === null) continue;
+    if (moment?.kind !== MEASURED || moment.sample[name] === null) continue;
     values.set(place, { at_ms: moment.sample.at_ms, value: moment.sample[name] });
   }
   return values;

@@ -37,13 +37,14 @@ function legTable(route, labels, onLook) {
       errors(leg.height_rms_m, leg.height_max_m),
     );
   };
-  return h(
+  const table = h(
     "table",
     { class: "report-table report-legs" },
-    h("caption", {}, letter(route.place), h("strong", {}, route.name), h("small", {}, t("RMS, and below it the greatest"))),
+    h("caption", {}, t("RMS, and below it the greatest")),
     h("thead", {}, h("tr", {}, heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)))),
     h("tbody", {}, route.legs.map(row)),
   );
+  return h("details", { class: "report-route" }, h("summary", {}, icon("chevron-down", "small"), letter(route.place), h("strong", {}, route.name), h("span", { class: "count" }, route.legs.length)), table);
 }
 
 /** onSeek(iso): the time of an alert was clicked. */

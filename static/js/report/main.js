@@ -112,7 +112,7 @@ const EVENT_WORDS = {
   "take-off": ({ name }) => t("{name} takes off", { name }),
   landing: ({ name }) => t("{name} lands", { name }),
   target: (_route, { target }) => t("{target} reached", { target: labels.get(target)?.label ?? target + 1 }),
-  alert: (_route, { alert }) => alert.message,
+  alert: ({ name }, { alert }) => [name, alert.message].filter(Boolean).join(": "),
 };
 
 function eventWords(at_ms) {

@@ -47,7 +47,7 @@ export function figuresOf(record) {
   return [
     compared(t("Distance"), "length_m", lengthText),
     compared(t("Until the last landing"), "duration_s", durationText),
-    compared(t("Energy"), "energy_wh", energyText),
+    ...(planned.energy_wh === null && flown.energy_wh === null ? [] : [compared(t("Energy"), "energy_wh", energyText)]),
     { words: t("Off route, RMS"), planned: "", flown: metres(across_rms_m), more: "" },
     { words: t("Height error, RMS"), planned: "", flown: metres(height_rms_m), more: "" },
     ...(estimates.compared

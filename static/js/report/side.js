@@ -23,7 +23,7 @@ export function drawHead(record) {
   const chip = byId("report-state");
   chip.hidden = false;
   chip.className = `chip ${mission.state}`;
-  chip.textContent = MISSION_STATES[mission.state];
+  chip.replaceChildren(...[mission.state === "completed" && icon("check", "small"), MISSION_STATES[mission.state]].filter(Boolean));
   const { approval } = mission;
   const facts = [whenWords(mission), approval?.approved_by, approval && t("plan hash {hash}", { hash: approval.content_sha256.slice(0, HASH_LETTERS) })];
   byId("report-facts").textContent = facts.filter(Boolean).join(" · ");
@@ -74,7 +74,7 @@ function targetTable(targets, labels, onLook, isClose) {
   const rows = targets.map((target) => {
     const state = STATES[target.state];
     return [
-      h("tr", { class: "report-named" }, h("td", { rowspan: isClose ? 2 : 1 }, pill(target, labels, onLook)), h("th", { scope: "row", colspan: 4 }, h("span", { class: "report-name" }, target.label), h("span", { class: `report-target-state ${target.state}` }, icon(state.image, "small"), state.words))),
+      h("tr", { class: "report-named" }, h("td", { rowspan: isClose ? 2 : 1 }, pill(target, labels, onLook)), h("th", { scope: "row", colspan: 4 }, h("div", {}, h("span", { class: "report-name" }, target.label), h("span", { class: `report-target-state ${target.state}` }, icon(state.image, "small"), state.words)))),
       isClose && h("tr", {}, h("td", { class: "number" }, time(target.planned_at)), h("td", { class: "number" }, time(target.reached_at)), h("td", { class: "number" }, target.closest_m === null ? "—" : lengthText(target.closest_m)), h("td", { class: "number" }, seconds(target.held_s))),
     ];
   });

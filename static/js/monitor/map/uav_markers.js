@@ -13,9 +13,10 @@ function drawMarker({ id, onPick }) {
   const dart = svg("svg", { class: "flyer-dart", viewBox: "0 0 26 26", "aria-hidden": "true" });
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
+  const certainty = h("span", { class: "unseen" });
   const fact = h("span", {});
-  const element = h("button", { type: "button", tabindex: "-1", class: "map-flyer", onclick: (event) => (event.stopPropagation(), onPick(id)) }, h("span", { class: "flyer-mark" }, dart), h("span", { class: "flyer-label" }, letter, name, fact));
-  return { element, dart, letter, name, fact };
+  const element = h("button", { type: "button", tabindex: "-1", class: "map-flyer", onclick: (event) => (event.stopPropagation(), onPick(id)) }, h("span", { class: "flyer-mark" }, dart), h("span", { class: "flyer-label" }, letter, name, certainty, fact));
+  return { element, dart, letter, name, certainty, fact };
 }
 
 /** A dart along its heading; without one a round mark that points nowhere. */
@@ -58,11 +59,11 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
           flyers.set(uav.id, { marker, parts, from: uav.position, to: uav.position, began_ms: 0 });
         }
         const flyer = flyers.get(uav.id);
-        const { element, dart, letter, name, fact } = flyer.parts;
+        const { element, dart, letter, name, certainty, fact } = flyer.parts;
         const look = `map-flyer ${uav.certainty} ${uav.place === null ? "" : `route-${routeNumber(uav.place)}`}`.trim();
         for (const kind of ["map-flyer", "measured", "estimated", "lost", ...[1, 2, 3, 4, 5, 6, 7, 8].map((number) => `route-${number}`)]) element.classList.toggle(kind, look.split(" ").includes(kind));
         element.classList.toggle("chosen", uav.isChosen);
-        element.setAttribute("aria-label", t("{name}, {certainty}, {fact}", { name: uav.name, certainty: CERTAINTIES[uav.certainty], fact: uav.fact }));
+        certainty.textContent = `, ${CERTAINTIES[uav.certainty]}, `;
         dart.replaceChildren(shapeOf(uav.heading_deg));
         letter.hidden = uav.letter === "";
         letter.textContent = uav.letter;
