@@ -18,7 +18,7 @@ from missions.models import CommandKind, UavCommand
 from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_read_back, note_released, note_sent
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.preparation import CannotCarry, Task, reason_not_to, task_of
+from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, task_of
 from telemetry.gateway.reading import ask_for_the_present, read_aboard
 from telemetry.gateway.session import Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
@@ -72,6 +72,8 @@ class Carriage:
                 if task.take_off is not None:
                     self.session.questions.own_return.ask_anew(time.monotonic())
                 task = await self._reason_against(task) or await self._beyond_limits(task) or task
+            if isinstance(task, Task):
+                task = as_begun(task, self.session.state)
             if isinstance(task, CannotCarry):
                 await self._refuse(task)
             elif task.load is not None:
@@ -203,6 +205,7 @@ class Carriage:
             told = " ".join(filter(None, [outcome.left_alone, warnings]))
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
             wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
+            self.session.forget_flown()
             await self._end_with(end_loading, wanted, note=outcome.words, warnings=told)
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)

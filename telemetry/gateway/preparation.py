@@ -1,7 +1,7 @@
 """From a command's row to what is to be done with the vehicle, or to the reason why nothing is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from django.conf import settings
 
@@ -11,9 +11,10 @@ from missions.mavlink.content import FlightLoad
 from missions.mavlink.frozen import TakeOff
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
+from telemetry.gateway.begun_in_air import item_to_begin_with
 from telemetry.ground_station.flavour import RESTARTS, Flavour, Mode
 from telemetry.ground_station.leg import beside_leg
-from telemetry.ground_station.orders import Order
+from telemetry.ground_station.orders import ITEM, Order
 from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.loads import Loaded, loaded_on
 
@@ -33,11 +34,15 @@ class CannotCarry:
     is_for_good: bool = True
 
 
+_OFF_ROUTE = CannotCarry("off-route", "The UAV is not on the way on which its route begins. Plan the rest again.")
+
+
 @dataclass(frozen=True)
 class Task:
     """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
 
-    `aboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list.
+    `aboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
+    is begun in the air, on the way to this waypoint.
     """
 
     load: FlightLoad | None = None
@@ -47,6 +52,7 @@ class Task:
     take_off: TakeOff | None = None
     wanted: Loaded | None = None
     before: Loaded | None = None
+    begun_by: int | None = None
     known: Sequence[FlightLoad] = ()
 
 
@@ -71,10 +77,12 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
     wanted = Loaded(approved.load.content_sha256, approved.approval, approved.flight)
     if command.kind == CommandKind.UPLOAD_MISSION:
         known = _others(command, approved.load)
-        return Task(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, known=known)
+        begun_by = approved.route.begun_by
+        return Task(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, begun_by=begun_by, known=known)
     if before != wanted:
         return CannotCarry("not-loaded", "The UAV does not hold this flight of the approved mission: send it first.")
-    return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before)
+    begun_by = approved.route.begun_by if command.kind == CommandKind.START else None
+    return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before, begun_by=begun_by)
 
 
 def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | CannotCarry:
@@ -100,6 +108,8 @@ def reason_not_to(task: Task, state: VehicleState, now_s: float) -> CannotCarry 
     """
     if task.take_off is None:
         return None
+    if task.begun_by is not None and not state.is_in_air:
+        return CannotCarry("on-ground", "This route begins in the air, and the UAV does not fly.", is_for_good=state.is_in_air is False)
     if not state.is_in_air:
         if state.position is None or not _is_new(state.position_at_s, now_s):
             return CannotCarry("no-position", "The UAV does not tell where it stands.", is_for_good=False)
@@ -113,7 +123,32 @@ def reason_not_to(task: Task, state: VehicleState, now_s: float) -> CannotCarry 
     elsewhere = _elsewhere(task.take_off, state.home, state.home_amsl_m, "UAV's home is", "UAV's home is", "home-")
     if elsewhere is not None or not state.is_in_air or task.aboard is None or state.is_in(Mode.MISSION):
         return elsewhere
+    if task.begun_by is not None:
+        return _not_on_the_way(task.aboard, task.begun_by, state, now_s)
     return _off_the_leg(task.take_off, task.aboard, state, now_s)
+
+
+def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s: float) -> CannotCarry | None:
+    """It is begun with the item at the end of the leg on which the UAV is: each leg until then was looked at."""
+    if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
+        return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
+    item = item_to_begin_with(load, begun_by, state)
+    if item is None:
+        return _OFF_ROUTE
+    if state.flavour is Flavour.ARDUPILOT and item > 0:
+        if state.parameters.get(RESTARTS) is None:
+            return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
+        if state.parameters[RESTARTS]:
+            return CannotCarry("begins-anew", f"The UAV would fly back to where its route begins: set {RESTARTS} to 0.")
+    return None
+
+
+def as_begun(task: Task, state: VehicleState) -> Task | CannotCarry:
+    """With the item that it begins with, where it is held in the air. One that flies its list already is told to fly it."""
+    if task.begun_by is None or task.aboard is None or state.is_in(Mode.MISSION):
+        return task
+    item = item_to_begin_with(task.aboard, task.begun_by, state)
+    return _OFF_ROUTE if item is None else replace(task, parameters={ITEM: float(item)})
 
 
 def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s: float) -> CannotCarry | None:

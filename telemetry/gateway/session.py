@@ -257,6 +257,11 @@ class Session:
         for listener in list(self.listeners):
             listener(message, monotonic_s)
 
+    def forget_flown(self) -> None:
+        """Another list was put on it: what it reached before is none of that one's."""
+        self._flight.forget()
+        self.flown.clear()
+
     def _note_flown(self, flown: list[FlownItem]) -> None:
         """Of items that were reached and wait to be told the last one tells of all; the first may be being told."""
         for item in flown:

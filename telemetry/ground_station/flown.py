@@ -35,6 +35,10 @@ class FlightWatch:
     has_flown_list: bool = False  # also as the gateway before has seen it
     _reached: int = -1
 
+    def forget(self) -> None:
+        """Another list was put on it: nothing of that one is flown yet."""
+        self.has_flown_list, self._reached = False, -1
+
     def look(self, state: VehicleState, kind: str) -> list[Flown]:
         """kind: the message's type."""
         if state.is_armed and state.is_in_air and state.is_in(Mode.MISSION):

@@ -6,7 +6,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from missions.mavlink.content import FlightLoad
+from missions.mavlink.content import FlightLoad, MissionItem
 from missions.mavlink.points_between import FLOWN, position_of
 
 
@@ -32,6 +32,12 @@ def beside_leg(load: FlightLoad, item: int, take_off: LonLat, position: LonLat, 
     lowest_m, highest_m = min(start_m, end_m), max(start_m, end_m)
     above_m = relative_m - highest_m if relative_m > highest_m else min(relative_m - lowest_m, 0.0)
     return BesideLeg(_away_m(position, start, end), above_m)
+
+
+def beside_place(item: MissionItem, position: LonLat, relative_m: float) -> BesideLeg:
+    """The same of a place in the air that is all of the leg."""
+    at = position_of(item)
+    return BesideLeg(_away_m(position, at, at), relative_m - item.altitude_m)
 
 
 def _away_m(position: LonLat, start: LonLat, end: LonLat) -> float:

@@ -14,6 +14,7 @@ from telemetry.ground_station.vehicle_state import VehicleState
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan
 ABORT_ROUNDS = 3
+ITEM = "item"
 
 
 class Order(StrEnum):
@@ -53,7 +54,11 @@ class OrderPlan:
 
 
 def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
-    """For the vehicle as it is now. parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at. Raises CannotOrder."""
+    """For the vehicle as it is now. Raises CannotOrder.
+
+    parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at, `item` with which a list is begun in the air, from 0 without
+    home.
+    """
     if state.flavour not in (Flavour.PX4, Flavour.ARDUPILOT):
         raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
     if order in (Order.PAUSE, Order.HOLD):
@@ -74,7 +79,9 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
         if not _is_told_to_fly(state):
             raise CannotOrder("not-flying", "The UAV is on the ground: a mission is started there, not resumed.")
         return OrderPlan(_is_in(Mode.MISSION), ((_mode(state, Mode.MISSION),),))
-    return _take_off(state, parameters) if order is Order.TAKE_OFF else _start(state)
+    if order is Order.TAKE_OFF:
+        return _take_off(state, parameters)
+    return _begin_in_air(state, int(parameters[ITEM])) if ITEM in parameters else _start(state)
 
 
 # effects
@@ -148,6 +155,13 @@ def _start(state: VehicleState) -> OrderPlan:
     return OrderPlan(_flies_mission, ((first, *begin, _mode(state, Mode.MISSION), _MISSION_START),))
 
 
+def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
+    """Of a UAV that is held: it is on its way to the item. Told again while it flies its list, nothing is sent."""
+    if not _is_told_to_fly(state):
+        raise CannotOrder("not-flying", "The UAV is on the ground: this route begins in the air.")
+    return OrderPlan(_flies_mission, ((_item(state, item), _mode(state, Mode.MISSION)),))
+
+
 def _is_told_to_fly(state: VehicleState) -> bool:
     """Raises CannotOrder where it is not known."""
     if state.is_in_air is None:
@@ -157,9 +171,14 @@ def _is_told_to_fly(state: VehicleState) -> bool:
 
 def _first_item(state: VehicleState) -> CommandStep:
     """Else a list that was flown before goes on where it was left, by a leg from here that nobody checked. ArduPilot's item 0 is home."""
-    item = 0 if state.flavour is Flavour.PX4 else 1
+    return _item(state, 0)
+
+
+def _item(state: VehicleState, place: int) -> CommandStep:
+    """place: from 0 without home."""
+    item = place if state.flavour is Flavour.PX4 else place + 1
     return CommandStep(
-        "begin with the first item",
+        "begin with the first item" if place == 0 else f"begin with item {place + 1}",
         mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
         (float(item), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         effect=lambda seen: seen.mission_item == item,

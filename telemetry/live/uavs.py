@@ -40,7 +40,12 @@ def measured_json(stored: Mapping[str, Mapping[str, Any]] | None) -> dict[str, A
 def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int]]:
     """The mission that each flies, and its place in it."""
     rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None)
-    first = Case(When(mission__state=MissionState.ACTIVE, then=Value(0)), default=Value(1), output_field=IntegerField())
+    first = Case(
+        When(route__continued_by__isnull=False, then=Value(2)),
+        When(mission__state=MissionState.ACTIVE, then=Value(0)),
+        default=Value(1),
+        output_field=IntegerField(),
+    )
     newest = rows.order_by("uav", first, F("mission__updated_at").desc()).distinct("uav")
     return {uav: (str(mission), place) for uav, mission, place in newest.values_list("uav", "mission", "sequence")}
 

@@ -39,8 +39,8 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
 
 _ORDERS = """
 SELECT wanted.uav, command.kind, command.finished_at, command.state,
-    EXISTS (SELECT 1 FROM missions_uavcommand open WHERE open.uav_id = wanted.uav AND open.axis = %(mission_axis)s
-        AND open.state = ANY(%(open)s))
+    EXISTS (SELECT 1 FROM missions_uavcommand open WHERE open.uav_id = wanted.uav
+        AND (open.axis = %(mission_axis)s OR open.parameters ? 'hand_over') AND open.state = ANY(%(open)s))
 FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LEFT JOIN LATERAL (
     SELECT kind, finished_at, state FROM missions_uavcommand command
     WHERE uav_id = wanted.uav AND axis = %(flight_axis)s AND state = ANY(%(counting)s)
@@ -51,7 +51,10 @@ FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LE
 
 
 def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | None, bool]]:
-    """To UAVs with their missions: the last command about the flight that counts, and whether a mission is being brought or taken off."""
+    """To UAVs with their missions: the last command about the flight that counts, and whether a mission is being brought or taken off.
+
+    It is also while a UAV is held to be given another one.
+    """
     values = {
         "uavs": [uav for uav, _ in flying], "missions": [mission for _, mission in flying],
         "mission_axis": CommandAxis.MISSION, "flight_axis": CommandAxis.FLIGHT,

@@ -56,7 +56,8 @@ LEFT JOIN telemetry_uavlink link ON link.uav_id = place.uav_id
 WHERE mission.deleted_at IS NULL AND (mission.state = ANY(%(on_its_way)s)
     OR (mission.state = ANY(%(over)s) AND coalesce(mission.ended_at, mission.updated_at) > now() - make_interval(secs => %(longest_s)s)
         AND link.is_in_air AND link.heard_at > now() - make_interval(secs => %(longest_s)s)))
-ORDER BY place.uav_id, coalesce(array_position(%(on_its_way)s, mission.state::text), 9), mission.updated_at DESC
+ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, coalesce(array_position(%(on_its_way)s, mission.state::text), 9),
+    mission.updated_at DESC
 """
 _VALUES = "ST_X(position), ST_Y(position), " + ", ".join(REPORTED)
 _NEW = f"""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from telemetry.alerting.book import Closed, Opened, changes
+from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import InvalidLimits, Limits, limits_of
 from telemetry.alerting.meetings import elsewhere, meetings, moving_of
 from telemetry.alerting.memory import Memory, position_of
@@ -18,6 +19,7 @@ from telemetry.selectors.alert_facts import Loaded, estimated_by_other_watches, 
 from telemetry.selectors.alerts import MIXED, open_alerts_of
 from telemetry.services.alert_rows import close_alerts_of_ended_missions, settle
 from telemetry.services.approved_flights import approved_content, flight_model
+from telemetry.services.replan_hooks import suggest_for_findings
 from telemetry.services.zones_about import ZonesAbout, zones_about
 from workspace.live import publish_live
 
@@ -51,8 +53,18 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
             (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
         ]
         told |= settle(found, open_rows=open_rows, now=now)
+        suggest_for_findings(
+            (uav.mission_id, uav.uav_id, change.finding)
+            for uav, change in found
+            if isinstance(change, Opened) and _is_new(change.finding, levels.get(uav.uav_id, {}))
+        )
     for organisation_id in told:
         publish_live(organisation_id)
+
+
+def _is_new(finding: Finding, levels: Mapping[tuple[str, str], str]) -> bool:
+    """Or worse than it was. levels: of the open alerts of its UAV."""
+    return levels.get((finding.code, finding.subject)) != finding.level
 
 
 def _situations(
@@ -120,8 +132,10 @@ def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> Held:
 
 
 def _sound(stated: Sequence[Mapping[str, float]]) -> Limits:
-    """Limits that were stored past their check do not blind the watch."""
-    try:
-        return limits_of(*stated)
-    except InvalidLimits:
-        return Limits()
+    """A mission's that do not fit its UAV's type are passed over, and limits stored past their check do not blind the watch."""
+    for believed in (stated, stated[:1]):
+        try:
+            return limits_of(*believed)
+        except InvalidLimits:
+            continue
+    return Limits()

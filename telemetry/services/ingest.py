@@ -91,8 +91,9 @@ def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set
             """
             SELECT DISTINCT ON (mission_uav.uav_id) mission_uav.uav_id, mission.id
             FROM missions_missionuav mission_uav JOIN missions_mission mission ON mission.id = mission_uav.mission_id
+            LEFT JOIN missions_route route ON route.mission_uav_id = mission_uav.id
             WHERE mission_uav.uav_id = ANY(%s) AND mission.state = ANY(%s) AND mission.deleted_at IS NULL
-            ORDER BY mission_uav.uav_id, array_position(%s, mission.state::text), mission.updated_at DESC
+            ORDER BY mission_uav.uav_id, route.continued_by_id IS NOT NULL, array_position(%s, mission.state::text), mission.updated_at DESC
             """,
             [list(known), list(FLYING), list(FLYING)],
         )

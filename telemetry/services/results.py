@@ -12,7 +12,9 @@ from django.db.models.functions import Least
 from missions.given_selectors import approvals_given_to, number_of_flights, places_of_targets
 from missions.models import Approval, InspectionTarget, LinkKind, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
+from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
+from telemetry.services.replan_hooks import UAV_OUT
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,10 @@ def take_results(
         if flight.flight > numbers.get(flight.approval_id, 0):
             continue
         if given[flight.approval_id].revoked_at is None:
-            mark_flight_ended(mission_id=given[flight.approval_id].mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
+            mission_id = given[flight.approval_id].mission_id
+            mark_flight_ended(mission_id=mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
+            if flight.end is FlightEnd.FAILED:
+                suggest(mission_id=mission_id, code=UAV_OUT, cause={"uav": uav_id, "flight": flight.flight})
     return TakenResults(
         stored=stored,
         known=len(own) - stored,

@@ -1,6 +1,7 @@
 """Offers of another plan while a mission flies: asked for, suggested, declined, outdated. Nothing here changes what is flown."""
 
 from datetime import datetime, timedelta
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -12,6 +13,7 @@ from missions.models import Mission, MissionState, OfferState, ReplanOffer
 from missions.services.missions import note
 from missions.services.refused import refuse
 from missions.services.replanning.staleness import why_outdated
+from workspace.live import publish_live
 from workspace.models import Job, User
 from workspace.services import create_job
 
@@ -27,7 +29,7 @@ def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.state != MissionState.ACTIVE:
             raise refuse("not_flying", _("Only what is left of a mission that flies can be planned again."))
-        _set_aside(held, _("It was asked for again."))
+        _set_aside(held, "It was asked for again.")
         return _begin(held, ASKED_FOR, {"code": ASKED_FOR}, actor)
 
 
@@ -45,7 +47,7 @@ def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffe
         known = held.replan_offers.filter(code=code, cause__contains=named).exclude(state=OfferState.OUTDATED)
         if known.exists():
             return None
-        _set_aside(held, _("Something else has happened since."))
+        _set_aside(held, "Something else has happened since.")
         offer, _job = _begin(held, code, {**cause, **named}, None)
     return offer
 
@@ -73,7 +75,7 @@ def settle_offers(*, now: datetime | None = None) -> int:
             if held.state == OfferState.OPEN:
                 words = why_outdated(held, moment)
             elif held.state == OfferState.COMPUTING and held.created_at + WORKED_OUT_WITHIN < moment:
-                words = _("It was not worked out in time.")
+                words = "It was not worked out in time."
             else:
                 continue
             if words:
@@ -96,6 +98,7 @@ def end_offer(offer: ReplanOffer, state: OfferState, words: str, *, actor: User 
     offer.save(update_fields=["state", "outcome", "decided_by", "decided_at"])
     if state != OfferState.ACCEPTED and offer.continuation_id is not None:
         Mission.objects.filter(pk=offer.continuation_id, state=MissionState.PLANNED).update(deleted_at=timezone.now())
+    transaction.on_commit(partial(publish_live, offer.mission.organisation_id))
     note(offer.mission, actor, f"replan-{state}", before=None, after={"offer": str(offer.pk), "code": offer.code, "why": words[:500]})
 
 
@@ -108,5 +111,6 @@ def _begin(mission: Mission, code: str, cause: dict[str, Any], actor: User | Non
     offer = ReplanOffer.objects.create(mission=mission, code=code, cause=cause)
     words = "Working out what is left"
     job = create_job(organisation=mission.organisation, created_by=actor, task=REPLAN, parameters={"offer": str(offer.pk)}, message=words)
+    transaction.on_commit(partial(publish_live, mission.organisation_id))
     note(mission, actor, "replan", before=None, after={"offer": str(offer.pk), "code": code, "cause": cause})
     return offer, job

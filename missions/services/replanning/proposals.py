@@ -27,13 +27,15 @@ MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
 class Field:
     """All that the proposals for one mission have in common, UAVs by their places in it.
 
-    `forced` cannot go on as they do; `zones`: of those before which a zone lies its name. `troubles`: why others cannot do anything else.
+    `forced` cannot go on as they do, `recalled` can do nothing else either. `zones`: the names of those across routes. `troubles`: why
+    others cannot do anything else.
     """
 
     mission: Mission
     rests: Sequence[Rest]
     leavings: Mapping[int, Leaving]
     forced: frozenset[int]
+    recalled: frozenset[int]
     zones: Mapping[int, str]
     troubles: Mapping[int, str]
     targets: Mapping[int, TargetRequest]
@@ -49,7 +51,7 @@ class Field:
         zone = self.zones.get(place)
         words = _("%(zone)s lies across its route.") % {"zone": zone} if zone else ""
         words = words or (_("Its battery does not last for its route.") if place in self.forced else "")
-        return " ".join(filter(None, [words, self.troubles.get(place, "")]))
+        return "\n".join(filter(None, [words, self.troubles.get(place, "")]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +108,7 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
         rests,
         leavings,
         forced=frozenset(short | set(zones)),
+        recalled=frozenset(short - set(leavings)),
         zones=zones,
         troubles=troubles,
         targets=dict(enumerate(asked.targets)),
@@ -119,7 +122,7 @@ def proposals(field: Field) -> Iterator[Proposal]:
     for way in _ways(field):
         if way not in seen:
             seen.add(way)
-            yield _proposal(field, way, frozenset())
+            yield _proposal(field, way, field.recalled)
 
 
 def _ways(field: Field) -> Iterator[_Way]:
@@ -145,7 +148,7 @@ def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
     )
     if not flying:
         reasons = [field.troubles[rest.place] for rest in field.rests if not rest.is_out and rest.place in field.troubles]
-        words = " ".join(reasons) or "No other UAV of the mission is in the air."
+        words = "\n".join(reasons) or "No other UAV of the mission is in the air."
         return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("nobody_left", words)))
     if not wanted:
         return Proposal(field, {}, recalled, {})

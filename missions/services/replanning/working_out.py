@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
+from functools import partial
 
 from django.db import transaction
 from django.utils import timezone
@@ -18,6 +19,7 @@ from missions.services.replanning.proposals import Field, Proposal, field_of, pr
 from missions.services.replanning.rest import Cause, rests_of
 from missions.services.replanning.staleness import basis_of
 from missions.services.replanning.storing import stored
+from workspace.live import publish_live
 from workspace.models import Job
 from workspace.services import JobCancelled, finish_job
 
@@ -70,7 +72,7 @@ def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, str]
         words += [reason.message for reason in reasons]
     troubles = [field.why(rest.place) for rest in field.rests]
     told = dict.fromkeys(filter(None, [*words, *troubles]))
-    return " ".join(told) or _("Nothing would change: the UAVs fly on as they do.")
+    return "\n".join(told) or _("Nothing would change: the UAVs fly on as they do.")
 
 
 def _open(offer: ReplanOffer, proposal: Proposal) -> list[Reason]:
@@ -87,6 +89,7 @@ def _open(offer: ReplanOffer, proposal: Proposal) -> list[Reason]:
         held.difference = difference_of(proposal, now=now, valid_until=now + VALID_FOR) | {"basis": basis_of(uavs)}
         held.continuation, held.state = continuation, OfferState.OPEN
         held.save(update_fields=["difference", "continuation", "state"])
+        transaction.on_commit(partial(publish_live, held.mission.organisation_id))
     return []
 
 

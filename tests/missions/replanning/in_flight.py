@@ -11,7 +11,7 @@ from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route,
 from missions.routing.problem import Objective
 from missions.routing.solver import never
 from missions.selectors import mission_of_organisation
-from missions.services import PlanRequest, create_mission, plan_mission
+from missions.services import create_mission, plan_mission
 from missions.services.approval import approve_mission
 from missions.services.dispatch import dispatch_mission
 from missions.services.flying import mark_waypoint_reached
@@ -68,12 +68,16 @@ def worked_out(offer: ReplanOffer, job: Job) -> ReplanOffer:
     return offer
 
 
-def two_in_the_air(author: User, *, towers: int = 10, battery_wh: float | None = None, **wishes: Any) -> Flight:
+def two_in_the_air(author: User, *, battery_wh: float | None = None, **wishes: Any) -> Flight:
     """Over a line of towers, one UAV from either end, each with its half of the line; both have just been started."""
+    uavs = fleet("Tern", "Kite", battery_wh=battery_wh)
+    return started(author, uavs, planned_over_a_line(author, uavs, battery_wh=battery_wh, **wishes))
+
+
+def planned_over_a_line(author: User, uavs: list[Uav], *, towers: int = 10, battery_wh: float | None = None, **wishes: Any) -> Mission:
     standing = [ground.tower((10.0 + SPACING_DEG * number, worlds.LINE_LAT)) for number in range(towers)]
     worlds.power_line(standing, voltages_v=[110_000])
     worlds.rebuild()
-    uavs = fleet("Tern", "Kite", battery_wh=battery_wh)
     east = 10.0 + SPACING_DEG * (towers - 1)
     starts = [(9.999, worlds.LINE_LAT - 0.003), (east + 0.001, worlds.LINE_LAT - 0.003)]
     asked = tuple(
@@ -81,12 +85,12 @@ def two_in_the_air(author: User, *, towers: int = 10, battery_wh: float | None =
         for uav, start in zip(uavs, starts, strict=True)
     )
     request = worlds.request(*standing, uavs=asked, objective=Objective.MAKESPAN, **wishes)
-    return started(author, uavs, request)
-
-
-def started(author: User, uavs: list[Uav], request: PlanRequest) -> Flight:
     draft = create_mission(organisation=author.organisation, author=author, name="Bexley spring", request=request)
-    mission = plan_mission(mission=draft, actor=author)
+    return plan_mission(mission=draft, actor=author)
+
+
+def started(author: User, uavs: list[Uav], mission: Mission) -> Flight:
+    """All of them, as rows tell it."""
     approve_mission(mission=mission, actor=author)
     dispatch_mission(mission=mission, actor=author)
     carry(*uavs)

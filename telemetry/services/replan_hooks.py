@@ -1,0 +1,31 @@
+"""Alerts after which the rest of a mission is planned anew and offered: a UAV is lost or comes back by itself, or its battery is short."""
+
+from collections.abc import Iterable
+from uuid import UUID
+
+from missions.services.replanning import suggest
+from telemetry.alerting.detectors import battery, link, mode_changed
+from telemetry.alerting.finding import CRITICAL, Finding
+from telemetry.alerting.modes import ModeKind, mode_kind
+
+UAV_OUT, BATTERY_SHORT = "uav-out", "battery-short"
+COMES_DOWN = frozenset({ModeKind.RETURN, ModeKind.LAND})
+
+
+def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
+    """Mission, UAV and what was found of it; of one cause once. Safe to call again."""
+    for mission_id, uav_id, finding in findings:
+        code = code_of(finding)
+        if code is not None:
+            suggest(mission_id=mission_id, code=code, cause={"uav": uav_id, "alert": finding.code, **finding.values})
+
+
+def code_of(finding: Finding) -> str | None:
+    """Why the rest is planned anew after this; None: it is not."""
+    if finding.code == battery.CODE and finding.level == CRITICAL:
+        return BATTERY_SHORT
+    if finding.code == link.CODE and finding.level == CRITICAL:
+        return UAV_OUT
+    if finding.code == mode_changed.CODE and mode_kind(str(finding.details.get("mode") or "")) in COMES_DOWN:
+        return UAV_OUT
+    return None

@@ -1,0 +1,86 @@
+"""A route that is begun in the air: with which item, by which commands, and never where nobody has looked."""
+
+import time
+
+import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
+from missions.mavlink.content import FlightLoad, MissionItem
+from missions.mavlink.frozen import TakeOff
+from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to
+from telemetry.ground_station.flavour import RESTARTS, Flavour
+from telemetry.ground_station.orders import ITEM, Order, plan_of
+from telemetry.ground_station.vehicle_state import VehicleState
+
+HOME = LonLat(10.0, 56.0)
+HELD = {Flavour.PX4: 4 << 16 | 3 << 24, Flavour.ARDUPILOT: 17}
+
+
+def item(lon: float, waypoint: int, lat: float = 56.01) -> MissionItem:
+    return MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, 6, (0.0, 0.0, 0.0, 0.0), round(lon * 1e7), round(lat * 1e7), 60.0, waypoint)
+
+
+#  10.00 ---- 10.01 ---- 10.02   then away to the north
+LOAD = FlightLoad((item(10.0, 0), item(10.01, 1), item(10.02, 2), item(10.02, 3, 56.02)))
+
+
+def held(flavour: Flavour, place: LonLat, height_m: float = 60.0, **facts) -> VehicleState:
+    now_s = time.monotonic()
+    state = VehicleState(7, flavour=flavour, custom_mode=HELD[flavour], is_armed=True, heartbeat_at_s=now_s, heard_at_s=now_s)
+    state.landed_state, state.landed_at_s = mavlink.MAV_LANDED_STATE_IN_AIR, now_s
+    state.position, state.altitude_relative_m, state.position_at_s = place, height_m, now_s
+    state.home, state.home_amsl_m, state.home_at_s = HOME, 100.0, now_s
+    state.parameters[RESTARTS] = 0.0
+    for name, value in facts.items():
+        setattr(state, name, value)
+    return state
+
+
+def task(**facts) -> Task:
+    return Task(order=Order.START, aboard=LOAD, take_off=TakeOff(HOME, 100.0), begun_by=2, **facts)
+
+
+@pytest.mark.parametrize("flavour", HELD)
+@pytest.mark.parametrize(("lon", "begins_with"), [(10.0, 0), (10.004, 1), (10.0099, 1), (10.015, 2), (10.0201, 2)])
+def test_it_begins_with_the_end_of_the_leg_on_which_it_is_held(flavour, lon, begins_with):
+    state = held(flavour, LonLat(lon, 56.01))
+    assert reason_not_to(task(), state, time.monotonic()) is None
+    begun = as_begun(task(), state)
+    assert isinstance(begun, Task) and begun.parameters == {ITEM: float(begins_with)}
+    (steps,) = plan_of(Order.START, state, begun.parameters).ways
+    assert [step.command for step in steps] == [mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, mavlink.MAV_CMD_DO_SET_MODE]
+    assert steps[0].parameters[0] == begins_with + (flavour is Flavour.ARDUPILOT)
+
+
+OFF = [(10.01, 56.011, 60.0), (10.02, 56.015, 60.0), (10.0, 56.005, 60.0), (10.01, 56.01, 90.0)]
+
+
+@pytest.mark.parametrize("flavour", HELD)
+@pytest.mark.parametrize(("lon", "lat", "height_m"), OFF)
+def test_beside_below_and_beyond_its_way_it_is_not_begun(flavour, lon, lat, height_m):
+    state = held(flavour, LonLat(lon, lat), height_m)
+    reason = reason_not_to(task(), state, time.monotonic())
+    assert reason is not None and reason.code == "off-route"
+    assert isinstance(as_begun(task(), state), CannotCarry)
+
+
+def test_on_the_ground_it_is_neither_loaded_nor_begun():
+    state = held(Flavour.PX4, HOME, 0.0, landed_state=mavlink.MAV_LANDED_STATE_ON_GROUND)
+    for one in (task(), Task(load=LOAD, take_off=TakeOff(HOME, 100.0), begun_by=2)):
+        reason = reason_not_to(one, state, time.monotonic())
+        assert reason is not None and reason.code == "on-ground"
+
+
+def test_an_ardupilot_that_begins_its_list_anew_is_begun_at_its_beginning_alone():
+    state = held(Flavour.ARDUPILOT, LonLat(10.004, 56.01))
+    state.parameters[RESTARTS] = 1.0
+    reason = reason_not_to(task(), state, time.monotonic())
+    assert reason is not None and reason.code == "begins-anew"
+    assert reason_not_to(task(), held(Flavour.ARDUPILOT, LonLat(10.0, 56.01)), time.monotonic()) is None
+
+
+def test_one_whose_home_is_elsewhere_counts_its_heights_from_there():
+    state = held(Flavour.PX4, LonLat(10.004, 56.01), home=LonLat(10.05, 56.0))
+    reason = reason_not_to(task(), state, time.monotonic())
+    assert reason is not None and reason.code == "home-elsewhere"
