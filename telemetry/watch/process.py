@@ -89,8 +89,8 @@ class Watch:
         self._read()
         self._learn(now_s)
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
-        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
         self._tell(list(made.values()))
+        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
 
     # Who is watched
 
