@@ -18,7 +18,7 @@ from telemetry.estimation.tracker import Tracker
 from telemetry.selectors.watched import WatchedFlight, newest_reports, places_heard, watched_flights
 from telemetry.services.alerting import look
 from telemetry.services.knowledge import knowledge_of
-from telemetry.services.targets_checked import TargetChecks
+from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,
     forget_what_is_over,
