@@ -4,8 +4,8 @@ import { ApiError, get, post, signInAddress } from "../api.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { lengthText } from "../units.js";
+import { LATE, questionOf, WHY } from "./command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, isOpen, KINDS } from "./flying.js";
-import { ASKED, LATE, WHY } from "./command_questions.js";
 import { returnLines, returnOf } from "./own_return.js";
 import { confirmAct } from "./panels/confirm.js";
 
@@ -134,7 +134,7 @@ export function createFlying(store, { failed, page }) {
   }
 
   async function command(flyer, kind) {
-    const asked = await confirmAct(ASKED[kind]({ ...flyer, returns: returnOf(store.state.returns, flyer.place) }));
+    const asked = await confirmAct(questionOf(kind, { ...flyer, returns: returnOf(store.state.returns, flyer.place) }));
     if (!asked) return;
     const { why = "", ...parameters } = asked;
     await tried(t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] }), async () => {

@@ -1,54 +1,66 @@
-/** Every target of a mission and what became of it: what is under way first, then what is to come, then what is done, the newest first. */
+/** The board: every target of the missions on the page with its state and time. Values in, values out. */
 
-import { byId, h, icon, keyedList } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
+import { routeLetter } from "../map/palette.js";
 import { t } from "../text.js";
-import { clockText } from "../units.js";
-import { reasonWords, TARGET_STATES } from "./words.js";
+import { isHeld } from "./uav_words.js";
 
-const ORDER = { "in-progress": 0, pending: 1, failed: 2, skipped: 3, complete: 4 };
+export const STATES = {
+  held: { words: t("Held"), image: "circle-pause", rank: 0 },
+  "in-progress": { words: t("In progress"), image: "circle-dot", rank: 1 },
+  pending: { words: t("Pending"), image: "circle-dashed", rank: 2 },
+  failed: { words: t("Failed"), image: "circle-x", rank: 3 },
+  skipped: { words: t("Skipped"), image: "skip-forward", rank: 4 },
+  complete: { words: t("Complete"), image: "circle-check", rank: 5 },
+};
 
-/** arrivals: place of a target → when it will be reached, ISO. */
-export function inOrder(targets, arrivals) {
-  const time = (target) => Date.parse(target.state === "pending" || target.state === "in-progress" ? (arrivals.get(target.place) ?? "") : (target.state_at ?? "")) || Infinity;
-  return [...targets].sort((a, b) => ORDER[a.state] - ORDER[b.state] || (ORDER[a.state] < 2 ? time(a) - time(b) : time(b) - time(a)) || a.place - b.place);
+const REASONS = { "flight-failed": t("Its flight failed."), "not-reached": t("The UAV went past it at a distance."), "not-held": t("The UAV did not stay long enough.") };
+
+/** Why a target was skipped or failed: a known code in words, anything else as it is. */
+export const reasonWords = (reason) => REASONS[reason] ?? reason ?? "";
+
+/** Number of each target on its route, by its place in the mission; from the mission as the REST API shows it. */
+export function numbersOf(detail) {
+  const numbers = new Map();
+  for (const route of detail?.plan?.routes ?? []) route.targets.forEach((target, index) => numbers.set(target, index + 1));
+  return numbers;
 }
 
-export function mountBoard({ onMission, onTarget }) {
-  const body = byId("live-board");
-  const select = byId("live-board-mission");
-  select.addEventListener("change", () => onMission(select.value));
+/** "C3", or the bare number of a target that nobody flies to. */
+export const pillOf = (target, numbers) => (target.uav === null ? `${target.place + 1}` : `${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`);
 
-  const make = () => h("tr", {});
-  function refresh(row, { target, label, place, arrival }) {
-    const state = TARGET_STATES[target.state];
-    const isOpen = target.state === "pending" || target.state === "in-progress";
-    const at = isOpen ? (arrival ? `~ ${clockText(arrival)}` : "—") : target.state_at ? clockText(target.state_at) : "—";
-    const said = JSON.stringify([target, label, at]);
-    if (row.dataset.said === said) return;
-    row.dataset.said = said;
-    row.className = target.state;
-    row.replaceChildren(
-      h("td", {}, label ? h("button", { type: "button", class: `pill-button route-${routeNumber(place)} ${target.state}`, "aria-label": t("Show target {label}", { label }), onclick: () => onTarget(target.place) }, h("span", { class: "pill" }, label)) : h("span", { class: "caption" }, "—")),
-      h("td", { class: "board-name" }, target.label, target.state_reason && h("span", { class: "caption" }, reasonWords(target.state_reason))),
-      h("td", { class: "board-state" }, icon(state.image, "small"), state.words),
-      h("td", { class: "number" }, at),
-    );
-  }
-  const draw = keyedList(body, ({ target }) => target.place, make, refresh);
+/** Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last. */
+export function boardRows(missions, uavs, details) {
+  const rows = missions.flatMap((mission) => {
+    const numbers = numbersOf(details.get(mission.id));
+    const flying = new Map(uavs.filter((uav) => uav.mission === mission.id).map((uav) => [uav.place, uav]));
+    return mission.targets.map((target) => rowOf(mission, target, flying.get(target.uav), numbers));
+  });
+  return rows.sort((a, b) => STATES[a.state].rank - STATES[b.state].rank || later(a, b) || a.pill.localeCompare(b.pill, undefined, { numeric: true }));
+}
 
-  /** missions: that may be looked at; shown: the one that is; labels, arrivals: by place of the target. */
-  return ({ missions, shown, labels, arrivals }) => {
-    select.hidden = missions.length < 2;
-    if (!select.hidden) {
-      const known = [...select.options].map(({ value, text }) => `${value}${text}`).join();
-      if (known !== missions.map(({ id, name }) => `${id}${name}`).join()) select.replaceChildren(...missions.map(({ id, name }) => h("option", { value: id }, name)));
-      if (shown) select.value = shown.id;
-    }
-    const targets = shown?.targets ?? [];
-    byId("live-no-board").hidden = targets.length > 0;
-    body.parentElement.hidden = targets.length === 0;
-    byId("live-board-count").textContent = shown ? t("{done} of {all} complete", { done: shown.counts.complete, all: shown.counts.all }) : "";
-    draw(inOrder(targets, arrivals).map((target) => ({ target, ...(labels.get(target.place) ?? { label: "", place: 0 }), arrival: arrivals.get(target.place) })));
+/** What is to come by its time, what is over the newest first. */
+function later(a, b) {
+  const [one, other] = [a, b].map(({ at }) => (at ? Date.parse(at) : Infinity));
+  if (one === other) return 0;
+  return a.isExpected || a.at === null || b.at === null ? one - other : other - one;
+}
+
+function rowOf(mission, target, uav, numbers) {
+  const arrivals = uav?.estimated?.arrivals ?? [];
+  const arrival = arrivals.find((entry) => entry.target === target.place);
+  const isToCome = ["pending", "in-progress"].includes(target.state);
+  const isNext = arrivals.find((entry) => entry.target !== null)?.target === target.place;
+  const state = isToCome && isNext && isHeld(uav) ? "held" : target.state === "pending" && isNext && uav.measured?.is_in_air ? "in-progress" : target.state;
+  return {
+    key: `${mission.id} ${target.place}`,
+    mission: mission.id,
+    place: target.place,
+    uav: target.uav,
+    pill: pillOf(target, numbers),
+    label: target.label,
+    state,
+    at: isToCome ? (state === "held" ? null : (arrival?.at ?? null)) : target.state_at,
+    isExpected: isToCome,
+    reason: reasonWords(target.state_reason),
   };
 }

@@ -1,38 +1,43 @@
-/** What has happened, the newest first: commands, alerts, targets, states of missions. */
+/** What has happened: commands, alerts and states of targets and missions, the newest first. Values in, values out. */
 
-import { h } from "../dom.js";
-import { commandWords } from "../mission/flying.js";
+import { KINDS } from "../mission/flying.js";
 import { t } from "../text.js";
-import { MISSION_STATES, TARGET_STATES } from "./words.js";
+import { reasonWords, STATES } from "./board.js";
 
-const MOST = 120;
+const STEPS = [
+  ["created_at", () => t("given"), "send"],
+  ["sent_at", () => t("sent"), "send"],
+  ["acknowledged_at", () => t("acknowledged"), "check"],
+];
+const ENDS = { applied: t("done"), failed: t("failed"), expired: t("expired") };
 
-/** → [{ key, at, words }] of what the feed shows. */
-export function eventsOf({ alerts, commands, missions, names }) {
-  const events = [];
-  for (const alert of alerts) {
-    events.push({ key: `alert ${alert.id}`, at: alert.opened_at, words: t("{name}: {message}", { name: names(alert), message: alert.message }) });
-    if (alert.acknowledged_at) events.push({ key: `acknowledged ${alert.id}`, at: alert.acknowledged_at, words: t("{person} acknowledged: {message}", { person: alert.acknowledged_by ?? t("Somebody"), message: alert.message }) });
-    if (alert.closed_at) events.push({ key: `over ${alert.id}`, at: alert.closed_at, words: t("Over: {message}", { message: alert.message }) });
-  }
-  for (const command of commands) {
-    const by = command.created_by ?? t("the program");
-    events.push({ key: `command ${command.id} ${command.state}`, at: command.finished_at ?? command.acknowledged_at ?? command.sent_at ?? command.created_at, words: `${command.uav.name}: ${commandWords(command).words} (${by})` });
-  }
-  for (const mission of missions) {
-    if (mission.started_at) events.push({ key: `started ${mission.id}`, at: mission.started_at, words: t("{name} has begun", { name: mission.name }) });
-    if (mission.ended_at) events.push({ key: `ended ${mission.id}`, at: mission.ended_at, words: t("{name}: {state}", { name: mission.name, state: MISSION_STATES[mission.state] }) });
-    for (const target of mission.targets) if (target.state_at) events.push({ key: `target ${mission.id} ${target.place} ${target.state}`, at: target.state_at, words: t("{name}: {state}", { name: target.label, state: TARGET_STATES[target.state].words }) });
-  }
-  return events.sort((a, b) => Date.parse(b.at) - Date.parse(a.at)).slice(0, MOST);
+function ofCommand({ id, uav, kind, created_by, state, outcome, finished_at, ...times }) {
+  const said = (at, words, image) => ({ key: `command ${id} ${words}`, at, image, words: t("{name}: {act}, {state}", { name: uav.name, act: KINDS[kind], state: words }) });
+  const steps = STEPS.filter(([name]) => times[name]).map(([name, words, image]) => said(times[name], words(), image));
+  if (steps[0] && created_by) steps[0].words = t("{name}: {act}, given by {who}", { name: uav.name, act: KINDS[kind], who: created_by });
+  if (finished_at && ENDS[state]) steps.push({ ...said(finished_at, outcome && state !== "applied" ? `${ENDS[state]} – ${outcome}` : ENDS[state], state === "applied" ? "circle-check" : "circle-x") });
+  return steps;
 }
 
-export function mountEventLog(list, timeText) {
-  let shown = "";
-  return (events) => {
-    const key = events.map((event) => event.key).join();
-    if (key === shown) return;
-    shown = key;
-    list.replaceChildren(...events.map(({ at, words }) => h("li", {}, h("time", { datetime: at }, timeText(at)), h("span", {}, words))));
-  };
+function ofAlert({ id, level, message, opened_at, closed_at, acknowledged_at, acknowledged_by }) {
+  const image = { critical: "octagon-alert", warning: "triangle-alert", advisory: "info" }[level];
+  const rows = [{ key: `alert ${id} opened`, at: opened_at, image, level, words: message }];
+  if (acknowledged_at) rows.push({ key: `alert ${id} known`, at: acknowledged_at, image: "check", words: t("Acknowledged by {who}: {message}", { who: acknowledged_by ?? t("somebody who has left"), message }) });
+  if (closed_at) rows.push({ key: `alert ${id} closed`, at: closed_at, image: "circle-check", words: t("Over: {message}", { message }) });
+  return rows;
+}
+
+function ofMission({ id, name, started_at, ended_at, targets }) {
+  const rows = targets
+    .filter(({ state, state_at }) => state_at && state !== "pending")
+    .map(({ place, label, state, state_at, state_reason }) => ({ key: `target ${id} ${place} ${state}`, at: state_at, image: STATES[state].image, words: `${label}: ${STATES[state].words}${state_reason ? `, ${reasonWords(state_reason)}` : ""}` }));
+  if (started_at) rows.push({ key: `mission ${id} started`, at: started_at, image: "plane-takeoff", words: t("“{name}” has begun", { name }) });
+  if (ended_at) rows.push({ key: `mission ${id} ended`, at: ended_at, image: "plane-landing", words: t("“{name}” has ended", { name }) });
+  return rows;
+}
+
+/** [{ key, at, image, level?, words }] */
+export function eventsOf({ commands, alerts, missions }) {
+  const events = [...commands.flatMap(ofCommand), ...alerts.flatMap(ofAlert), ...missions.flatMap(ofMission)];
+  return events.sort((a, b) => Date.parse(b.at) - Date.parse(a.at));
 }

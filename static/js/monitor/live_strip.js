@@ -1,32 +1,58 @@
-/** A route pulled straight, with its UAV on it: what is flown is thick, the 95 % interval a bracket. */
+/** The span strip of a flight: what is flown thick, the rest pale, the UAV on it with the bracket in which it is 95 of 100 times. */
 
 import { svg } from "../dom.js";
-import { layOut, scaleOf } from "../mission/span_strip.js";
+import { layOut, profileOf, scaleOf } from "../mission/span_strip.js";
+import { MEASURED } from "./certainty.js";
 
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;
-const DART = "M-8 -6.5L8 0L-8 6.5L-4.5 0Z";
+const DART_PX = 9;
+const LEAST_BRACKET_PX = 9;
 
-/** profile: of profileOf; along_m: flown of it, null where that is not known; half_m: of the interval, 0 without. */
-export function liveStrip({ profile, length_m, along_m, half_m, kind, width_px, label }) {
-  const plan = layOut(profile, length_m, width_px);
-  const { x } = scaleOf(length_m, width_px);
-  const at = along_m === null ? null : x(Math.min(length_m, Math.max(0, along_m)));
-  const flown = at === null ? plan.start : at;
-  const clipped = (legs, from, to) => legs.filter((leg) => leg.x2 > from && leg.x1 < to).map((leg) => ({ ...leg, x1: Math.max(leg.x1, from), x2: Math.min(leg.x2, to) }));
-  const line = (leg, name) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: `strip-leg ${name}${leg.offNetwork ? " off" : ""}` });
+/** How far along its route a UAV is [m], and how far off that may be: { at_m, within_m }; null where nobody knows. */
+export function progressOf({ estimated, measured, link }, places) {
+  if (estimated && estimated.along_route_m !== null) return { at_m: estimated.along_route_m, within_m: estimated.bound.along_m };
+  const next = measured?.waypoint_sequence ?? link?.waypoint_sequence ?? null;
+  return next === null || !places.length ? null : { at_m: places[Math.min(Math.max(0, next - 1), places.length - 1)], within_m: 0 };
+}
+
+/** states: of each target by its place, "complete" and so on. `progress` as progressOf says it. */
+export function liveStrip({ route, width_px, label, states, progress, certainty }) {
+  const profile = profileOf(route.waypoints, route.length_m);
+  const plan = layOut(profile, route.length_m, width_px);
+  const { x } = scaleOf(route.length_m, width_px);
+  const at = progress ? x(Math.min(route.length_m, Math.max(0, progress.at_m))) : plan.start;
+  const leg = (x1, x2, off, kind) => x2 > x1 && svg("line", { x1, x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: `strip-leg ${kind}${off ? " off" : ""}` });
   const base = (place) => svg("rect", { x: place - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
-  const [low, high] = at === null || !half_m ? [0, 0] : [x(Math.max(0, along_m - half_m)), x(Math.min(length_m, along_m + half_m))];
   return svg(
     "svg",
     { class: "strip live-strip", role: "img", "aria-label": label, width: width_px, height: HEIGHT_PX, viewBox: `0 0 ${width_px} ${HEIGHT_PX}` },
     plan.ticks.map((tick) => svg("line", { x1: tick, x2: tick, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" })),
-    clipped(plan.legs, flown, plan.end).map((leg) => line(leg, "ahead")),
-    clipped(plan.legs, plan.start, flown).map((leg) => line(leg, "flown")),
+    plan.legs.map(({ x1, x2, offNetwork }) => [leg(x1, Math.min(x2, at), offNetwork, "flown"), leg(Math.max(x1, at), x2, offNetwork, "ahead")]),
     base(plan.start),
     base(plan.end),
-    plan.pills.map(({ x: place, width, label: number }) => svg("g", { class: `strip-target${place <= flown ? " passed" : ""}` }, svg("rect", { x: place - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x: place, y: MIDDLE_PX + 4 }, number))),
-    high > low && svg("path", { class: "strip-interval", d: `M${low + 3} 4H${low}V32H${low + 3}M${high - 3} 4H${high}V32H${high - 3}` }),
-    at !== null && svg("path", { class: `strip-uav ${kind}`, d: DART, transform: `translate(${at} ${MIDDLE_PX})` }),
+    plan.pills.map((pill) => drawPill(pill, states)),
+    progress && drawUav(at, Math.max(LEAST_BRACKET_PX, x(progress.within_m) - x(0)), certainty),
+  );
+}
+
+/** Filled once all of its targets are done, red where one failed. */
+function drawPill({ x, width, label, targets }, states) {
+  const of = (state) => targets.some((target) => states.get(target) === state);
+  const look = of("failed") ? "failed" : targets.every((target) => states.get(target) === "complete") ? "complete" : of("skipped") ? "skipped" : "open";
+  return svg("g", { class: `strip-target ${look}` }, svg("rect", { x: x - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, label));
+}
+
+function drawUav(at, half_px, certainty) {
+  const dart = svg("path", { class: "strip-uav", d: `M${at + DART_PX} ${MIDDLE_PX}L${at - DART_PX} ${MIDDLE_PX - 6}L${at - DART_PX / 2} ${MIDDLE_PX}L${at - DART_PX} ${MIDDLE_PX + 6}Z` });
+  if (certainty === MEASURED) return svg("g", { class: "strip-flyer measured" }, dart);
+  const half = Math.max(half_px, DART_PX + 3);
+  const [left, right, top, bottom] = [at - half, at + half, MIDDLE_PX - 11, MIDDLE_PX + 11];
+  return svg(
+    "g",
+    { class: `strip-flyer ${certainty ?? "lost"}` },
+    svg("rect", { class: "strip-within", x: left, y: top, width: right - left, height: bottom - top }),
+    svg("path", { class: "strip-bracket", d: `M${left + 4} ${top}H${left}V${bottom}H${left + 4}M${right - 4} ${top}H${right}V${bottom}H${right - 4}` }),
+    dart,
   );
 }

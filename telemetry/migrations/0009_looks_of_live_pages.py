@@ -8,7 +8,7 @@ class Migration(migrations.Migration):
 
     dependencies = [
         ('missions', '0025_looks_of_live_pages'),
-        ('telemetry', '0009_alert_course'),
+        ('telemetry', '0008_lists_left_alone'),
         ('workspace', '0006_job_best'),
         migrations.swappable_dependency(settings.AUTH_USER_MODEL),
     ]
