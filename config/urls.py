@@ -18,6 +18,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("", include("workspace.page_urls")),
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),
+    path("", include("telemetry.page_urls")),
     path("admin/", admin.site.urls),
 ]
 

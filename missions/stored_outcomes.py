@@ -15,6 +15,7 @@ SENTENCES = (
     gettext_noop("The vehicle is in another state by now."),
     gettext_noop("The vehicle did not answer."),
     gettext_noop("The vehicle agreed, and nothing happened."),
+    gettext_noop("The vehicle did it, and left it again."),
     gettext_noop("Could not %(order)s, at %(step)s."),
     gettext_noop("Only PX4 and ArduPilot are commanded: what another autopilot does is not known."),
     gettext_noop("The UAV does not tell whether it stands or flies."),

@@ -2,6 +2,9 @@
 
 from django.urls import path, register_converter
 
+from telemetry.views.alert_limits import MissionAlertLimits, UavTypeAlertLimits
+from telemetry.views.alerts import AlertAcknowledgement, AlertDetail, AlertNotes, Alerts
+from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
@@ -33,10 +36,17 @@ urlpatterns = [
     path("unknown-vehicles", UnknownVehicles.as_view(), name="api-unknown-vehicles"),
     path("unknown-vehicles/<int:vehicle_id>/adopt", UnknownVehicleAdoption.as_view(), name="api-unknown-vehicle-adoption"),
     path("unknown-vehicles/<int:vehicle_id>/ignore", UnknownVehicleIgnoring.as_view(), name="api-unknown-vehicle-ignoring"),
+    path("alerts", Alerts.as_view(), name="api-alerts"),
+    path("alerts/<int:alert_id>", AlertDetail.as_view(), name="api-alert"),
+    path("alerts/<int:alert_id>/acknowledge", AlertAcknowledgement.as_view(), name="api-alert-acknowledgement"),
+    path("alerts/<int:alert_id>/notes", AlertNotes.as_view(), name="api-alert-notes"),
+    path("uav-types/<int:type_id>/alert-limits", UavTypeAlertLimits.as_view(), name="api-uav-type-alert-limits"),
+    path("missions/<uuid:mission_id>/alert-limits", MissionAlertLimits.as_view(), name="api-mission-alert-limits"),
     path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
     path("missions/<uuid:mission_id>/record.zip", MissionRecordFile.as_view(), name="api-mission-record-file"),
+    path("missions/<uuid:mission_id>/estimates", MissionEstimates.as_view(), name="api-mission-estimates"),
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),

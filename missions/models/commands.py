@@ -131,6 +131,7 @@ class UavCommand(models.Model):
                 fields=["priority", "created_at"], condition=Q(state__in=["queued", "sent", "acknowledged"]), name="uav_command_open_idx"
             ),
             models.Index(fields=["mission", "-created_at"], name="uav_command_of_mission_idx"),
+            models.Index(fields=["organisation", "finished_at"], name="uav_command_just_ended_idx"),
         ]
 
     def __str__(self) -> str:

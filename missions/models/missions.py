@@ -83,6 +83,10 @@ class Mission(models.Model):
 
     class Meta:
         ordering = ["-updated_at"]
+        indexes = [
+            models.Index(fields=["organisation"], condition=Q(state__in=["dispatched", "active"]), name="mission_on_its_way_idx"),
+            models.Index(fields=["organisation", "ended_at"], condition=Q(ended_at__isnull=False), name="mission_just_ended_idx"),
+        ]
         constraints = [
             models.CheckConstraint(condition=Q(state__in=MissionState.values), name="mission_state_known"),
             models.CheckConstraint(

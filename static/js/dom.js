@@ -30,6 +30,13 @@ export function icon(name, size = "") {
   return svg("svg", { class: `icon ${size}`.trim(), "aria-hidden": "true" }, svg("use", { href: `${SPRITE}#${name}` }));
 }
 
+/** Puts children into an element only where they would be others than before: the pointer and the focus stay with the same ones. */
+export function refill(element, key, make) {
+  if (element.dataset.filled === key) return;
+  element.dataset.filled = key;
+  element.replaceChildren(...[make()].flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false && child !== ""));
+}
+
 /** Keeps a list's elements by key, so that focus, hover and transitions survive a new drawing. */
 export function keyedList(container, keyOf, make, refresh) {
   const kept = new Map();

@@ -126,6 +126,11 @@ export function clockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
 }
 
+/** With seconds: live pages and logs alone. */
+export function exactClockText(iso) {
+  return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
+}
+
 /** "now", "today, 11:40", "yesterday, 09:12", "10 Sep", "10 Sep 2025". */
 export function whenText(iso, now = new Date()) {
   const then = new Date(iso);

@@ -1,7 +1,7 @@
 """From what is found now to what changes: patience before an alert opens and before it closes, and one alert for one cause."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
@@ -14,9 +14,10 @@ CLEARED, LANDED = "cleared", "landed"  # why an alert is over
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """Also of one that is open: then with a higher level, or other words."""
+    """Also of one that is open: then with a higher level, or newer figures. `is_held`: it was worse, and has kept that level."""
 
     finding: Finding
+    is_held: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,8 @@ def _changes_of(detector: Detector, situation: Situation, findings: Iterable[Fin
         is_open = situation.open_levels.get(key)
         if is_open is not None or level is not None:
             highest = max((entry for entry in (is_open, level) if entry is not None), key=RANK.__getitem__)
-            found.append(Opened(finding if finding.level == highest else _at_level(finding, highest)))
+            is_held = RANK[finding.level] < RANK[highest]
+            found.append(Opened(finding if finding.level == highest else replace(finding, level=highest), is_held))
     for key in {*causes, *situation.open_levels}:
         if key[0] != detector.code or key in by_key:
             continue
@@ -84,7 +86,3 @@ def _lasting_level(cause: Cause, level: str, now_s: float, raise_after_s: float)
             cause.since_s.pop(name, None)
     lasting = [name for name, since_s in cause.since_s.items() if now_s - since_s >= raise_after_s]
     return max(lasting, key=RANK.__getitem__) if lasting else None
-
-
-def _at_level(finding: Finding, level: str) -> Finding:
-    return Finding(finding.code, level, finding.message, finding.values, finding.subject, finding.details)

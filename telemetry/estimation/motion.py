@@ -13,19 +13,19 @@ from telemetry.estimation.profile import LANDING_MPS, SLOW_BELOW_M, Profile
 
 FloatArray = NDArray[np.float64]
 
-# Calibrated on the truth generator, on seeds that no test uses; see tests/telemetry/estimation/calibration.py.
+# Calibrated on the truth generator, on seeds that no test uses; see benchmarks/estimator.py.
 ASIDE_S = 8.0  # how long it stays beside its route
 TURNS_S = 1.6  # how long it keeps a velocity that is not its route's
-OFF_ROUTE_M = 0.8  # standard deviation across the route, each way
+OFF_ROUTE_M = 0.7  # standard deviation across the route, each way
 OFF_ROUTE_S = 4.0  # until it is as far as that
 OFF_HEIGHT_M = 0.5
 BESIDE_SHARE = 0.3  # of what a velocity beside the route's makes, that may be otherwise
-SPEED_SD_MPS, SPEED_SHARE, SPEED_S = 0.35, 0.05, 4.0
+SPEED_SD_MPS, SPEED_SHARE, SPEED_S = 0.38, 0.06, 4.0
 BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
 STEERED_S = 6.0  # how long a velocity tells of one that a person steers
 STEERED_MPS2 = 0.9
-SHARED_M, SHARED_HEIGHT_M = 1.15, 1.0  # errors that reports share: of GPS, and of the barometer
+SHARED_M, SHARED_HEIGHT_M = 1.12, 0.95  # errors that reports share: of GPS, and of the barometer
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,15 +69,15 @@ class State:
         return self.home if self.phase is Phase.RETURN else None
 
 
-def after(state: State, after_s: float) -> Belief:
-    """after_s: since the report, at least 0."""
+def after(state: State, after_s: float, *, with_reach: bool = True) -> Belief:
+    """after_s: since the report, at least 0. Without its reach, which takes long, a belief's is that of a normal distribution."""
     followed = state.followed
     if followed is not None:
-        return _along(state, followed, after_s)
+        return _along(state, followed, after_s, with_reach=with_reach)
     if state.phase is Phase.GROUND:
         return _plain(state, after_s, 0.0, 0.0, 0.02 * after_s, 0.0)
     if state.phase is Phase.HOLD or state.phase is Phase.LAND:
-        return _plain(state, after_s, BRAKES_S, DRIFT_MPS * after_s, 0.1 * state_speed(state), 0.3)
+        return _plain(state, after_s, BRAKES_S, DRIFT_MPS * after_s, 0.3 * state_speed(state), 0.3)
     return _plain(state, after_s, STEERED_S, STEERED_MPS2 * min(after_s, 12.0) * math.sqrt(after_s + 0.25), 0.0, 1.0)
 
 
@@ -122,26 +122,26 @@ def _sunk(height_m: float, sinks_mps: float, after_s: float) -> tuple[float, flo
     return below_m, -fast_mps if fast_s == after_s else -LANDING_MPS
 
 
-def _along(state: State, track: Track, after_s: float) -> Belief:
+def _along(state: State, track: Track, after_s: float, *, with_reach: bool) -> Belief:
     """On its profile, with what it was beside it dying away: from each place on it, it is at the place where it was seen."""
-    profile, now = track.profile, ahead(track.profile, track.pace, 0.0)
-    later = ahead(profile, track.pace, after_s) if after_s > 0 else now
-    weight = later.weight
+    profile = track.profile
+    later = ahead(profile, track.pace, after_s)
+    weight, clock = later.weight, later.clock
     aside, turning = math.exp(-after_s / ASIDE_S), math.exp(-after_s / TURNS_S)
     turned_s = TURNS_S * (1.0 - turning)
-    at_report = np.interp(track.pace.nominal_s, profile.nominal_s, now.clock)
+    at_report = np.interp(track.pace.nominal_s, profile.nominal_s, clock)
     seen = (state.east_m, state.north_m, state.height_m)
     columns = (profile.east_m, profile.north_m, profile.height_m)
-    velocity_now = velocity(profile, now.clock, at_report)
-    each_mps = velocity(profile, later.clock, later.reading_s)
+    velocity_now = velocity(profile, clock, at_report)
+    each_mps = velocity(profile, clock, later.reading_s)
     places, speeds, beside_mps = [], [], []
     for place, column, told_mps, then, now_mps in zip(
         seen, columns, (state.east_mps, state.north_mps, state.up_mps), each_mps, velocity_now, strict=True
     ):
         besides_mps = told_mps - float(now_mps.mean())
-        each = np.interp(later.reading_s, later.clock, column) + besides_mps * turned_s
+        each = np.interp(later.reading_s, clock, column) + besides_mps * turned_s
         if place is not None:
-            each += np.repeat(place - np.interp(at_report, now.clock, column), len(weight) // len(at_report)) * aside
+            each += np.repeat(place - np.interp(at_report, clock, column), len(weight) // len(at_report)) * aside
         places.append(each)
         speeds.append(float(weight @ then) + besides_mps * turning)
         beside_mps.append(besides_mps)
@@ -164,8 +164,8 @@ def _along(state: State, track: Track, after_s: float) -> Belief:
         speeds[1],
         speeds[2],
         covariance,
-        reach2_of(off_east, off_north, weight, round_m2, covariance),
+        reach2_of(off_east, off_north, weight, round_m2, covariance) if with_reach else CHI2_95,
         math.sqrt(height_m2 + float(weight @ (places[2] - middle[2]) ** 2)),
         math.sqrt(SPEED_SD_MPS**2 + float(weight @ (level_mps - mean_mps) ** 2) + (SPEED_SHARE * mean_mps * settled) ** 2),
-        float(np.interp(float(weight @ later.reading_s), later.clock, profile.nominal_s)),
+        float(np.interp(float(weight @ later.reading_s), clock, profile.nominal_s)),
     )

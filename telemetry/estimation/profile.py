@@ -5,6 +5,7 @@ The clock knows accelerations, turns, climbs, wind and tasks; what really happen
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,9 +28,9 @@ SLOWEST_MPS = 0.5
 SLOWS_SHARE, LEAST_CORNER_SHARE = 0.5, 0.1  # of its speed in a corner, for each radian; never below
 STEPS = 12  # of a leg
 # Standard deviations of how long something takes, beside the speed.
-STRAIGHT_S, TURN_S = 0.15, 1.8  # at a waypoint that is passed, and by the sine of half the bend more
-STOP_S = 1.5
-CLIMB_SHARE = 0.18  # of the time that a leg takes because of its height
+STRAIGHT_S, TURN_S = 0.15, 1.6  # at a waypoint that is passed, and by the sine of half the bend more
+STOP_S = 1.6
+CLIMB_SHARE = 0.22  # of the time that a leg takes because of its height
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,7 @@ class Profile:
     reached: IntArray
     ends_in_air: bool
 
-    @property
+    @cached_property
     def nominal_s(self) -> FloatArray:
         return self.moving_s + self.standing_s
 

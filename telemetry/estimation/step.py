@@ -59,7 +59,7 @@ def first_state(course: Course, report: Report) -> State | None:
 def next_state(course: Course, state: State, report: Report) -> State:
     """report: measured no earlier than the state's."""
     told, after_s = report.measurement, max(report.measured_s - state.report_s, 0.0)
-    belief = after(state, after_s)
+    belief = after(state, after_s, with_reach=False)
     said = phase_of(told.mode, is_armed=told.is_armed, is_in_air=told.is_in_air)
     phase = said or state.phase
     place = _place(course, told)

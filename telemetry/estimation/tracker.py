@@ -2,13 +2,17 @@
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from statistics import median
 
 import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from telemetry.estimation.belief import Belief
+from telemetry.estimation.contact import PROMPT_S, SILENT_INTERVALS, SILENT_S, Hearing
 from telemetry.estimation.estimate import Arrival, Ellipse, Estimate
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import State, after
@@ -39,9 +43,28 @@ class Tracker:
     _reports: list[Report] = field(default_factory=list)
     _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
     _outlook: tuple[float, tuple[Arrival, ...], Arrival | None] | None = None
+    _hearing: Hearing | None = None
+    _received_s: float = -math.inf
+
+    @property
+    def newest(self) -> Report | None:
+        """By the time of measurement."""
+        return self._reports[-1] if self._reports else None
+
+    def is_silent(self, at_s: float) -> bool:
+        """Nothing has come for longer than usual, though something had."""
+        quiet_s = at_s - self._received_s
+        return bool(self._reports) and quiet_s > SILENT_S and quiet_s > SILENT_INTERVALS * self._usual_interval_s()
+
+    def learn(self, places: Sequence[LonLat]) -> None:
+        """Where on earlier flights something was heard promptly."""
+        if self._hearing is not None and places:
+            self._hearing.learn(self._frame.to_metres(np.array(places)))
 
     def take(self, report: Report) -> None:
         read = sound(report)
+        if read is not None:
+            self._received_s = max(self._received_s, read.received_s)
         if read is None or (self._reports and read.measured_s < self._reports[-1].measured_s - KEPT_S):
             return
         place = bisect_right(self._reports, read.measured_s, key=lambda known: known.measured_s)
@@ -55,6 +78,7 @@ class Tracker:
             self._states.insert(place, None)
         self._go_through(place)
         self._outlook = None
+        self._note_heard(read)
         self._forget()
 
     def estimate(self, at_s: float) -> Estimate | None:
@@ -81,7 +105,19 @@ class Tracker:
             profile = profile_of(self.knowledge)
             frame = LocalFrame.around(told.longitude_deg, told.latitude_deg) if profile is None else profile.frame
             self._course = Course(self.knowledge, frame, profile)
+            self._hearing = None if profile is None else Hearing(profile)
         return first_state(self._course, report)
+
+    def _note_heard(self, report: Report) -> None:
+        told = report.measurement
+        if self._hearing is None or told.longitude_deg is None or told.latitude_deg is None:
+            return
+        if report.received_s - report.measured_s < PROMPT_S:
+            self._hearing.learn(self._frame.to_metres(np.array([[told.longitude_deg, told.latitude_deg]])))
+
+    def _usual_interval_s(self) -> float:
+        last = [report.measured_s for report in self._reports[-10:]]
+        return median(later - earlier for earlier, later in pairwise(last)) if len(last) > 1 else 1.0
 
     def _forget(self) -> None:
         oldest_s = self._reports[-1].measured_s - KEPT_S
@@ -138,6 +174,7 @@ class Tracker:
             waypoint_sequence=estimate.waypoint_sequence if sequence < 0 else sequence,
             along_route_m=along_m,
             to_go_m=profile.length_m - along_m,
+            contact_expected_s=self._hearing.expected_s(state, along_m, at_s) if self._hearing and self.is_silent(at_s) else None,
             arrivals=tuple(_not_past(arrival, at_s) for arrival in arrivals if arrival.latest_s > at_s),
         )
 

@@ -46,12 +46,11 @@ class Telling:
             if session.second_sender is None or session.peer is None:
                 continue
             other, last_s = session.second_sender
-            words = ""
             if now_s - last_s < SECOND_SENDER_GONE_S:
-                words = f"Two senders say that they are {session.uav.name}: {session.peer.name}, which is believed, and {other}."
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other)
             else:
                 session.second_sender = None
-            await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, words=words)
+                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id)
 
     async def flown(self) -> None:
         """In order, each as often as it takes."""

@@ -15,6 +15,7 @@ from telemetry.live.missions import missions_json
 from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
 from telemetry.selectors.live import Key
+from telemetry.serializers.alerts import alert_json
 from workspace.stored_words import in_words
 
 SAME_IN_ALL = ""  # the language of what has no words
@@ -40,25 +41,7 @@ def texts_of(keys: Iterable[Key], language: str) -> dict[Key, str]:
 
 def _alerts(ids: list[str]) -> list[dict[str, Any]]:
     alerts = Alert.objects.filter(pk__in=ids).select_related("acknowledged_by").annotate(note_count=Count("notes"))
-    return [
-        {
-            "id": alert.pk,
-            "uav": alert.uav_id,
-            "mission": alert.mission_id,
-            "level": alert.level,
-            "code": alert.code,
-            "subject": alert.subject,
-            "message": in_words(alert.message),
-            "details": alert.details,
-            "opened_at": alert.opened_at,
-            "closed_at": alert.closed_at,
-            "acknowledged_at": alert.acknowledged_at,
-            "acknowledged_by": alert.acknowledged_by.username if alert.acknowledged_by else None,
-            "revision": alert.revision,
-            "notes": alert.note_count,
-        }
-        for alert in alerts
-    ]
+    return [alert_json(alert, note_count=alert.note_count) for alert in alerts]
 
 
 def _commands(ids: list[str]) -> list[dict[str, Any]]:

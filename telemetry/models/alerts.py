@@ -33,10 +33,12 @@ class Alert(models.Model):
     close_reason = models.CharField(max_length=30, blank=True, db_default="", default="", help_text="cleared, landed, mission-ended")
     acknowledged_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     acknowledged_at = models.DateTimeField(null=True, blank=True)
+    course = models.JSONField(default=list, db_default=[], blank=True, help_text="what became of it: at, what, level, by, reason")
     revision = models.PositiveIntegerField(default=1, db_default=1, help_text="counts the changes")
 
     class Meta:
         ordering = ["-opened_at"]
+        indexes = [models.Index(fields=["organisation", "closed_at"], name="alert_open_or_just_closed_idx")]
         constraints = [
             models.UniqueConstraint(fields=["uav", "code", "subject"], condition=Q(closed_at=None), name="alert_one_open_of_a_cause"),
             models.CheckConstraint(condition=Q(level__in=AlertLevel.values), name="alert_level_known"),

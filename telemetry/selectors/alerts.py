@@ -1,14 +1,16 @@
-"""Alerts as they are, and in words."""
+"""Alerts as they are."""
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
+from uuid import UUID
 
-from django.utils.translation import gettext
+from django.db.models import Count, QuerySet
 
 from telemetry.models import Alert
+from workspace.models import Organisation
 
 MIXED = "mission-mixed"  # a code
 
@@ -35,9 +37,32 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
     return found
 
 
-def alert_words(message: str, values: Mapping[str, Any]) -> str:
-    """What an alert says, in the reader's language; a message without values is as it was stored."""
-    try:
-        return gettext(message) % values if values else gettext(message) if message else ""
-    except (KeyError, TypeError, ValueError):
-        return message
+def alerts_of_organisation(organisation: Organisation) -> QuerySet[Alert]:
+    return Alert.objects.filter(organisation=organisation).select_related("acknowledged_by").annotate(note_count=Count("notes"))
+
+
+@dataclass(frozen=True, slots=True)
+class AlertFilter:
+    """None, or empty: whatever it is."""
+
+    is_open: bool | None = None
+    is_acknowledged: bool | None = None
+    levels: tuple[str, ...] = ()
+    codes: tuple[str, ...] = ()
+    uav_id: int | None = None
+    mission_id: UUID | None = None
+    opened_from: datetime | None = None
+    opened_before: datetime | None = None
+
+
+def alerts_that_match(organisation: Organisation, wanted: AlertFilter) -> QuerySet[Alert]:
+    alerts = alerts_of_organisation(organisation)
+    if wanted.is_open is not None:
+        alerts = alerts.filter(closed_at__isnull=wanted.is_open)
+    if wanted.is_acknowledged is not None:
+        alerts = alerts.filter(acknowledged_at__isnull=not wanted.is_acknowledged)
+    values: dict[str, Any] = {
+        "level__in": wanted.levels, "code__in": wanted.codes, "uav": wanted.uav_id, "mission": wanted.mission_id,
+        "opened_at__gte": wanted.opened_from, "opened_at__lt": wanted.opened_before,
+    }  # fmt: skip
+    return alerts.filter(**{name: value for name, value in values.items() if value})

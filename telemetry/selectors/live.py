@@ -63,7 +63,7 @@ FROM asked JOIN missions_mission mission ON mission.organisation_id = asked.orga
 WHERE mission.deleted_at IS NULL AND (mission.state IN ('dispatched', 'active') OR mission.ended_at > now() - interval '1 hour'
     OR mission.id = ANY(asked.missions))
 UNION ALL
-SELECT 'alerts', alert.id::text, hashtextextended(ROW(alert.revision, alert.level, alert.code, alert.message, alert.details,
+SELECT 'alerts', alert.id::text, hashtextextended(ROW(alert.revision, alert.level, alert.code, alert.message, alert.values, alert.details,
         alert.closed_at, alert.acknowledged_at, (SELECT count(*) FROM telemetry_alertnote note WHERE note.alert_id = alert.id))::text, 0),
     true, CASE WHEN alert.mission_id IS NULL THEN coalesce(member.missions, '{}') ELSE ARRAY[alert.mission_id] END
 FROM asked JOIN telemetry_alert alert ON alert.organisation_id = asked.organisation_id

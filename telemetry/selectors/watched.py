@@ -11,6 +11,7 @@ from django.db import connection
 from inspection.geodesy import LonLat
 from missions.models import MissionState
 from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.contact import PROMPT_S
 from telemetry.estimation.report import Report
 from telemetry.exports.logged_record import REPORTED
 
@@ -23,7 +24,7 @@ STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UA
 class WatchedFlight:
     """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
 
-    From `home` on, what UavLink has of it.
+    From `home` on, what UavLink has of it; `heard_at` only by a gateway, which tells with it how the UAV does.
     """
 
     uav_id: int
@@ -44,7 +45,8 @@ _FLYING = """
 SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.organisation_id, uav.name, mission.id, approval.id,
     CASE WHEN link.loaded_approval = approval.id AND link.loaded_flight IS NOT NULL THEN link.loaded_flight
         ELSE route.flights_flown + 1 END,
-    ST_X(link.home), ST_Y(link.home), link.heard_at, coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence
+    ST_X(link.home), ST_Y(link.home), CASE WHEN link.autopilot <> '' THEN link.heard_at END,
+    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence
 FROM missions_mission mission
 JOIN missions_missionuav place ON place.mission_id = mission.id AND place.uav_id IS NOT NULL
 JOIN missions_uav uav ON uav.id = place.uav_id
@@ -68,6 +70,14 @@ SELECT record.* FROM unnest(%s::bigint[]) AS uav(id), LATERAL (
     WHERE uav_id = uav.id AND NOT is_from_future ORDER BY measured_at DESC LIMIT %s
 ) record ORDER BY measured_at
 """  # noqa: S608
+_HEARD = """
+SELECT ST_X(position), ST_Y(position) FROM (
+    SELECT position, received_at - measured_at AS took, row_number() OVER () AS number FROM (
+        SELECT position, measured_at, received_at FROM telemetry_telemetryrecord
+        WHERE uav_id = %s AND NOT is_from_future AND position IS NOT NULL ORDER BY measured_at DESC LIMIT %s
+    ) newest
+) numbered WHERE took < make_interval(secs => %s) AND number %% %s = 0
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +116,13 @@ def reports_stored_after(last_id: int, *, but: Collection[int], uav_ids: Sequenc
 def newest_reports(uav_ids: Sequence[int], *, most: int) -> list[StoredReport]:
     """The newest of each UAV by the time of measurement, in its order."""
     return _reports(_NEWEST, [list(uav_ids), most])
+
+
+def places_heard(uav_id: int, *, most: int, every: int) -> list[LonLat]:
+    """Where the newest records of a UAV were measured that came promptly: one of so many."""
+    with connection.cursor() as cursor:
+        cursor.execute(_HEARD, [uav_id, most, PROMPT_S, every])
+        return [LonLat(lon, lat) for lon, lat in cursor.fetchall()]
 
 
 def _reports(statement: str, values: list[Any]) -> list[StoredReport]:

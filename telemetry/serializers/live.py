@@ -5,7 +5,7 @@ from rest_framework import serializers
 from missions.fields import PositionField
 from missions.models import LinkKind, MissionState, OfferState, TargetState
 from missions.serializers.commands import CommandSerializer
-from telemetry.models import AlertLevel
+from telemetry.serializers.alerts import AlertSerializer
 
 
 class LoadedSerializer(serializers.Serializer):
@@ -91,7 +91,7 @@ class LiveTargetSerializer(serializers.Serializer):
     uav = serializers.IntegerField(allow_null=True, help_text="place of the UAV that flies to it")
 
 
-class TargetCountsSerializer(serializers.Serializer):
+class LiveTargetCountsSerializer(serializers.Serializer):
     complete = serializers.IntegerField()
     all = serializers.IntegerField()
 
@@ -106,24 +106,7 @@ class LiveMissionSerializer(serializers.Serializer):
     ended_at = serializers.DateTimeField(allow_null=True)
     uavs = MissionPlaceSerializer(many=True)
     targets = LiveTargetSerializer(many=True)
-    counts = TargetCountsSerializer()
-
-
-class LiveAlertSerializer(serializers.Serializer):
-    id = serializers.IntegerField()
-    uav = serializers.IntegerField(allow_null=True)
-    mission = serializers.UUIDField(allow_null=True)
-    level = serializers.ChoiceField(choices=AlertLevel.choices)
-    code = serializers.CharField()
-    subject = serializers.CharField(allow_blank=True)
-    message = serializers.CharField()
-    details = serializers.JSONField()
-    opened_at = serializers.DateTimeField()
-    closed_at = serializers.DateTimeField(allow_null=True)
-    acknowledged_at = serializers.DateTimeField(allow_null=True)
-    acknowledged_by = serializers.CharField(allow_null=True)
-    revision = serializers.IntegerField()
-    notes = serializers.IntegerField(help_text="how many there are")
+    counts = LiveTargetCountsSerializer()
 
 
 class LiveOfferSerializer(serializers.Serializer):
@@ -141,7 +124,7 @@ class LiveOfferSerializer(serializers.Serializer):
 class LiveSerializer(serializers.Serializer):
     uavs = LiveUavSerializer(many=True, help_text="that fly a mission or were heard within a day; the mission's, if one is asked for")
     missions = LiveMissionSerializer(many=True, help_text="on their way, or ended within the hour; the one asked for, whatever its state")
-    alerts = LiveAlertSerializer(many=True, help_text="open, or closed within the hour")
+    alerts = AlertSerializer(many=True, help_text="open, or closed within the hour")
     commands = CommandSerializer(many=True, help_text="not finished, or finished within ten minutes")
     offers = LiveOfferSerializer(many=True, help_text="of another plan: undecided, or decided within ten minutes")
 

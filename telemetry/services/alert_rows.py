@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime, timedelta
 
 from django.db import connection, transaction
-from django.db.models import F, QuerySet
+from django.db.models import F
 from django.db.models.functions import Now
 
 from missions.models import MissionState
@@ -13,6 +13,7 @@ from telemetry.alerting.book import RANK, Closed, Opened
 from telemetry.alerting.watched import WatchedUav
 from telemetry.models import Alert
 from telemetry.selectors.alerts import OpenRow
+from telemetry.services.alerts import CLOSED, OPENED, step
 
 WORDS_STAND_FOR = timedelta(seconds=5)  # newer figures of the same cause are written no more often
 WATCHED_STATES = (MissionState.DISPATCHED, MissionState.ACTIVE)
@@ -22,11 +23,18 @@ _RENEW = """
 UPDATE telemetry_alert alert
 SET level = told.level, message = told.message, "values" = told.vals::jsonb, details = told.details::jsonb, written_at = %s,
     revision = alert.revision + 1,
+    course = CASE WHEN told.is_raised THEN alert.course || jsonb_build_object('at', %s::text, 'what', 'rose', 'level', told.level)
+        ELSE alert.course END,
     acknowledged_at = CASE WHEN told.is_raised THEN NULL ELSE alert.acknowledged_at END,
     acknowledged_by_id = CASE WHEN told.is_raised THEN NULL ELSE alert.acknowledged_by_id END
 FROM unnest(%s::bigint[], %s::text[], %s::text[], %s::text[], %s::text[], %s::bool[])
     AS told(id, level, message, vals, details, is_raised)
 WHERE alert.id = told.id AND alert.closed_at IS NULL
+"""
+
+_CLOSE = """
+UPDATE telemetry_alert SET closed_at = %s, close_reason = %s, revision = revision + 1, course = course || %s::jsonb
+WHERE id = ANY(%s) AND closed_at IS NULL
 """
 
 
@@ -49,7 +57,7 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
                 Alert(
                     organisation_id=uav.organisation_id, uav_id=uav.uav_id, mission_id=uav.mission_id, level=finding.level,
                     code=finding.code, subject=finding.subject, message=finding.message, values=finding.values, details=finding.details,
-                    opened_at=now, written_at=now,
+                    opened_at=now, written_at=now, course=[step(OPENED, now, level=finding.level)],
                 )
             )  # fmt: skip
             organisations.add(uav.organisation_id)
@@ -63,10 +71,9 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
         Alert.objects.bulk_create(new, ignore_conflicts=True)
         if renewed:
             with connection.cursor() as cursor:
-                cursor.execute(_RENEW, [now, *(list(column) for column in zip(*sorted(renewed), strict=True))])
+                cursor.execute(_RENEW, [now, now.isoformat(), *(list(column) for column in zip(*sorted(renewed), strict=True))])
         for reason in {reason for _, reason in closed}:
-            ids = sorted(row_id for row_id, of_row in closed if of_row == reason)
-            _close(Alert.objects.filter(pk__in=ids), reason, now)
+            _close([row_id for row_id, of_row in closed if of_row == reason], reason, now)
     return organisations
 
 
@@ -76,16 +83,18 @@ def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[in
     over = over.exclude(uav__in=but).exclude(uav__watch__mission=F("mission"), uav__watch__lease_expires_at__gt=Now())
     found = dict(over.values_list("pk", "organisation_id"))
     if found:
-        _close(Alert.objects.filter(pk__in=sorted(found)), MISSION_ENDED, now)
+        _close(list(found), MISSION_ENDED, now)
     return set(found.values())
 
 
-def _close(alerts: QuerySet[Alert], reason: str, now: datetime) -> None:
-    alerts.filter(closed_at=None).update(closed_at=now, close_reason=reason, revision=F("revision") + 1)
+def _close(ids: Sequence[int], reason: str, now: datetime) -> None:
+    with connection.cursor() as cursor:
+        cursor.execute(_CLOSE, [now, reason, json.dumps([step(CLOSED, now, reason=reason)]), ids])
 
 
 def _is_worth_writing(row: OpenRow, change: Opened, now: datetime) -> bool:
+    """Where an alert keeps a level that was worse, the words that told of it stay."""
     finding = change.finding
     if finding.level != row.level or finding.message != row.message:
-        return True
+        return not change.is_held
     return finding.values != row.values and now - row.written_at >= WORDS_STAND_FOR

@@ -132,8 +132,10 @@ def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> Held:
 
 
 def _sound(stated: Sequence[Mapping[str, float]]) -> Limits:
-    """Limits that were stored past their check do not blind the watch."""
-    try:
-        return limits_of(*stated)
-    except InvalidLimits:
-        return Limits()
+    """A mission's that do not fit its UAV's type are passed over, and limits stored past their check do not blind the watch."""
+    for believed in (stated, stated[:1]):
+        try:
+            return limits_of(*believed)
+        except InvalidLimits:
+            continue
+    return Limits()

@@ -1,45 +1,123 @@
-"""Alerts: opened with their cause, closed with it."""
+"""Alerts: opened with their cause, closed with it, acknowledged and noted by people."""
 
 from typing import Any
 
+from django.db import transaction
+from django.db.models import F
 from django.utils import timezone
 
 from missions.models import Mission, Uav
-from telemetry.models import Alert, AlertLevel
+from telemetry.alerting.book import CLEARED, RANK
+from telemetry.models import Alert, AlertLevel, AlertNote
+from workspace.live import publish_live
+from workspace.models import User
+from workspace.services import record_change
 
 SECOND_SENDER = "second-sender"
+SENDERS = "Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."
+OPENED, ROSE, ACKNOWLEDGED, CLOSED = "opened", "rose", "acknowledged", "closed"
+
+
+def step(what: str, at: Any, **facts: Any) -> dict[str, Any]:
+    """Of an alert's course."""
+    return {"at": at.isoformat(), "what": what, **facts}
 
 
 def open_alert(
-    *, uav: Uav, level: AlertLevel, code: str, message: str, mission: Mission | None = None, details: dict[str, Any] | None = None
+    *,
+    uav: Uav,
+    level: AlertLevel,
+    code: str,
+    message: str,
+    values: dict[str, Any] | None = None,
+    mission: Mission | None = None,
+    details: dict[str, Any] | None = None,
 ) -> Alert:
-    """Of one cause there is one open alert: opened again, it says the newer words."""
+    """Of one cause there is one open alert: opened again, it says the newer words. `message` is a template for the values.
+
+    Its level may change; raised, it is not acknowledged any more.
+    """
     now = timezone.now()
     alert = Alert(
-        organisation_id=uav.organisation_id, uav=uav, mission=mission, level=level, code=code, message=message[:500],
-        details=details or {}, opened_at=now,
+        organisation_id=uav.organisation_id, uav=uav, mission=mission, level=level, code=code, message=message[:500], values=values or {},
+        details=details or {}, opened_at=now, written_at=now, course=[step(OPENED, now, level=str(level))],
     )  # fmt: skip
-    inserted = Alert.objects.bulk_create([alert], ignore_conflicts=True)
-    open_one = Alert.objects.filter(uav=uav, code=code, closed_at=None).first()
-    if open_one is None:  # closed in this moment
-        return inserted[0]
-    if (open_one.message, open_one.details, open_one.level) != (alert.message, alert.details, alert.level):
-        Alert.objects.filter(pk=open_one.pk).update(message=alert.message, details=alert.details, level=level)
-        open_one.refresh_from_db()
+    with transaction.atomic():
+        inserted = Alert.objects.bulk_create([alert], ignore_conflicts=True)
+        open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject="", closed_at=None).first()
+        if open_one is None:  # closed in this moment
+            return inserted[0]
+        said = (alert.message, alert.values, alert.details, alert.level)
+        if (open_one.message, open_one.values, open_one.details, open_one.level) != said:
+            if RANK[level] > RANK[open_one.level]:
+                open_one.acknowledged_at = open_one.acknowledged_by = None
+                open_one.course = [*open_one.course, step(ROSE, now, level=str(level))]
+            open_one.message, open_one.values, open_one.details, open_one.level = said
+            open_one.written_at, open_one.revision = now, open_one.revision + 1
+            open_one.save()
+        _tell(uav.organisation_id)
     return open_one
 
 
 def close_alert(*, uav: Uav, code: str) -> bool:
     """Whether one was open."""
-    return bool(Alert.objects.filter(uav=uav, code=code, closed_at=None).update(closed_at=timezone.now()))
+    now = timezone.now()
+    with transaction.atomic():
+        alert = Alert.objects.select_for_update().filter(uav=uav, code=code, closed_at=None).first()
+        if alert is None:
+            return False
+        Alert.objects.filter(pk=alert.pk).update(
+            closed_at=now, close_reason=CLEARED, revision=F("revision") + 1, course=[*alert.course, step(CLOSED, now, reason=CLEARED)]
+        )
+        _tell(uav.organisation_id)
+    return True
 
 
-def tell_of_second_sender(*, uav_id: int, words: str) -> None:
-    """Without words it is over."""
+def acknowledge_alert(*, alert: Alert, actor: User, note: str = "") -> Alert:
+    """It goes on, and is silent. Acknowledged again it stays with who was first, and the note is added."""
+    now = timezone.now()
+    with transaction.atomic():
+        held = Alert.objects.select_for_update().get(pk=alert.pk)
+        if held.acknowledged_at is None:
+            held.acknowledged_at, held.acknowledged_by = now, actor
+            held.course = [*held.course, step(ACKNOWLEDGED, now, by=actor.get_full_name() or actor.username)]
+            held.revision += 1
+            held.save(update_fields=["acknowledged_at", "acknowledged_by", "course", "revision"])
+            after = {"code": held.code, "level": held.level, "uav": held.uav_id, "note": note}
+            _record(held, actor, "acknowledge", after)
+        if note:
+            note_alert(alert=held, actor=actor, text=note)
+        _tell(held.organisation_id)
+    return held
+
+
+def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:
+    with transaction.atomic():
+        Alert.objects.filter(pk=alert.pk).update(revision=F("revision") + 1)
+        note = AlertNote.objects.create(alert=alert, author=actor, text=text)
+        note.refresh_from_db()
+        _record(alert, actor, "note", {"note": note.pk, "text": text})
+        _tell(alert.organisation_id)
+    return note
+
+
+def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "") -> None:
+    """Without another one it is over."""
     uav = Uav.objects.filter(pk=uav_id).first()
     if uav is None:
         return
-    if words:
-        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=words)
+    if other:
+        values = {"uav": uav.name, "believed": believed, "other": other}
+        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=SENDERS, values=values)
     else:
         close_alert(uav=uav, code=SECOND_SENDER)
+
+
+def _record(alert: Alert, actor: User, action: str, after: dict[str, Any]) -> None:
+    record_change(
+        organisation=alert.organisation, actor=actor, action=action, subject_type="alert", subject_id=alert.pk, after=after
+    )  # fmt: skip
+
+
+def _tell(organisation_id: int) -> None:
+    transaction.on_commit(lambda: publish_live(organisation_id))

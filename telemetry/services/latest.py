@@ -6,24 +6,13 @@ report without a position leaves the last position there, with its own age. What
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any, Protocol
 
 from django.db import connection
 
 from telemetry.decoding.measurement import Measurement
-
-REPORT = "report"  # the group of the newest report as such: when it was measured and received
-FIELDS = {
-    "height": ("altitude_relative_m", "altitude_amsl_m", "altitude_agl_m"),
-    "attitude": ("heading_deg", "roll_deg", "pitch_deg"),
-    "battery": ("battery_percent", "battery_v", "battery_a"),
-    "state": ("mode", "is_armed", "is_in_air"),
-    "link": ("link_quality_percent",),
-    "gps": ("gps_fix", "satellites", "hdop"),
-    "waypoint": ("waypoint_sequence",),
-}
 
 
 class Report(Protocol):
@@ -56,40 +45,72 @@ WHERE EXISTS (SELECT FROM jsonb_each(excluded.measured) WHERE {_IS_NEWER})
 def note_latest(reports: Iterable[Report]) -> None:
     """Of reports that are not from the future; in any order, and again."""
     newest: dict[int, dict[str, dict[str, Any]]] = {}
-    for report in sorted(reports, key=lambda report: report.measured_at):
-        newest.setdefault(report.uav_id, {}).update(groups_of(report))
+    for report in sorted(reports, key=lambda report: report.measured_at, reverse=True):
+        known = newest.setdefault(report.uav_id, {})
+        if len(known) < len(_READ):
+            _add_what_is_missing(known, report)
     if not newest:
         return
     with connection.cursor() as cursor:
         cursor.execute(NOTE, [list(newest), [json.dumps(groups) for groups in newest.values()]])
 
 
-def groups_of(report: Report) -> dict[str, dict[str, Any]]:
-    """What the report tells, each group with its time as text of one length, so that texts compare as times do."""
-    measured_at = time_text(report.measured_at)
-    told = report.measurement
-    values: dict[str, dict[str, Any]] = {
-        name: {field: getattr(told, field) for field in fields} for name, fields in FIELDS.items() if _is_told(told, fields)
-    }
-    if told.longitude_deg is not None and told.latitude_deg is not None:
-        values["position"] = {"position": [told.longitude_deg, told.latitude_deg]}
-    if told.velocity_north_mps is not None and told.velocity_east_mps is not None:
-        climb_mps = None if told.velocity_down_mps is None else -told.velocity_down_mps
-        values["speed"] = {"speed_mps": math.hypot(told.velocity_north_mps, told.velocity_east_mps), "climb_mps": climb_mps}
-    if told.wind_north_mps is not None and told.wind_east_mps is not None:
-        values["wind"] = _wind(told.wind_north_mps, told.wind_east_mps)
-    values[REPORT] = {"received_at": time_text(report.received_at)}
-    return {name: {"measured_at": measured_at, **group} for name, group in values.items()}
+def _add_what_is_missing(known: dict[str, dict[str, Any]], report: Report) -> None:
+    """Each group with its time as text of one length, so that texts compare as times do."""
+    for name, read in _READ.items():
+        if name not in known and (values := read(report)) is not None:
+            known[name] = {"measured_at": time_text(report.measured_at), **values}
 
 
 def time_text(at: datetime) -> str:
     return at.astimezone(UTC).isoformat(timespec="microseconds")
 
 
-def _is_told(told: Measurement, fields: Sequence[str]) -> bool:
-    return any(getattr(told, field) not in (None, "") for field in fields)
+def _report(report: Report) -> dict[str, Any]:
+    return {"received_at": time_text(report.received_at)}
 
 
-def _wind(north_mps: float, east_mps: float) -> dict[str, float]:
+def _position(report: Report) -> dict[str, Any] | None:
+    told = report.measurement
+    return None if told.longitude_deg is None else {"position": [told.longitude_deg, told.latitude_deg]}
+
+
+def _speed(report: Report) -> dict[str, Any] | None:
+    told = report.measurement
+    if told.velocity_north_mps is None or told.velocity_east_mps is None:
+        return None
+    climb_mps = None if told.velocity_down_mps is None else -told.velocity_down_mps
+    return {"speed_mps": math.hypot(told.velocity_north_mps, told.velocity_east_mps), "climb_mps": climb_mps}
+
+
+def _wind(report: Report) -> dict[str, Any] | None:
     """Pilots are told where it comes from; the log keeps where the air goes."""
+    north_mps, east_mps = report.measurement.wind_north_mps, report.measurement.wind_east_mps
+    if north_mps is None or east_mps is None:
+        return None
     return {"wind_speed_mps": math.hypot(north_mps, east_mps), "wind_from_deg": math.degrees(math.atan2(-east_mps, -north_mps)) % 360.0}
+
+
+def _as_told(fields: Sequence[str]) -> Callable[[Report], dict[str, Any] | None]:
+    """Together as soon as one of them is known."""
+
+    def read(report: Report) -> dict[str, Any] | None:
+        values = {field: getattr(report.measurement, field) for field in fields}
+        return values if any(value not in (None, "") for value in values.values()) else None
+
+    return read
+
+
+_READ: dict[str, Callable[[Report], dict[str, Any] | None]] = {
+    "report": _report,
+    "position": _position,
+    "speed": _speed,
+    "wind": _wind,
+    "height": _as_told(("altitude_relative_m", "altitude_amsl_m", "altitude_agl_m")),
+    "attitude": _as_told(("heading_deg", "roll_deg", "pitch_deg")),
+    "battery": _as_told(("battery_percent", "battery_v", "battery_a")),
+    "state": _as_told(("mode", "is_armed", "is_in_air")),
+    "link": _as_told(("link_quality_percent",)),
+    "gps": _as_told(("gps_fix", "satellites", "hdop")),
+    "waypoint": _as_told(("waypoint_sequence",)),
+}

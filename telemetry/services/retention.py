@@ -18,6 +18,11 @@ DELETE FROM telemetry_telemetryrecord WHERE id = ANY(ARRAY(
     SELECT id FROM telemetry_telemetryrecord WHERE received_at < %s LIMIT %s FOR UPDATE SKIP LOCKED
 ))
 """
+_FORGET_ESTIMATES = """
+DELETE FROM telemetry_positionestimate WHERE id = ANY(ARRAY(
+    SELECT id FROM telemetry_positionestimate WHERE estimated_for < %s ORDER BY id LIMIT %s FOR UPDATE SKIP LOCKED
+))
+"""
 _FORGET_STREAMS = """
 DELETE FROM telemetry_telemetrystream stream WHERE started_at < %s
     AND NOT EXISTS (SELECT 1 FROM telemetry_telemetryrecord record WHERE record.stream_id = stream.id)
@@ -26,7 +31,7 @@ DELETE FROM telemetry_telemetrystream stream WHERE started_at < %s
 
 
 def forget_old_telemetry() -> int:
-    """Records, texts and logs of flights that are older than TELEMETRY_DAYS; 0 keeps all. Returns how many records went.
+    """Records, estimates, texts and logs of flights that are older than TELEMETRY_DAYS; 0 keeps all. Returns how many records went.
 
     Results of inspections stay. Ends after a while; the next call goes on.
     """
@@ -40,6 +45,10 @@ def forget_old_telemetry() -> int:
             forgotten += cursor.rowcount
             if cursor.rowcount < ROWS_AT_ONCE:
                 cursor.execute(_FORGET_STREAMS, [before])
+                break
+        while time.monotonic() < until_s:
+            cursor.execute(_FORGET_ESTIMATES, [before, ROWS_AT_ONCE])
+            if cursor.rowcount < ROWS_AT_ONCE:
                 break
     VehicleText.objects.filter(received_at__lt=before).delete()
     for log in FlightLog.objects.filter(ended_at__lt=before):

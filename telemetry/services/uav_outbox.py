@@ -21,6 +21,8 @@ MOST_AT_ONCE = 10
 OTHER_CONTENT = "other-content"
 REFUSED = "refused-by-uav"
 HOLDS_OTHER = "holds-other-content"  # an alert's code
+HOLDS = "The UAV %(uav)s holds something else than what was approved."
+SAYS_NOTHING = "The UAV %(uav)s does not say what it holds."
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,10 @@ def _note_upload(command: UavCommand, told: Acknowledgement, holding: dict[str, 
     noted = note_failed(command.pk, OTHER_CONTENT, words, **holding)
     _hold(command, None)
     if noted:
-        open_alert(uav=command.uav, level=AlertLevel.CRITICAL, code=HOLDS_OTHER, message=words, mission=command.mission)
+        open_alert(
+            uav=command.uav, level=AlertLevel.CRITICAL, code=HOLDS_OTHER, message=HOLDS if told.content_sha256 else SAYS_NOTHING,
+            values={"uav": command.uav.name}, mission=command.mission,
+        )  # fmt: skip
     return noted, words
 
 

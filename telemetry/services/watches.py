@@ -46,8 +46,12 @@ WHERE mission_id IS NOT NULL AND NOT uav_id = ANY(%s) AND (lease_expires_at IS N
 """
 _SHOW = """
 UPDATE telemetry_uavwatch watch SET estimated = made.estimated, mission_id = made.mission, version = version + 1, updated_at = now()
-FROM unnest(%s::bigint[], %s::uuid[], %s::jsonb[]) AS made(uav, mission, estimated)
-WHERE watch.uav_id = made.uav AND watch.holder = %s
+FROM (
+    SELECT made.* FROM unnest(%s::bigint[], %s::uuid[], %s::jsonb[]) AS made(uav, mission, estimated)
+    JOIN telemetry_uavwatch held ON held.uav_id = made.uav AND held.holder = %s
+    ORDER BY held.uav_id FOR NO KEY UPDATE OF held -- in which records are stored, too: neither locks the other out
+) made
+WHERE watch.uav_id = made.uav
 RETURNING watch.uav_id, watch.organisation_id
 """
 _REPLACE = """

@@ -39,7 +39,7 @@ class Sampling:
 
 def asked_log(request: Request) -> LogFilter:
     """Without a UAV, a mission or a beginning: of the last day. Raises ApiProblem 400."""
-    uav_id, mission_id = _uav(request), _mission(request)
+    uav_id, mission_id = uav_of(request), mission_of(request)
     wanted = LogFilter(uav_id, mission_id, time_of(request, "from"), time_of(request, "to"), box_of(request))
     if uav_id is None and mission_id is None and wanted.measured_from is None:
         last_day = (wanted.measured_before or timezone.now()) - USUAL_SPAN
@@ -75,14 +75,14 @@ def _seconds(text: str) -> float:
     return value
 
 
-def _uav(request: Request) -> int | None:
+def uav_of(request: Request) -> int | None:
     text = request.query_params.get("uav", "")
     if text and not (text.isascii() and text.isdigit() and len(text) < 19):
         raise invalid("uav", "The number of a UAV is needed.")
     return int(text) if text else None
 
 
-def _mission(request: Request) -> UUID | None:
+def mission_of(request: Request) -> UUID | None:
     text = request.query_params.get("mission", "")
     try:
         return UUID(text) if text else None

@@ -8,11 +8,17 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from uuid import UUID
 
+import numpy as np
 from django.db import close_old_connections, connection, transaction
 
+from telemetry.alerting.watched import WatchedUav
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
-from telemetry.selectors.watched import StoredReport, WatchedFlight, newest_reports, watched_flights
+from telemetry.selectors.watched import StoredReport, WatchedFlight, newest_reports, places_heard, watched_flights
+from telemetry.services.alerting import look
 from telemetry.services.knowledge import knowledge_of
+from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,
     forget_what_is_over,
@@ -26,12 +32,16 @@ from telemetry.services.watches import (
 from telemetry.watch.new_reports import NewReports
 from telemetry.watch.options import Options
 from workspace.errors import DATABASE_AWAY
+from workspace.live import publish_live
 
 logger = logging.getLogger(__name__)
 
 EVERY_S = 1.0
 AWAY_EVERY_S = 60.0  # one line of log
 READ_BACK = 60  # reports of a UAV, to know again what was known of it
+WITHOUT_RECORD_S = 3.0
+LEARN_AT_ONCE = 3  # UAVs a round
+HEARD_BACK, HEARD_EVERY = 20_000, 20  # records of a UAV
 
 
 @dataclass
@@ -40,6 +50,13 @@ class Watched:
 
     flight: WatchedFlight
     tracker: Tracker
+    newest: Report | None = None  # record
+    has_learnt: bool = False
+
+    def take(self, report: Report) -> None:
+        self.tracker.take(report)
+        if self.newest is None or report.measured_s > self.newest.measured_s:
+            self.newest = report
 
 
 @dataclass
@@ -50,7 +67,10 @@ class Watch:
     held: dict[int, Watched] = field(default_factory=dict)  # by UAV
     _stop: threading.Event = field(default_factory=threading.Event)
     _new: NewReports = field(default_factory=NewReports)
-    _quiet_until_s: float = 0.0
+    _targets: TargetChecks = field(default_factory=TargetChecks)
+    _held_at_s: dict[int, float] = field(default_factory=dict)
+    _quiet_until_s: float = -AWAY_EVERY_S
+    _quiet_about_faults_until_s: float = -AWAY_EVERY_S
 
     def run(self) -> None:
         logger.info("watch %s has begun", self.options.holder)
@@ -70,7 +90,11 @@ class Watch:
         self._new.begin()
         self._hold(watched_flights())
         self._read()
-        self._tell([made for watched in self.held.values() if (made := _made(watched, now_s)) is not None])
+        self._learn(now_s)
+        made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
+        self._tell(list(made.values()))
+        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
+        self._check_targets(now_s)
 
     # Who is watched
 
@@ -99,14 +123,41 @@ class Watch:
             self.held[flight.uav_id] = Watched(flight, Tracker(known))
         if flights:
             for stored in newest_reports([flight.uav_id for flight in flights], most=READ_BACK):
-                self.held[stored.uav_id].tracker.take(stored.report)
+                self.held[stored.uav_id].take(stored.report)
 
     def _read(self) -> None:
         reports = self._new.read(sorted(self.held), time.monotonic()) if self.held else []
         for stored in reports:
-            self.held[stored.uav_id].tracker.take(stored.report)
+            self.held[stored.uav_id].take(stored.report)
         if reports:
             replace_estimates(reports=_seconds(reports))
+        for watched in self.held.values():
+            if (told := _told_by_link(watched)) is not None:
+                watched.tracker.take(told)
+
+    def _learn(self, now_s: float) -> None:
+        """Of UAVs that have fallen silent: where they were heard on earlier flights; a few in a round."""
+        silent = [watched for watched in self.held.values() if not watched.has_learnt and watched.tracker.is_silent(now_s)]
+        for watched in silent[:LEARN_AT_ONCE]:
+            watched.tracker.learn(places_heard(watched.flight.uav_id, most=HEARD_BACK, every=HEARD_EVERY))
+            watched.has_learnt = True
+
+    def _estimated(self, watched: Watched, now_s: float) -> Made | None:
+        """A fault in one UAV's filter does not blind the watch for the others."""
+        try:
+            return _made(watched, now_s)
+        except (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError):
+            if time.monotonic() >= self._quiet_about_faults_until_s:
+                self._quiet_about_faults_until_s = time.monotonic() + AWAY_EVERY_S
+                logger.exception("%s could not be estimated", watched.flight.name)
+            return None
+
+    def _check_targets(self, now_s: float) -> None:
+        """Also of UAVs whose mission has just ended: its last targets count as complete by that."""
+        self._held_at_s |= dict.fromkeys(self.held, now_s)
+        self._held_at_s = {uav_id: at_s for uav_id, at_s in self._held_at_s.items() if now_s - at_s <= LOOKED_BACK_S}
+        if self._held_at_s:
+            self._targets.check(sorted(self._held_at_s))
 
     # What is told
 
@@ -118,6 +169,8 @@ class Watch:
             between = [one for one in made if one.uav_id in shown and not one.estimate.is_measured]
             if between:
                 store_estimates(made=between)
+        for organisation_id in sorted(set(shown.values())):
+            publish_live(organisation_id)
 
     def _go_on_without_database(self, error: Exception) -> None:
         connection.close()
@@ -140,6 +193,30 @@ def _made(watched: Watched, now_s: float) -> Made | None:
     report_at = None if estimate.report_s is None else datetime.fromtimestamp(estimate.report_s, UTC)
     flight = watched.flight
     return Made(flight.uav_id, flight.mission_id, datetime.fromtimestamp(at_s, UTC), report_at, estimate)
+
+
+def _seen(watched: Watched, made: Made | None) -> WatchedUav:
+    flight = watched.flight
+    return WatchedUav(
+        uav_id=flight.uav_id,
+        organisation_id=flight.organisation_id,
+        name=flight.name,
+        mission_id=flight.mission_id,
+        approval_id=flight.approval_id,
+        flight=flight.flight,
+        newest=watched.newest,
+        estimate=None if made is None else made.estimate,
+    )
+
+
+def _told_by_link(watched: Watched) -> Report | None:
+    """How it does, where no record has told for a while: an autopilot without a position makes none."""
+    flight, newest = watched.flight, watched.tracker.newest
+    if flight.heard_at is None or newest is None or flight.heard_at.timestamp() < newest.measured_s + WITHOUT_RECORD_S:
+        return None
+    heard_s = flight.heard_at.timestamp()
+    told = Measurement(mode=flight.mode, is_armed=flight.is_armed, is_in_air=flight.is_in_air, waypoint_sequence=flight.waypoint_sequence)
+    return Report(heard_s, heard_s, told)
 
 
 def _flight_of(flight: WatchedFlight) -> tuple[UUID, int]:

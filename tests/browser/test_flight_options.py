@@ -149,6 +149,7 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     expect(panel).to_contain_text("1 waypoint is changed.")
     expect(panel).to_contain_text("The whole route is clear.")
     expect(panel.locator(".hand-figures")).to_contain_text(re.compile(r"km \(\+\d+\xa0m\)"))
+    expect(page.locator("#profile-words")).to_contain_text(re.compile("Kite.*as changed by hand"))
     page.keyboard.press("Control+z")
     expect(panel).to_contain_text("Nothing is changed yet.")
     page.keyboard.press("Control+Shift+z")

@@ -130,6 +130,7 @@ def test_a_route_says_where_its_kilometres_come_from(visitor: Visitor) -> None:
 def test_a_plan_is_set_against_the_last_one(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Against the last")
+    page.get_by_role("switch", name="Return to start").click()
     page.locator("#target-list .what").first.focus()
     page.keyboard.press("Delete")
     expect(page.locator("#target-list .target")).to_have_count(7)
@@ -138,7 +139,9 @@ def test_a_plan_is_set_against_the_last_one(visitor: Visitor, picture: Callable[
     page.get_by_role("button", name="Compare with the last plan").click()
     compared = page.get_by_role("complementary", name="Against the last plan")
     expect(compared).to_contain_text(re.compile(r"(less|more|sooner|later|As long).*\d target"))
-    expect(compared.get_by_role("row").filter(has_text="Heron")).to_contain_text("km")
+    heron = compared.get_by_role("row").filter(has_text="Heron")
+    expect(heron).to_contain_text("km")
+    expect(heron).to_contain_text("ends hovering at its last target instead of at its start")
     expect(compared.get_by_role("list", name="Targets that have changed")).to_contain_text("not in the mission")
     expect(page.locator(".strip.pale").first).to_be_visible()
     picture(page, "plan-compare")

@@ -1,5 +1,6 @@
 """Missions hold heights that came from the terrain: when that changes, they say so."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -10,6 +11,7 @@ from django.test import Client
 
 from inspection.models import TerrainTile
 from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import Edition
 from inspection.services import import_terrain
 from inspection.services.terrain_import import remove_terrain
 from missions.services import make_plan, planning
@@ -81,14 +83,17 @@ def test_heights_are_worked_out_again_where_the_terrain_changes_meanwhile(here: 
     ground(tmp_path / "hills.tif", 100)
     looked = []
 
-    def changing(positions: np.ndarray) -> np.ndarray:
-        heights = ground_heights_m(positions)
+    def changing(positions: np.ndarray, edition: Edition) -> np.ndarray:
+        heights = ground_heights_m(positions, edition)
         if not looked:
             ground(tmp_path / "hills.tif", 300)
         looked.append(len(positions))
         return heights
 
-    with mock.patch.object(planning, "ground_heights_m", changing):
+    def changing_at(edition: Edition) -> Any:
+        return partial(changing, edition=edition)
+
+    with mock.patch.object(planning, "heights_at", changing_at):
         plan = make_plan(request=request(here.towers[5]))
     assert len(looked) > 1
     assert TerrainTile.objects.exists()

@@ -1,16 +1,19 @@
 """What the watch sees becomes alerts: rows that open, rise and close."""
 
+import math
 from datetime import timedelta
 
 import pytest
 
-from missions.models import Approval, Mission, Uav
-from telemetry.alerting.watched import Report, WatchedUav
+from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
+from missions.services.outbox import queue_command
+from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
 from telemetry.models import Alert, UavLink
 from telemetry.services.alerting import Memories, look
 from tests.missions.flights import an_operator, approved, fleet
-from tests.missions.worlds import world
+from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import at
 
 pytestmark = pytest.mark.django_db
@@ -29,18 +32,30 @@ def approval(uav) -> Approval:
 
 
 def seen(uav: Uav, approval: Approval, reported_s: float = 0.0, **values) -> WatchedUav:
-    measurement = Measurement(**{"longitude_deg": 10.0, "latitude_deg": 55.0, "is_armed": True, "is_in_air": True, **values})
+    """Above the take-off of its route."""
+    first = approval.document["routes"][0]["route"]["waypoints"][0]
+    told = {"longitude_deg": first["position"][0], "latitude_deg": first["position"][1], "waypoint_sequence": 0}
+    told |= {"altitude_relative_m": first["altitude_relative_m"], "is_armed": True, "is_in_air": True}
+    measurement = Measurement(**{**told, **values})
     report = Report(at(reported_s).timestamp(), at(reported_s).timestamp(), measurement)
-    return WatchedUav(uav.pk, uav.organisation_id, uav.name, approval.mission_id, approval.pk, None, newest=report)
+    return WatchedUav(uav.pk, uav.organisation_id, uav.name, approval.mission_id, approval.pk, newest=report)
 
 
 def heard(uav: Uav, seconds: float) -> None:
     UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": at(seconds)})
 
 
-def test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_is_over(uav, approval):
-    heard(uav, 0)
+def watching(uav: Uav, approval: Approval) -> Memories:
+    """Reports came each second until second 0."""
     memories = Memories()
+    for second in range(-3, 1):
+        heard(uav, second)
+        look(watched=[seen(uav, approval, second)], now=at(second), memories=memories)
+    return memories
+
+
+def test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_is_over(uav, approval):
+    memories = watching(uav, approval)
     levels = []
     for second in range(30):
         look(watched=[seen(uav, approval)], now=at(second), memories=memories)
@@ -49,13 +64,12 @@ def test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_
     heard(uav, 30)
     for second in range(30, 35):
         look(watched=[seen(uav, approval, 30)], now=at(second), memories=memories)
-    alert = Alert.objects.get()
-    assert (alert.code, alert.opened_at, alert.closed_at, alert.close_reason) == ("link-lost", at(5), at(32), "cleared")
+    alert = Alert.objects.get(code="link-lost")
+    assert (alert.opened_at, alert.closed_at, alert.close_reason) == (at(5), at(32), "cleared")
 
 
 def test_a_watch_that_takes_over_opens_nothing_twice_and_closes_what_is_over(uav, approval):
-    heard(uav, 0)
-    look(watched=[seen(uav, approval)], now=at(25), memories=Memories())
+    look(watched=[seen(uav, approval)], now=at(25), memories=watching(uav, approval))
     look(watched=[seen(uav, approval)], now=at(26), memories=Memories())
     alert = Alert.objects.get()
     assert (alert.closed_at, alert.revision) == (None, 1)
@@ -63,12 +77,11 @@ def test_a_watch_that_takes_over_opens_nothing_twice_and_closes_what_is_over(uav
     memories = Memories()
     for second in range(27, 31):
         look(watched=[seen(uav, approval, 27)], now=at(second), memories=memories)
-    assert Alert.objects.get().closed_at == at(29)
+    assert Alert.objects.get(code="link-lost").closed_at == at(29)
 
 
 def test_a_raised_level_is_not_acknowledged_any_more(uav, approval):
-    heard(uav, 0)
-    memories = Memories()
+    memories = watching(uav, approval)
     look(watched=[seen(uav, approval)], now=at(10), memories=memories)
     Alert.objects.update(acknowledged_at=at(11))
     look(watched=[seen(uav, approval)], now=at(15), memories=memories)
@@ -89,3 +102,75 @@ def test_a_mission_that_has_ended_ends_its_alerts(state, uav, approval):
     Mission.objects.update(state=state)
     look(watched=[], now=at(60) + timedelta(seconds=1), memories=Memories())
     assert Alert.objects.get().close_reason == "mission-ended"
+
+
+def in_flight(second: float, uav: Uav, approval: Approval, memories: Memories, **values) -> None:
+    heard(uav, second)
+    look(watched=[seen(uav, approval, second, **values)], now=at(second), memories=memories)
+
+
+def open_ones() -> list[tuple[str, str]]:
+    return sorted(Alert.objects.filter(closed_at=None).values_list("code", "level"))
+
+
+def test_a_uav_beside_its_route_is_told_with_words_that_grow_older_than_seconds_only(uav, approval):
+    memories = watching(uav, approval)
+    first, then = (waypoint["position"] for waypoint in approval.document["routes"][0]["route"]["waypoints"][:2])
+    ahead = math.dist(first, then)
+    for second in range(1, 12):
+        back = (0.0004 + 0.00001 * second) / ahead
+        lon, lat = (here - back * (there - here) for here, there in zip(first, then, strict=True))
+        in_flight(second, uav, approval, memories, longitude_deg=lon, latitude_deg=lat)
+    alert = Alert.objects.get()
+    assert (alert.code, alert.level, alert.opened_at) == ("off-route", "warning", at(4))
+    assert alert.revision == 2  # its figures are written each five seconds
+    assert [step["what"] for step in alert.course] == ["opened"]
+
+
+def test_a_mode_that_a_command_of_ours_led_to_alarms_nobody(uav, approval):
+    memories = watching(uav, approval)
+    mission = Mission.objects.get(pk=approval.mission_id)
+    command = queue_command(uav=uav, kind=CommandKind.RETURN, actor=an_operator(), mission=mission)
+    UavCommand.objects.filter(pk=command.pk).update(state="applied", finished_at=at(1))
+    for second in range(1, 12):
+        in_flight(second, uav, approval, memories, mode="RTL")
+    assert open_ones() == []
+    UavCommand.objects.filter(pk=command.pk).update(state="failed")
+    for second in range(12, 16):
+        in_flight(second, uav, approval, memories, mode="RTL")
+    assert open_ones() == [("mode-changed", "critical")]
+
+
+def test_a_mission_on_the_uav_that_is_not_the_approved_one_is_told(uav, approval):
+    memories = watching(uav, approval)
+    flight = approval.document["routes"][0]["flights"][0]
+    loaded = {"loaded_approval": approval.pk, "loaded_flight": 1, "loaded_sha256": flight["content_sha256"]}
+    UavLink.objects.filter(uav=uav).update(**loaded)
+    for second in range(1, 8):
+        in_flight(second, uav, approval, memories, mode="MISSION")
+    assert open_ones() == []
+    UavLink.objects.filter(uav=uav).update(loaded_sha256="f" * 64)
+    for second in range(8, 13):
+        in_flight(second, uav, approval, memories, mode="MISSION")
+    assert open_ones() == [("other-mission", "critical")]
+
+
+def test_a_zone_that_is_saved_around_a_flying_uav_is_told(uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    zone = zone_around((place.longitude_deg, place.latitude_deg), with_graph=False)
+    for second in range(1, 4):
+        in_flight(second, uav, approval, memories)
+    alert = Alert.objects.get()
+    assert (alert.code, alert.level, alert.subject, alert.values["zone"]) == ("zone", "critical", str(zone.pk), zone.name)
+
+
+def test_limits_of_the_mission_go_before_those_of_the_type(uav, approval):
+    uav_type = UavType.objects.create(name="Quad", alert_limits={"link_late_s": 30.0, "link_lost_s": 60.0})
+    Uav.objects.filter(pk=uav.pk).update(uav_type=uav_type)
+    memories = watching(uav, approval)
+    look(watched=[seen(uav, approval)], now=at(25), memories=memories)
+    assert open_ones() == []
+    Mission.objects.update(alert_limits={"link_late_s": 10.0})
+    look(watched=[seen(uav, approval)], now=at(26), memories=memories)
+    assert open_ones() == [("link-lost", "warning")]

@@ -18,6 +18,7 @@ export function startChrome({ bindings = [] } = {}) {
     ...bindings,
     { keys: ["n"], words: readPage().canPlan ? t("New mission") : t("Go to the map"), act: go("/missions/new") },
     { keys: ["g m"], words: t("Go to the missions"), act: go("/") },
+    { keys: ["g l"], words: t("Go to what flies"), act: go("/live") },
     { keys: ["g a"], words: t("Go to the assets"), act: go("/assets") },
     { keys: ["g z"], words: t("Go to the zones"), act: go("/zones") },
     { keys: ["g u"], words: t("Go to the UAVs"), act: go("/uavs") },

@@ -7,14 +7,15 @@ const HEIGHTS = ["low", "half", "full"];
 const HEIGHT_WORDS = { low: t("Panel height: low"), half: t("Panel height: half"), full: t("Panel height: full") };
 const phone = matchMedia("(max-width: 720px)");
 
-/** dockOnPhone: the element that takes the dock on a phone, first in the sheet. */
+/** dockOnPhone: the element that takes the dock on a phone, first in the sheet; null on a page without a dock. */
 export function mountWorkbench({ dockOnPhone }) {
   const workbench = byId("workbench");
-  const dock = byId("dock");
+  const dock = dockOnPhone && byId("dock");
   const stage = byId("main");
 
   /** One place for the dock: under the map, or first in the sheet. */
   const place = () => {
+    if (!dock) return;
     if (phone.matches) dockOnPhone.append(dock);
     else stage.append(dock);
   };
@@ -29,6 +30,7 @@ export function mountWorkbench({ dockOnPhone }) {
     },
     foldSide: () => toggle(workbench, "side"),
     foldDock: () => toggle(workbench, "dock"),
+    foldRight: () => toggle(workbench, "right"),
     isPhone: () => phone.matches,
   };
 }

@@ -1,19 +1,23 @@
 """How far estimates are from the truth, beside two ways without a filter: the last position held, and flown on straight ahead."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inspection.geodesy import LonLat
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
-from tests.telemetry.estimation.truth import STEP_S, Truth
+from tests.telemetry.estimation.heard import reports_of
+from tests.telemetry.estimation.routes import drawn_route, knowledge_for, route_on_line
+from tests.telemetry.estimation.truth import STEP_S, Truth, fly
 
 BEGUN_S = 1_764_000_000.0
+INTERVALS_S = (1.0, 5.0, 10.0, 30.0)
 
 
 @dataclass
@@ -93,3 +97,16 @@ def is_inside(off: NDArray[np.float64], estimate: Estimate) -> bool:
     along = off[0] * math.sin(bearing) + off[1] * math.cos(bearing)
     across = off[0] * math.cos(bearing) - off[1] * math.sin(bearing)
     return bool((along / estimate.bound.along_m) ** 2 + (across / estimate.bound.across_m) ** 2 <= 1.0)
+
+
+def score_flights(seeds: Iterable[int], lines: Sequence[Sequence[LonLat]] = ()) -> dict[float, Score]:
+    """By report interval. With lines every other flight is along a stretch of one of them."""
+    found = {every_s: Score() for every_s in INTERVALS_S}
+    for seed in seeds:
+        route = route_on_line(seed, lines) if lines and seed % 2 else drawn_route(seed)
+        flight = route.flights[0]
+        knowledge = knowledge_for(route, flight, seed)
+        truth = fly(flight, knowledge, seed)
+        for every_s, so_far in found.items():
+            so_far.add(score(truth, knowledge, reports_of(truth, every_s, seed, begun_s=BEGUN_S)))
+    return found

@@ -4,11 +4,13 @@ import { h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 
+const EDGE_PX = 12;
+
 /**
  * Resolves to what was filled in, null where it is not done. `field`: { name, label, type, value, min, max, step, isNeeded }.
- * isBack: whether the act can be taken back: then it has the focus, else the way out.
+ * isBack: whether the act can be taken back: then it has the focus, else the way out. opener: the button out of which the question grows.
  */
-export function confirmAct({ title, lines, act, keep = t("Not yet"), field = null, isDanger = false, isBack = false, image = null }) {
+export function confirmAct({ title, lines, act, keep = t("Not yet"), field = null, isDanger = false, isBack = false, image = null, opener = null }) {
   return new Promise((resolve) => {
     const input = field && h("input", { class: "input", id: "confirm-field", name: field.name, type: field.type ?? "text", value: field.value ?? "", min: field.min, max: field.max, step: field.step, maxlength: field.type === "number" ? null : 300, required: field.isNeeded });
     const out = h("button", { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") }, keep);
@@ -24,6 +26,18 @@ export function confirmAct({ title, lines, act, keep = t("Not yet"), field = nul
     );
     dialog.addEventListener("close", () => resolve(dialog.returnValue === "go" ? (input ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() } : {}) : null));
     open(dialog);
+    if (opener) growFrom(dialog, opener);
     (field?.isNeeded ? input : isBack ? go : out).focus();
   });
+}
+
+/** Above its button where there is room, and never over the window's edge; a phone shows it in the middle. */
+function growFrom(dialog, opener) {
+  if (matchMedia("(max-width: 720px)").matches) return;
+  const box = opener.getBoundingClientRect();
+  const middle = box.left + box.width / 2;
+  const left = Math.min(Math.max(EDGE_PX, middle - dialog.offsetWidth / 2), innerWidth - dialog.offsetWidth - EDGE_PX);
+  const above = box.top - dialog.offsetHeight - EDGE_PX;
+  Object.assign(dialog.style, { margin: "0", left: `${left}px`, top: `${Math.max(EDGE_PX, above)}px`, transformOrigin: `${middle - left}px 100%` });
+  dialog.classList.add("grown");
 }

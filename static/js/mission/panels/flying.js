@@ -3,8 +3,8 @@
 import { byId, h, icon } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
-import { language, localeOf, t } from "../../text.js";
-import { exactText } from "../../units.js";
+import { t } from "../../text.js";
+import { exactClockText, exactText } from "../../units.js";
 import { boardOf, boardWords, commandWords, flightOf, flightToSend, flyersOf, isMixed, isOnItsWay, KINDS, stageActs, stageWords, timesOf, whyNoStart, whyNotMoved } from "../flying.js";
 import { returnOf, returnSaid } from "../own_return.js";
 
@@ -12,8 +12,6 @@ const BESIDE = ["hold", "return", "land"];
 const MORE = [["arm", "plane-takeoff"], ["take-off", "plane-takeoff"], ["pause", "timer"], ["resume", "refresh-cw"], ["change-speed", "settings"], ["abort", "octagon-alert"]];
 
 const isFlown = ({ state }) => ["approved", "dispatched", "active"].includes(state);
-const secondsText = (iso) => new Date(iso).toLocaleTimeString(localeOf(language), { timeZone: document.documentElement.dataset.timeZone || undefined });
-
 /** flying: see flying_actions.js; save(): a copy. */
 export function mountFlying(store, flying, { canFly, saveCopy }) {
   const list = byId("flyers");
@@ -34,7 +32,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
         h("strong", {}, flyer.name),
         h("p", { class: `flyer-board ${level ?? ""}`, role: board && isMixed(board) ? "alert" : null }, icon(image, "small"), h("span", {}, words)),
         share !== undefined && h("div", { class: "progress", role: "progressbar", "aria-label": t("Sending to {name}", { name: flyer.name }), "aria-valuemin": 0, "aria-valuemax": 100, "aria-valuenow": Math.round(share * 100) }, h("i", { style: `width:${Math.max(4, share * 100)}%` })),
-        said && h("p", { class: `flyer-board ${said.level ?? ""}`, title: timesOf(flight, secondsText) }, icon(said.image, "small"), h("span", {}, said.words)),
+        said && h("p", { class: `flyer-board ${said.level ?? ""}`, title: timesOf(flight, exactClockText) }, icon(said.image, "small"), h("span", {}, said.words)),
         home && h("p", { class: `flyer-board ${home.level ?? ""}` }, icon(home.image, "small"), h("span", {}, home.words))),
       canFly && isOnItsWay(mission) && h("div", { class: "flyer-acts", role: "group", "aria-label": t("Commands to {name}", { name: flyer.name }) }, acts({ ...flyer, speed_mps: speedOf(flyer.place) }, mission, commands)),
     );
@@ -62,7 +60,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
       icon(image, "small"),
       h("div", {},
         h("p", {}, h("strong", {}, command.uav.name), ` ${words}`),
-        h("p", { class: "caption" }, h("time", { datetime: command.created_at, title: exactText(command.created_at) }, timesOf(command, secondsText)), " · ", command.created_by ?? t("by the program"), command.why && ` · ${command.why}`)),
+        h("p", { class: "caption" }, h("time", { datetime: command.created_at, title: exactText(command.created_at) }, timesOf(command, exactClockText)), " · ", command.created_by ?? t("by the program"), command.why && ` · ${command.why}`)),
     );
   }
 

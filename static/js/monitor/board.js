@@ -1,0 +1,66 @@
+/** The board: every target of the missions on the page with its state and time. Values in, values out. */
+
+import { routeLetter } from "../map/palette.js";
+import { t } from "../text.js";
+import { isHeld } from "./uav_words.js";
+
+export const STATES = {
+  held: { words: t("Held"), image: "circle-pause", rank: 0 },
+  "in-progress": { words: t("In progress"), image: "circle-dot", rank: 1 },
+  pending: { words: t("Pending"), image: "circle-dashed", rank: 2 },
+  failed: { words: t("Failed"), image: "circle-x", rank: 3 },
+  skipped: { words: t("Skipped"), image: "skip-forward", rank: 4 },
+  complete: { words: t("Complete"), image: "circle-check", rank: 5 },
+};
+
+const REASONS = { "flight-failed": t("Its flight failed."), "not-reached": t("The UAV went past it at a distance."), "not-held": t("The UAV did not stay long enough.") };
+
+/** Why a target was skipped or failed: a known code in words, anything else as it is. */
+export const reasonWords = (reason) => REASONS[reason] ?? reason ?? "";
+
+/** Number of each target on its route, by its place in the mission; from the mission as the REST API shows it. */
+export function numbersOf(detail) {
+  const numbers = new Map();
+  for (const route of detail?.plan?.routes ?? []) route.targets.forEach((target, index) => numbers.set(target, index + 1));
+  return numbers;
+}
+
+/** "C3", or the bare number of a target that nobody flies to. */
+export const pillOf = (target, numbers) => (target.uav === null ? `${target.place + 1}` : `${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`);
+
+/** Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last. */
+export function boardRows(missions, uavs, details) {
+  const rows = missions.flatMap((mission) => {
+    const numbers = numbersOf(details.get(mission.id));
+    const flying = new Map(uavs.filter((uav) => uav.mission === mission.id).map((uav) => [uav.place, uav]));
+    return mission.targets.map((target) => rowOf(mission, target, flying.get(target.uav), numbers));
+  });
+  return rows.sort((a, b) => STATES[a.state].rank - STATES[b.state].rank || later(a, b) || a.pill.localeCompare(b.pill, undefined, { numeric: true }));
+}
+
+/** What is to come by its time, what is over the newest first. */
+function later(a, b) {
+  const [one, other] = [a, b].map(({ at }) => (at ? Date.parse(at) : Infinity));
+  if (one === other) return 0;
+  return a.isExpected || a.at === null || b.at === null ? one - other : other - one;
+}
+
+function rowOf(mission, target, uav, numbers) {
+  const arrivals = uav?.estimated?.arrivals ?? [];
+  const arrival = arrivals.find((entry) => entry.target === target.place);
+  const isToCome = ["pending", "in-progress"].includes(target.state);
+  const isNext = arrivals.find((entry) => entry.target !== null)?.target === target.place;
+  const state = isToCome && isNext && isHeld(uav) ? "held" : target.state === "pending" && isNext && uav.measured?.is_in_air ? "in-progress" : target.state;
+  return {
+    key: `${mission.id} ${target.place}`,
+    mission: mission.id,
+    place: target.place,
+    uav: target.uav,
+    pill: pillOf(target, numbers),
+    label: target.label,
+    state,
+    at: isToCome ? (state === "held" ? null : (arrival?.at ?? null)) : target.state_at,
+    isExpected: isToCome,
+    reason: reasonWords(target.state_reason),
+  };
+}

@@ -1,0 +1,40 @@
+/** How sure a live page is of where a UAV is: measured, estimated, or lost. Values in, values out; times in milliseconds since 1970. */
+
+export const LATE_S = 5; // a report older than this is said in amber
+export const SILENT_S = 10; // and from here on it is said that there is none
+
+export const MEASURED = "measured";
+export const ESTIMATED = "estimated";
+export const LOST = "lost";
+
+/** Age of the last report [s]; null where there was none. */
+export function reportAge_s({ measured }, now_ms) {
+  return measured ? Math.max(0, (now_ms - Date.parse(measured.measured_at)) / 1000) : null;
+}
+
+/** An estimate that nobody renews is no estimate any more. */
+const isRenewed = ({ estimated }, now_ms) => estimated !== null && now_ms - Date.parse(estimated.at) < SILENT_S * 1000;
+
+/** MEASURED, ESTIMATED or LOST; null for a UAV that was never seen. */
+export function certaintyOf(uav, now_ms) {
+  const { measured, estimated } = uav;
+  if (!measured?.position && !estimated) return null;
+  const age_s = reportAge_s(uav, now_ms);
+  const isFresh = age_s !== null && age_s < SILENT_S;
+  if (isRenewed(uav, now_ms)) {
+    if (estimated.is_lost) return LOST;
+    return estimated.is_measured && isFresh ? MEASURED : estimated.is_measured ? LOST : ESTIMATED;
+  }
+  return isFresh && measured.position ? MEASURED : LOST;
+}
+
+/** Where it is drawn, lon lat, with its heading: { position, heading_deg }; null for a UAV that was never seen. */
+export function standsAt({ measured, estimated }, certainty) {
+  if (certainty === null) return null;
+  const estimate = estimated && { position: estimated.position, heading_deg: estimated.heading_deg };
+  const report = measured?.position ? { position: measured.position, heading_deg: measured.heading_deg } : null;
+  return certainty === MEASURED ? (report ?? estimate) : (estimate ?? report);
+}
+
+/** Radius [m] in which it is 95 of 100 times. */
+export const withinOf_m = ({ bound }) => Math.max(bound.along_m, bound.across_m);

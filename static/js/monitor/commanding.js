@@ -1,0 +1,89 @@
+/** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
+
+import { ApiError, get, post } from "../api.js";
+import { routeLetter } from "../map/palette.js";
+import { LATE, questionOf } from "../mission/command_questions.js";
+import { isOnItsWay, KINDS } from "../mission/flying.js";
+import { returnOf } from "../mission/own_return.js";
+import { confirmAct } from "../mission/panels/confirm.js";
+import { say, toast } from "../page/toast.js";
+import { t, tn } from "../text.js";
+import { clockText, lengthText, percentText } from "../units.js";
+import { certaintyOf, MEASURED } from "./certainty.js";
+
+const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+const ALL = {
+  pause: { title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"), lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")], act: t("Pause all"), isBack: true },
+  return: { title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"), lines: [t("Each flies back to where it took off and lands there. Targets that are not reached stay undone.")], act: t("Return all"), isBack: true },
+};
+
+/** UAVs that can be told something: on a mission that is on its way, and not known to stand on the ground. */
+export function flyingUavs({ uavs, missions }) {
+  const onItsWay = new Set(missions.filter(isOnItsWay).map(({ id }) => id));
+  return uavs.filter(({ mission, measured, link }) => onItsWay.has(mission) && (measured?.is_in_air ?? link?.is_in_air) !== false);
+}
+
+/** Figures of now in a question: the battery, what is left, the targets that stay open. */
+export function figuresLine({ measured, estimated, place }, mission) {
+  const open = (mission?.targets ?? []).filter(({ uav, state }) => uav === place && ["pending", "in-progress"].includes(state)).length;
+  const said = [
+    typeof measured?.battery_percent === "number" && t("battery {figure}", { figure: percentText(measured.battery_percent) }),
+    typeof estimated?.to_go_m === "number" && t("{distance} of its route to go", { distance: lengthText(estimated.to_go_m) }),
+    estimated?.ends_at && t("would land {time}", { time: clockText(estimated.ends_at) }),
+    open > 0 && tn(open, "{count} target open", "{count} targets open"),
+  ].filter(Boolean);
+  return said.length ? `${said.join(", ")}.`.replace(/^./, (first) => first.toLocaleUpperCase()) : "";
+}
+
+export function createCommanding(store) {
+  const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
+
+  async function told(uav, kind, { why = "", ...parameters } = {}) {
+    try {
+      await post(`/uavs/${uav.id}/commands`, { kind, why, parameters }, { headers: { "Idempotency-Key": AGAIN() } });
+      say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
+      return true;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(`${t("{name} was not told: {act}.", { name: uav.name, act: KINDS[kind] })} ${error.message}`);
+      return false;
+    }
+  }
+
+  async function wayHome(uav, kind) {
+    if (!["return", "abort"].includes(kind) || uav.mission === null) return undefined;
+    try {
+      return returnOf((await get(`/missions/${uav.mission}/returns`)).data.results, uav.place);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      return undefined; // the question says that nobody has looked
+    }
+  }
+
+  /** opener: the button out of which the question grows. */
+  async function ask(id, kind, opener = null) {
+    const uav = store.state.uavs.find((entry) => entry.id === id);
+    if (!uav) return;
+    const mission = store.state.missions.find((entry) => entry.id === uav.mission);
+    const planned = store.state.details.get(uav.mission)?.uavs[uav.place];
+    const question = questionOf(kind, { name: uav.name, letter: uav.place === null ? "" : routeLetter(uav.place), speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5, returns: await wayHome(uav, kind) });
+    const late = certainty(uav) === MEASURED ? null : t("There is no link to {name} now. The command waits and is sent on contact, as long as it is wanted.", { name: uav.name });
+    const [first, ...rest] = question.lines;
+    const asked = await confirmAct({ ...question, lines: [first, figuresLine(uav, mission), late, ...rest], opener });
+    if (asked) await told(uav, kind, asked);
+  }
+
+  /** kind: "pause" or "return". */
+  async function askAll(kind, opener) {
+    const uavs = flyingUavs(store.state);
+    const { title, lines, ...rest } = ALL[kind];
+    if (!uavs.length) return void toast(t("No UAV is flying a mission."));
+    const silent = uavs.filter((uav) => certainty(uav) !== MEASURED).map(({ name }) => name).join(", ");
+    const asked = await confirmAct({ ...rest, title: title(uavs.length), lines: [`${uavs.map(({ name }) => name).join(", ")}.`, ...lines, silent && t("There is no link to {names} now: their command waits.", { names: silent }), LATE], keep: t("Keep flying"), opener });
+    if (!asked) return;
+    const done = await Promise.all(uavs.map((uav) => told(uav, kind)));
+    if (done.every(Boolean)) toast(tn(done.length, "{count} UAV is being told.", "{count} UAVs are being told."));
+  }
+
+  return { ask, askAll };
+}

@@ -1,0 +1,127 @@
+/** What flies now: composes the page, listens to the feed, keeps the time. */
+
+import { ApiError, get } from "../api.js";
+import { openFeed } from "../live/feed.js";
+import { KINDS } from "../live/shown.js";
+import { readPage, startChrome } from "../page/chrome.js";
+import { mountWorkbench } from "../page/workbench.js";
+import { createStore } from "../store.js";
+import { t } from "../text.js";
+import { createCommanding } from "./commanding.js";
+import { mountMonitorMap } from "./map/monitor_map.js";
+import { createMissionDetails } from "./mission_details.js";
+import { mountNarrow } from "./narrow.js";
+import { inOrder } from "./order.js";
+import { mountAlerts } from "./panels/alerts.js";
+import { mountBoard } from "./panels/board.js";
+import { mountCards } from "./panels/cards.js";
+import { mountCommandBar } from "./panels/command_bar.js";
+import { mountHead } from "./panels/head.js";
+import { mountOffers } from "./panels/offers.js";
+import { mountUrgent } from "./panels/urgent.js";
+
+const TICK_MS = 500;
+
+const page = readPage();
+const store = createStore({
+  uavs: [], missions: [], alerts: [], commands: [], offers: [], details: new Map(), flown: new Map(), offered: [], ground: null,
+  chosen: null, isFollowing: false, showsLog: false, link: null, since_ms: 0, isWhole: false, now_ms: Date.now(),
+});
+
+const pick = (id) => store.update({ chosen: id, isFollowing: store.state.isFollowing && store.state.chosen === id });
+const layout = mountWorkbench({ dockOnPhone: null });
+const map = mountMonitorMap(store, page, { pick });
+const commanding = page.canFly ? createCommanding(store) : null;
+const narrow = mountNarrow();
+createMissionDetails(store);
+mountHead(store, page);
+mountCards(store, { pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
+mountOffers(store, page);
+const alertKeys = mountAlerts(store, page, { pick, commanding });
+mountBoard(store, {
+  show(mission, place) {
+    const position = store.state.details.get(mission)?.targets[place]?.position;
+    if (position) map.showPlace(position);
+  },
+});
+mountUrgent(store, { open: () => (narrow.showBoard(), document.getElementById("alerts-title").focus()) });
+const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
+
+function step(by) {
+  const { uavs, alerts, chosen } = store.state;
+  const order = inOrder(uavs, alerts, null);
+  if (!order.length) return;
+  const at = order.findIndex(({ id }) => id === chosen);
+  pick(order[at < 0 ? 0 : (at + by + order.length) % order.length].id);
+}
+
+const byNumber = Array.from({ length: 8 }, (_, place) => ({
+  keys: [`${place + 1}`],
+  words: place === 0 ? t("Choose UAV A; 2 to 8: B to H") : "",
+  act() {
+    const uav = store.state.uavs.find((entry) => entry.place === place);
+    if (!uav) return false;
+    pick(uav.id);
+    return true;
+  },
+}));
+
+startChrome({
+  bindings: [
+    ...byNumber,
+    { keys: ["j"], words: t("Next UAV"), act: () => step(1) },
+    { keys: ["k"], words: t("Previous UAV"), act: () => step(-1) },
+    { keys: ["enter"], words: t("Show the chosen UAV on the map"), act: (event) => !event.target.closest("button, a, input, summary") && map.jumpTo(store.state.chosen) },
+    ...alertKeys,
+    ...commandKeys,
+    ...map.bindings,
+    { keys: ["f"], words: t("Fit what flies"), act: () => map.fit() },
+    { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
+    { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
+    { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
+    { keys: ["]"], words: t("Fold alerts and board"), act: layout.foldRight },
+    { keys: ["escape"], words: t("Close"), act: () => map.closeTop() || store.update({ chosen: null, isFollowing: false }) },
+  ],
+});
+
+// What comes in is drawn together, once a frame at most; what nobody looks at, by and by.
+
+const HIDDEN_MS = 500;
+let waiting = null; // the kinds that have changed since the last drawing
+
+function take(touched) {
+  const kinds = touched ? KINDS.filter((kind) => touched[kind].size) : KINDS;
+  if (waiting) return void kinds.forEach((kind) => waiting.add(kind));
+  waiting = new Set(kinds);
+  if (document.hidden) setTimeout(show, HIDDEN_MS);
+  else requestAnimationFrame(show);
+}
+
+function show() {
+  const told = Object.fromEntries([...waiting].map((kind) => [kind, [...feed.shown[kind].values()]]));
+  waiting = null;
+  store.update({ ...told, now_ms: feed.now_ms() });
+  store.update({ isWhole: true }); // from here on what comes is news
+}
+
+const feed = openFeed({ mission: page.mission, onChange: take, onState: ({ state, since_ms }) => store.update({ link: state, since_ms }) });
+setInterval(() => store.update({ now_ms: feed.now_ms() }), TICK_MS);
+addEventListener("pagehide", () => feed.close());
+
+async function load() {
+  try {
+    store.update({ ground: (await get("/ground")).data });
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error; // the map says itself that it cannot be read
+  }
+  await map.ready;
+  document.documentElement.dataset.loaded = "true";
+  let wasFitted = map.opensAtPlace;
+  store.listen(["details", "uavs"], ({ details, uavs, missions }) => {
+    if (wasFitted || !uavs.length || missions.some(({ id }) => !details.has(id))) return;
+    wasFitted = true;
+    map.fit({ animate: false });
+  });
+}
+
+load();

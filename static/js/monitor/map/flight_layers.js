@@ -1,0 +1,65 @@
+/** What is flown, where the last report was, and the ellipse of an estimate: layers between routes and labels. */
+
+import { routeNumber } from "../../map/palette.js";
+import { ellipseRing, metresPerPixel } from "./ellipse.js";
+
+const BEFORE = "line-labels";
+const LEAST_RING_PX = 14;
+const NOTHING = { type: "FeatureCollection", features: [] };
+const SOURCES = ["flown", "last-report", "ellipses", "offered"];
+
+const colourOf = (palette) => ["case", ["get", "isLost"], palette.inkSecond, ["match", ["get", "route"], ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond]];
+
+function layersOf(palette) {
+  const round = { "line-cap": "round", "line-join": "round" };
+  const colour = colourOf(palette);
+  return [
+    { id: "offered", type: "line", source: "offered", layout: round, paint: { "line-color": colour, "line-width": 3, "line-dasharray": [2, 2] } },
+    { id: "flown-casing", type: "line", source: "flown", layout: round, paint: { "line-color": palette.casing, "line-width": 6 } },
+    { id: "flown", type: "line", source: "flown", layout: round, paint: { "line-color": colour, "line-width": 3.6 } },
+    { id: "ellipses", type: "fill", source: "ellipses", paint: { "fill-color": colour, "fill-opacity": 0.15 } },
+    { id: "ellipses-line", type: "line", source: "ellipses", paint: { "line-color": colour, "line-width": 1.75, "line-dasharray": [3, 2] } },
+    { id: "last-report-line", type: "line", source: "last-report", filter: ["==", ["geometry-type"], "LineString"], paint: { "line-color": colour, "line-width": 2, "line-dasharray": [2, 2] } },
+    { id: "last-report", type: "circle", source: "last-report", filter: ["==", ["geometry-type"], "Point"], paint: { "circle-radius": 4, "circle-color": colour, "circle-stroke-color": palette.casing, "circle-stroke-width": 2 } },
+    {
+      id: "last-report-time", type: "symbol", source: "last-report", filter: ["==", ["geometry-type"], "Point"],
+      layout: { "text-font": palette.fonts, "text-size": 11, "text-field": ["get", "words"], "text-anchor": "top", "text-offset": [0, 0.6] },
+      paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 2 },
+    },
+  ];
+}
+
+const thinRoutes = (map) => map.setPaintProperty("routes", "line-width", 1.6);
+
+export function addTo(map, palette) {
+  for (const source of SOURCES) map.addSource(source, { type: "geojson", data: NOTHING });
+  for (const layer of layersOf(palette)) map.addLayer(layer, BEFORE);
+  map.setPaintProperty("routes-casing", "line-width", 4);
+  thinRoutes(map);
+}
+
+export function recolour(map, palette) {
+  for (const { id, paint } of layersOf(palette)) for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  map.setPaintProperty("routes-casing", "line-width", 4);
+  thinRoutes(map);
+}
+
+const feature = (uav, geometry, more = {}) => ({ type: "Feature", properties: { route: uav.place === null ? 0 : routeNumber(uav.place), isLost: uav.certainty === "lost", ...more }, geometry });
+const show = (map, source, features) => map.getSource(source)?.setData({ type: "FeatureCollection", features });
+
+/** uavs: [{ place, certainty, parts: [[lon lat, …], …] }] */
+export function showFlown(map, uavs) {
+  show(map, "flown", uavs.map((uav) => feature({ ...uav, certainty: "measured" }, { type: "MultiLineString", coordinates: uav.parts.filter((part) => part.length > 1) })));
+}
+
+/** uavs that are estimated or lost: [{ place, certainty, position, bound, last: lon lat or null, words }]. */
+export function showUncertain(map, uavs) {
+  const zoom = map.getZoom();
+  show(map, "ellipses", uavs.filter(({ bound }) => bound).map((uav) => feature(uav, { type: "Polygon", coordinates: [ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]))] })));
+  show(map, "last-report", uavs.filter(({ last }) => last).flatMap((uav) => [feature(uav, { type: "LineString", coordinates: [uav.last, uav.position] }), feature(uav, { type: "Point", coordinates: uav.last }, { words: uav.words })]));
+}
+
+/** Routes of another plan that is offered: [{ place, geometry }]. */
+export function showOffered(map, routes) {
+  show(map, "offered", routes.map(({ place, geometry }) => feature({ place, certainty: "measured" }, geometry)));
+}

@@ -1,0 +1,70 @@
+/** What the feed does not tell: plans of missions, and the line flown so far. Read once, and again when a mission changes. */
+
+import { ApiError, get } from "../api.js";
+
+const MOST_RECORDS = 900;
+const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what was flown
+
+/** The log as parts of a line by UAV: Map of uav → { parts: [[lon lat, …], …], last_ms }. */
+export function flownParts(features) {
+  const flown = new Map();
+  for (const { geometry, properties } of features) {
+    if (geometry && !properties.is_from_future) addReport(flown, properties.uav, geometry.coordinates, Date.parse(properties.measured_at));
+  }
+  return flown;
+}
+
+/** Puts one more report behind a UAV's line; an older one, or the same, changes nothing. Returns whether it was put there. */
+export function addReport(flown, uav, position, at_ms, gap_s = GAP_S) {
+  const known = flown.get(uav);
+  if (!known) flown.set(uav, { parts: [[position]], last_ms: at_ms });
+  else if (at_ms <= known.last_ms) return false;
+  else {
+    if (at_ms - known.last_ms > gap_s * 1000) known.parts.push([position]);
+    else known.parts.at(-1).push(position);
+    known.last_ms = at_ms;
+  }
+  return true;
+}
+
+export function createMissionDetails(store) {
+  const asked = new Map(); // mission → revision that was read
+  const flown = new Map();
+
+  async function read({ id, revision }) {
+    if (asked.get(id) === revision) return;
+    const isFirst = !asked.has(id);
+    asked.set(id, revision);
+    try {
+      const { data } = await get(`/missions/${id}`);
+      store.update({ details: new Map([...store.state.details, [id, data]]) });
+      if (isFirst) await readFlown(id);
+    } catch (error) {
+      asked.delete(id); // again with the next change
+      if (!(error instanceof ApiError)) throw error;
+    }
+  }
+
+  async function readFlown(mission) {
+    const features = [];
+    for (let next = `/telemetry?mission=${mission}&most=${MOST_RECORDS}&limit=1000`; next; ) {
+      const { data } = await get(next);
+      features.push(...data.features);
+      next = data.next;
+    }
+    for (const [uav, line] of flownParts(features)) {
+      const live = flown.get(uav)?.parts.flat() ?? [];
+      flown.set(uav, line);
+      live.slice(-1).forEach((position) => line.parts.at(-1).push(position));
+    }
+    tell();
+  }
+
+  const tell = () => store.update({ flown: new Map([...flown].map(([uav, { parts }]) => [uav, parts])) });
+
+  store.listen(["missions"], ({ missions }) => missions.forEach((mission) => void read(mission)));
+  store.listen(["uavs"], ({ uavs }) => {
+    const isNew = uavs.map(({ id, mission, measured }) => mission !== null && measured?.position && measured.is_in_air !== false && addReport(flown, id, measured.position, Date.parse(measured.measured_at)));
+    if (isNew.some(Boolean)) tell();
+  });
+}

@@ -1,0 +1,30 @@
+/** Where the window is narrow, alerts and board are the side's second tab instead of a panel of their own. */
+
+import { byId } from "../dom.js";
+
+const narrow = matchMedia("(max-width: 1099px)");
+
+/** Returns { showBoard() }. */
+export function mountNarrow() {
+  const parts = byId("right-parts");
+  const tabs = byId("narrow-tabs");
+
+  function place() {
+    const isBoard = narrow.matches && tabs.querySelector(":checked").value === "board";
+    (narrow.matches ? byId("part-board") : byId("right")).append(parts);
+    tabs.hidden = !narrow.matches;
+    byId("right").hidden = narrow.matches;
+    byId("part-board").hidden = !isBoard;
+    byId("part-uavs").hidden = isBoard;
+  }
+
+  narrow.addEventListener("change", place);
+  tabs.addEventListener("change", place);
+  place();
+  return {
+    showBoard() {
+      tabs.querySelector("[value=board]").checked = true;
+      place();
+    },
+  };
+}

@@ -1,0 +1,35 @@
+/** An offer of another plan in words: why, and what would change for each UAV and target. Values in, words out. */
+
+import { routeLetter } from "../map/palette.js";
+import { t, tn } from "../text.js";
+import { clockText, lengthText, percentText } from "../units.js";
+
+const CAUSES = { "uav-out": t("A UAV has dropped out"), "zone-active": t("A no-fly zone has come into force"), "battery-short": t("A battery will not do"), "asked-for": t("Asked for") };
+const CHANGES = { untouched: t("flies on as approved"), changed: t("gets another route"), recalled: t("is told to return"), out: t("has dropped out") };
+
+export const isUndecided = ({ state }) => state === "computing" || state === "open";
+export const causeWords = ({ code }) => CAUSES[code] ?? code;
+
+/** The sentence first: "2 UAVs get another route, 3 targets change hands, 1 stays undone." */
+export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 0 } }) {
+  const changed = uavs.filter(({ change }) => change === "changed").length;
+  const handed = targets.filter(({ to }) => to !== null).length;
+  return [
+    changed > 0 && tn(changed, "{count} UAV gets another route", "{count} UAVs get another route"),
+    handed > 0 && tn(handed, "{count} target changes hands", "{count} targets change hands"),
+    unreached > 0 && tn(unreached, "{count} target stays undone", "{count} targets stay undone"),
+  ].filter(Boolean).join(", ");
+}
+
+const figureWords = (figures) => [lengthText(figures.length_m), figures.ends_at && t("lands {time}", { time: clockText(figures.ends_at) }), typeof figures.battery_percent === "number" && t("with {figure}", { figure: percentText(figures.battery_percent) })].filter(Boolean).join(", ");
+
+/** Per UAV: [{ place, letter, name, what, before, after, why }] */
+export const uavLines = ({ difference: { uavs = [] } }) =>
+  uavs.map(({ place, name, change, before, after, why, gained, lost }) => ({
+    place, letter: routeLetter(place), name, what: [CHANGES[change] ?? change, gained.length > 0 && `+${gained.length}`, lost.length > 0 && `−${lost.length}`].filter(Boolean).join(" "),
+    before: change === "changed" && before ? figureWords(before) : "", after: after ? figureWords(after) : "", why,
+  }));
+
+/** Per target that changes hands or is given up: ["Tower 31: B → C", …] */
+export const targetLines = ({ difference: { targets = [] } }) =>
+  targets.map(({ label, from, to, message }) => `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`);

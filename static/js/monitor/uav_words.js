@@ -1,0 +1,90 @@
+/** What a live page says of one UAV: its state, the age of its report, four figures, the estimate. Values in, words out. */
+
+import { t } from "../text.js";
+import { clockText, durationText, exactClockText, heightText, lengthText, numberText, percentText, speedText } from "../units.js";
+import { ESTIMATED, LATE_S, LOST, MEASURED, reportAge_s, SILENT_S, withinOf_m } from "./certainty.js";
+
+const AMBER = "warning";
+const MODES = [
+  [/^(MISSION|AUTO)$/, t("Mission|mode"), "active"],
+  [/^(HOLD|LOITER|POSHOLD|BRAKE|PAUSED?)$/, t("Holding"), AMBER],
+  [/^(RTL|RETURN|SMART_?RTL|AUTO_?RTL|RETURNING)$/, t("Returning"), AMBER],
+  [/^(LAND|LANDING|PRECLAND)$/, t("Landing"), AMBER],
+  [/^(TAKEOFF|TAKE-OFF)$/, t("Taking off"), "active"],
+];
+
+/** { words, level }: what it does, as far as it has told. */
+export function stateOf({ measured, link }) {
+  const mode = (measured?.mode || link?.mode || "").trim();
+  const isInAir = measured?.is_in_air ?? link?.is_in_air ?? null;
+  if (!mode && isInAir === null) return { words: t("Not heard yet"), level: null };
+  if (isInAir === false) return { words: measured?.is_armed ? t("Armed, on the ground") : t("On the ground"), level: null };
+  const known = MODES.find(([pattern]) => pattern.test(mode.toUpperCase().replace(/^AUTO\./, "")));
+  return known ? { words: known[1], level: known[2] } : { words: mode || t("In the air"), level: null };
+}
+
+export const isHeld = (uav) => stateOf(uav).words === t("Holding");
+
+/** { words, isLate }: "0.7 s ago", "no report for 74 s". */
+export function ageWords(uav, now_ms) {
+  const age_s = reportAge_s(uav, now_ms);
+  if (age_s === null) return { words: t("no report yet"), isLate: false };
+  if (age_s < SILENT_S) return { words: t("{age} s ago", { age: numberText(age_s, 1) }), isLate: age_s >= LATE_S };
+  const age = age_s < 100 ? `${Math.floor(age_s)}\u00a0s` : durationText(age_s);
+  return { words: t("no report for {age}", { age }), isLate: true };
+}
+
+function heightOf({ altitude_relative_m = null, altitude_agl_m = null, altitude_amsl_m = null } = {}) {
+  if (altitude_relative_m !== null) return [altitude_relative_m, t("over take-off")];
+  if (altitude_agl_m !== null) return [altitude_agl_m, t("over ground")];
+  return [altitude_amsl_m, t("over the sea")];
+}
+
+/** Four figures: [{ figure, unit, words }]; "~" before what is not measured, "—" for what nobody knows. */
+export function figuresOf({ measured, estimated }, certainty) {
+  const mark = certainty === MEASURED ? "" : "~\u2009";
+  const told = (certainty === MEASURED ? measured : estimated) ?? measured ?? {};
+  const [height_m, above] = heightOf(told);
+  const said = (value, text) => (value === null || value === undefined ? "—" : `${mark}${text(value)}`);
+  const split = (text, words) => {
+    const [figure, unit = ""] = text.split(/\u00a0(?=[^\u00a0]*$)/);
+    return { figure, unit, words };
+  };
+  const lands = estimated?.ends_at;
+  return [
+    split(said(measured?.battery_percent, percentText), t("battery")),
+    split(said(height_m, heightText), above),
+    split(said(told.speed_mps, speedText), t("speed")),
+    split(lands ? `${mark}${clockText(lands)}` : "—", t("lands|time")),
+  ];
+}
+
+/** The box under an estimated UAV: { strong, rest }; null for a measured one. */
+export function estimateWords({ estimated, measured }, certainty) {
+  if (certainty === null || certainty === MEASURED) return null;
+  const seen = measured ? t("Last report {time}.", { time: exactClockText(measured.measured_at) }) : "";
+  if (certainty === LOST) return { strong: t("Lost: nobody can say where it is now."), rest: seen };
+  const contact = estimated.contact_expected_at ? t("Contact expected by {time}.", { time: exactClockText(estimated.contact_expected_at) }) : seen;
+  return { strong: t("Estimated, within {distance}", { distance: lengthText(withinOf_m(estimated)) }), rest: `${t("(95 of 100 times).")} ${contact}`.trim() };
+}
+
+/** One fact beside its name on the map. */
+export function mapFact(uav, certainty) {
+  if (certainty === LOST) return t("lost");
+  if (certainty === ESTIMATED) return t("estimated, ±{distance}", { distance: lengthText(withinOf_m(uav.estimated)) });
+  const state = stateOf(uav);
+  if (state.level === AMBER) return state.words.toLocaleLowerCase();
+  const [height_m] = heightOf(uav.measured ?? {});
+  return height_m === null ? state.words : heightText(height_m);
+}
+
+/** { next, at, toGo }: where it flies next, when, and what is left; words or "". labelOf(target) names a target of its mission. */
+export function nextOf({ estimated }, labelOf) {
+  if (!estimated) return { next: "", at: "", toGo: "" };
+  const arrival = estimated.arrivals.find(({ target }) => target !== null);
+  return {
+    next: arrival ? labelOf(arrival.target) : estimated.ends_at ? t("Landing") : "",
+    at: arrival ? exactClockText(arrival.at) : "",
+    toGo: estimated.to_go_m === null ? "" : t("{distance} to go", { distance: lengthText(estimated.to_go_m) }),
+  };
+}

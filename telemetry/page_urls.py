@@ -1,0 +1,11 @@
+"""Addresses of the pages of what flies, and of what was flown."""
+
+from django.urls import path
+
+from telemetry.pages import LivePage, MissionFlyPage, MissionReportPage
+
+urlpatterns = [
+    path("live", LivePage.as_view(), name="live"),
+    path("missions/<uuid:mission_id>/fly", MissionFlyPage.as_view(), name="mission-fly"),
+    path("missions/<uuid:mission_id>/report", MissionReportPage.as_view(), name="mission-report"),
+]

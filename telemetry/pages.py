@@ -1,0 +1,48 @@
+"""The pages of what flies: HTML shells, everything on them comes over the live wire and the REST API."""
+
+from typing import Any
+from uuid import UUID
+
+from django.http import Http404
+
+from inspection.selectors import ground_extent
+from missions.models import Mission
+from missions.selectors import mission_bounds
+from workspace.pages import SignedInPage, raster_maps
+
+
+class LivePage(SignedInPage):
+    """The organisation's whole fleet as it flies."""
+
+    template_name = "live.html"
+    extra_context = {"section": "live"}
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"canFly": self.request.user.can_plan, "mission": None, "extent": ground_extent(), "bounds": None} | raster_maps()
+
+
+class MissionStagePage(SignedInPage):
+    """A stage of one mission of the user's organisation."""
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        mission_id: UUID = kwargs["mission_id"]
+        user = self.request.user
+        own = Mission.objects.filter(organisation=user.organisation_id, deleted_at=None, pk=mission_id)
+        name = own.values_list("name", flat=True).first()
+        if name is None:
+            raise Http404
+        return {
+            "canFly": user.can_plan,
+            "mission": str(mission_id),
+            "missionName": name,
+            "extent": ground_extent(),
+            "bounds": mission_bounds(mission_id),
+        } | raster_maps()
+
+
+class MissionFlyPage(MissionStagePage):
+    template_name = "live.html"
+
+
+class MissionReportPage(MissionStagePage):
+    template_name = "report.html"

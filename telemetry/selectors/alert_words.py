@@ -1,0 +1,56 @@
+"""What alerts say, in the reader's language: stored is a template in English, and what is put into it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from django.utils.translation import gettext as _
+from django.utils.translation import gettext_noop
+
+from missions.stored_outcomes import outcome_in_words
+
+# Detectors know no languages: what they may say is named here for the catalogues.
+TEMPLATES = (
+    gettext_noop("%(uav)s is late: nothing has been heard of it for %(seconds)s s."),
+    gettext_noop("The link to %(uav)s is lost: nothing has been heard of it for %(seconds)s s."),
+    gettext_noop("%(uav)s is %(metres)s m beside its route; %(limit)s m are allowed."),
+    gettext_noop("%(uav)s flies %(metres)s m above the height of its route; %(limit)s m are allowed."),
+    gettext_noop("%(uav)s flies %(metres)s m below the height of its route; %(limit)s m are allowed."),
+    gettext_noop("%(uav)s is in the no-fly zone %(zone)s."),
+    gettext_noop("%(uav)s will be in the no-fly zone %(zone)s in %(seconds)s s."),
+    gettext_noop("%(uav)s is expected to end its flight with %(percent)s %% of its battery; %(reserve)s %% were to be left."),
+    gettext_noop("The battery of %(uav)s is not enough for its route: it would be empty before the end."),
+    gettext_noop("%(uav)s has %(percent)s %% of its battery left; its reserve is %(reserve)s %%."),
+    gettext_noop("%(uav)s flies its route, but has not come on for %(seconds)s s."),
+    gettext_noop("%(uav)s and %(other)s come within %(metres)s m of each other in %(seconds)s s."),
+    gettext_noop("%(uav)s and %(other)s are %(metres)s m from each other."),
+    gettext_noop("%(uav)s returns (%(mode)s) without a command of ours: by its own failsafe, or told by others."),
+    gettext_noop("%(uav)s lands (%(mode)s) without a command of ours: by its own failsafe, or told by others."),
+    gettext_noop("%(uav)s is flown by somebody else: its mode is %(mode)s."),
+    gettext_noop("%(uav)s has stopped its mission (%(mode)s) without a command of ours."),
+    gettext_noop("%(uav)s flies a mission again (%(mode)s), though it was told otherwise."),
+    gettext_noop("%(uav)s does not know where it is: its GPS has no fix."),
+    gettext_noop("%(uav)s reports, but not where it is."),
+    gettext_noop("The position of %(uav)s has jumped by %(metres)s m."),
+    gettext_noop("%(uav)s sees %(satellites)s satellites only."),
+    gettext_noop("The position of %(uav)s is weak: its HDOP is %(hdop)s."),
+    gettext_noop("%(uav)s flies a mission that is not the approved one."),
+    gettext_noop("%(uav)s flies a mission, and nobody knows which: nothing approved was found on it."),
+    gettext_noop("%(uav)s may hold another mission than the approved one: it changed after it was read back."),
+    gettext_noop("%(uav)s is at item %(item)s of its mission; the approved one has %(items)s."),
+    gettext_noop("The wind at %(uav)s is %(wind)s m/s; %(limit)s m/s are allowed."),
+    gettext_noop("%(uav)s holds a mix of missions. %(words)s"),
+    gettext_noop("The UAV %(uav)s holds something else than what was approved."),
+    gettext_noop("The UAV %(uav)s does not say what it holds."),
+    gettext_noop("Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."),
+)
+
+
+def alert_words(message: str, values: Mapping[str, Any]) -> str:
+    """What was stored without values, or does not fit its template, is as it was stored."""
+    if not values:
+        return message
+    read = {name: outcome_in_words(value) if name == "words" else value for name, value in values.items()}
+    try:
+        return _(message) % read
+    except (KeyError, TypeError, ValueError):
+        return message

@@ -1,0 +1,98 @@
+"""Alerts as they go over the wire."""
+
+from typing import Any
+
+from rest_framework import serializers
+
+from missions.serializers.known_fields import KnownFieldsSerializer
+from telemetry.models import Alert, AlertLevel, AlertNote
+from telemetry.selectors.alert_words import alert_words
+from workspace.models import User
+
+
+class AlertSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    uav = serializers.IntegerField(allow_null=True)
+    mission = serializers.UUIDField(allow_null=True)
+    level = serializers.ChoiceField(choices=AlertLevel.choices)
+    code = serializers.CharField(help_text="the cause; see docs/alerts.md")
+    subject = serializers.CharField(allow_blank=True, help_text="which of a kind: a zone, another UAV")
+    message = serializers.CharField(help_text="in the reader's language")
+    details = serializers.JSONField(help_text="figures of the cause")
+    opened_at = serializers.DateTimeField()
+    closed_at = serializers.DateTimeField(allow_null=True)
+    close_reason = serializers.CharField(allow_blank=True, help_text="cleared, landed or mission-ended")
+    acknowledged_at = serializers.DateTimeField(allow_null=True)
+    acknowledged_by = serializers.CharField(allow_null=True)
+    revision = serializers.IntegerField(help_text="counts the changes")
+    notes = serializers.IntegerField(help_text="how many there are")
+
+
+class AlertPageSerializer(serializers.Serializer):
+    results = AlertSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+class AlertNoteSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    author = serializers.CharField(allow_null=True)
+    text = serializers.CharField()
+    written_at = serializers.DateTimeField()
+
+
+class AlertStepSerializer(serializers.Serializer):
+    at = serializers.DateTimeField()
+    what = serializers.ChoiceField(choices=["opened", "rose", "acknowledged", "closed"])
+    level = serializers.ChoiceField(choices=AlertLevel.choices, required=False, help_text="from then on")
+    by = serializers.CharField(required=False)
+    reason = serializers.CharField(required=False)
+
+
+class AlertDetailSerializer(AlertSerializer):
+    written = AlertNoteSerializer(many=True, help_text="the notes, the first first")
+    course = AlertStepSerializer(many=True, help_text="what became of it")
+
+
+class AcknowledgementInputSerializer(KnownFieldsSerializer):
+    note = serializers.CharField(required=False, allow_blank=True, max_length=1_000, default="")
+
+
+class AlertNoteInputSerializer(KnownFieldsSerializer):
+    text = serializers.CharField(max_length=1_000)
+
+
+class AlertLimitsSerializer(serializers.Serializer):
+    """By name, each ends with its unit."""
+
+    stated = serializers.DictField(child=serializers.FloatField(), help_text="here")
+    in_force = serializers.DictField(child=serializers.FloatField(), help_text="these, else those below; a mission's come before a type's")
+    usual = serializers.DictField(child=serializers.FloatField())
+    bounds = serializers.DictField(child=serializers.ListField(child=serializers.FloatField()), help_text="least and most")
+
+
+def alert_json(alert: Alert, *, note_count: int) -> dict[str, Any]:
+    return {
+        "id": alert.pk,
+        "uav": alert.uav_id,
+        "mission": alert.mission_id,
+        "level": alert.level,
+        "code": alert.code,
+        "subject": alert.subject,
+        "message": alert_words(alert.message, alert.values),
+        "details": alert.details,
+        "opened_at": alert.opened_at,
+        "closed_at": alert.closed_at,
+        "close_reason": alert.close_reason,
+        "acknowledged_at": alert.acknowledged_at,
+        "acknowledged_by": _name(alert.acknowledged_by),
+        "revision": alert.revision,
+        "notes": note_count,
+    }
+
+
+def note_json(note: AlertNote) -> dict[str, Any]:
+    return {"id": note.pk, "author": _name(note.author), "text": note.text, "written_at": note.written_at}
+
+
+def _name(user: User | None) -> str | None:
+    return None if user is None else user.get_full_name() or user.username

@@ -1,0 +1,112 @@
+"""Alerts: listed, looked at, acknowledged, noted."""
+
+from django.shortcuts import get_object_or_404
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.views.parameters import invalid
+from telemetry.models import Alert, AlertLevel
+from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, alerts_that_match
+from telemetry.serializers import alerts as shapes
+from telemetry.services.alerts import acknowledge_alert, note_alert
+from telemetry.views.log_filters import mission_of, time_of, uav_of
+from workspace.idempotency import idempotent
+from workspace.paging import page_of
+from workspace.schema import PAGE_PARAMETERS
+
+STATES = ("open", "closed")
+NEWEST_FIRST = ("-opened_at", "-pk")
+MOST_NOTES = 200
+FILTERS = [
+    OpenApiParameter("state", str, enum=STATES, description="open or closed ones; both without it"),
+    OpenApiParameter("acknowledged", bool),
+    OpenApiParameter("level", str, description=f"one or several with commas: {', '.join(AlertLevel.values)}"),
+    OpenApiParameter("code", str, description="one or several with commas"),
+    OpenApiParameter("uav", int, description="id of a UAV"),
+    OpenApiParameter("mission", str, description="id of a mission"),
+    OpenApiParameter("opened_from", str, description="opened at or after this time, with its zone"),
+    OpenApiParameter("opened_before", str, description="opened before this time, with its zone"),
+]
+
+
+class Alerts(APIView):
+    @extend_schema(
+        operation_id="list_alerts", summary="Alerts, the newest first", parameters=[*FILTERS, *PAGE_PARAMETERS],
+        responses=shapes.AlertPageSerializer,
+    )  # fmt: skip
+    def get(self, request: Request) -> Response:
+        page = page_of(request, alerts_that_match(request.user.organisation, _asked(request)), order=NEWEST_FIRST)
+        return Response({"results": [shapes.alert_json(row, note_count=row.note_count) for row in page.rows], "next": page.next})
+
+
+class AlertDetail(APIView):
+    @extend_schema(operation_id="get_alert", summary="An alert, its notes and its course", responses=shapes.AlertDetailSerializer)
+    def get(self, request: Request, alert_id: int) -> Response:
+        return Response(_detail(_alert(request, alert_id)))
+
+
+class AlertAcknowledgement(APIView):
+    @extend_schema(
+        operation_id="acknowledge_alert",
+        summary="Say that somebody knows: it goes on, and is silent",
+        description="Acknowledged again it stays with who was first. Raised to a higher level it has to be acknowledged anew.",
+        request=shapes.AcknowledgementInputSerializer,
+        responses=shapes.AlertDetailSerializer,
+    )
+    @idempotent
+    def post(self, request: Request, alert_id: int) -> Response:
+        alert = _alert(request, alert_id)
+        body = shapes.AcknowledgementInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        acknowledge_alert(alert=alert, actor=request.user, note=body.validated_data["note"])
+        return Response(_detail(_alert(request, alert_id)))
+
+
+class AlertNotes(APIView):
+    @extend_schema(
+        operation_id="note_alert", summary="Write a note to an alert; it is never changed", request=shapes.AlertNoteInputSerializer,
+        responses={201: shapes.AlertNoteSerializer},
+    )  # fmt: skip
+    @idempotent
+    def post(self, request: Request, alert_id: int) -> Response:
+        alert = _alert(request, alert_id)
+        body = shapes.AlertNoteInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        if alert.notes.count() >= MOST_NOTES:
+            raise invalid("text", f"An alert takes {MOST_NOTES} notes.")
+        note = note_alert(alert=alert, actor=request.user, text=body.validated_data["text"])
+        return Response(shapes.note_json(note), status=201)
+
+
+def _alert(request: Request, alert_id: int) -> Alert:
+    return get_object_or_404(alerts_of_organisation(request.user.organisation), pk=alert_id)
+
+
+def _detail(alert: Alert) -> dict[str, object]:
+    notes = [shapes.note_json(note) for note in alert.notes.select_related("author")]
+    return {**shapes.alert_json(alert, note_count=len(notes)), "written": notes, "course": alert.course}
+
+
+def _asked(request: Request) -> AlertFilter:
+    """Raises ApiProblem 400."""
+    ask = request.query_params
+    state, acknowledged = ask.get("state", ""), ask.get("acknowledged", "")
+    if state not in ("", *STATES):
+        raise invalid("state", "open or closed.")
+    if acknowledged not in ("", "true", "false"):
+        raise invalid("acknowledged", "true or false.")
+    levels = tuple(filter(None, ask.get("level", "").split(",")))
+    if any(level not in AlertLevel.values for level in levels):
+        raise invalid("level", f"{', '.join(AlertLevel.values)}.")
+    return AlertFilter(
+        is_open=state == "open" if state else None,
+        is_acknowledged=acknowledged == "true" if acknowledged else None,
+        levels=levels,
+        codes=tuple(code[:50].replace("\0", "") for code in ask.get("code", "").split(",") if code),
+        uav_id=uav_of(request),
+        mission_id=mission_of(request),
+        opened_from=time_of(request, "opened_from"),
+        opened_before=time_of(request, "opened_before"),
+    )

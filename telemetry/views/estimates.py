@@ -1,0 +1,57 @@
+"""Where UAVs of a mission were estimated to be while nothing was heard of them."""
+
+from uuid import UUID
+
+from drf_spectacular.utils import OpenApiParameter, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.views.parameters import invalid
+from missions.views.missions import mission_or_404
+from telemetry.selectors.estimates import estimates_of_mission
+from telemetry.serializers.estimates import EstimateCollectionSerializer, estimate_feature
+from telemetry.views.log_filters import time_of, uav_of
+from workspace.paging import page_of
+from workspace.renderers import FastJSONRenderer
+from workspace.schema import PAGE_PARAMETERS
+
+FILTERS = [
+    OpenApiParameter("from", str, description="of moments at or after this time, with its zone"),
+    OpenApiParameter("to", str, description="of moments before this time, with its zone"),
+    OpenApiParameter("uav", int, description="id of a UAV"),
+    OpenApiParameter("replaced", bool, description="true: those for whose second a measurement came later; false: the others"),
+]
+
+
+class MissionEstimates(APIView):
+    renderer_classes = [FastJSONRenderer]
+
+    @extend_schema(
+        operation_id="list_estimates",
+        summary="Where UAVs of a mission were estimated to be between their reports, second by second",
+        description=(
+            "GeoJSON, in the order of the moments. There is an estimate for each second of the server's clock in which nothing was "
+            "measured, or in which what was measured came later: then it is marked as replaced, and stays, so that it can be seen how "
+            "good it was."
+        ),
+        parameters=[*FILTERS, *PAGE_PARAMETERS],
+        responses=EstimateCollectionSerializer,
+    )
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        estimates = estimates_of_mission(
+            mission_or_404(request.user, mission_id),
+            uav_id=uav_of(request),
+            estimated_from=time_of(request, "from"),
+            estimated_before=time_of(request, "to"),
+            is_replaced=_flag(request, "replaced"),
+        )
+        page = page_of(request, estimates, order=("estimated_for", "pk"))
+        return Response({"type": "FeatureCollection", "features": [estimate_feature(row) for row in page.rows], "next": page.next})
+
+
+def _flag(request: Request, name: str) -> bool | None:
+    text = request.query_params.get(name, "")
+    if text not in {"", "true", "false"}:
+        raise invalid(name, "true or false is needed.")
+    return text == "true" if text else None

@@ -1,0 +1,39 @@
+"""Estimates of flights that went as flights go: nearer than two ways without a filter, and within their bounds 95 times of 100."""
+
+import pytest
+
+from tests.telemetry.estimation.routes import lines_of
+from tests.telemetry.estimation.scoring import Score, rms, score_flights, share
+
+
+def is_better_than_both(score: Score) -> bool:
+    return rms(score.error_m) < min(rms(score.held_m), rms(score.straight_m))
+
+
+def test_a_few_flights_are_estimated_well_at_every_report_interval():
+    for every_s, score in score_flights(range(5)).items():
+        assert len(score.error_m) > 1_500
+        assert is_better_than_both(score), every_s
+        assert 0.88 <= share(score.inside) <= 0.995, (every_s, share(score.inside))  # of five flights: errors of GPS are shared by reports
+        assert share(score.height_inside) >= 0.85
+        assert share(score.speed_inside) >= 0.85
+
+
+@pytest.mark.long
+def test_200_flights_keep_the_bars(shared_data):
+    lines = [
+        line for name in ("nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf") for line in lines_of(shared_data(f"osm/{name}"))
+    ]
+    for every_s, score in score_flights(range(200), lines).items():
+        assert is_better_than_both(score), every_s
+        assert 0.93 <= share(score.inside) <= 0.97, (every_s, share(score.inside))
+        assert share(score.height_inside) >= 0.93, (every_s, share(score.height_inside))
+        assert share(score.speed_inside) >= 0.93, (every_s, share(score.speed_inside))
+        assert share(score.arrival_inside) >= 0.93, (every_s, share(score.arrival_inside))
+
+
+@pytest.mark.long
+def test_200_flights_along_drawn_lines_keep_the_bars():
+    for every_s, score in score_flights(range(200)).items():
+        assert is_better_than_both(score), every_s
+        assert 0.93 <= share(score.inside) <= 0.97, (every_s, share(score.inside))

@@ -1,0 +1,137 @@
+"""Alerts over the API: found, acknowledged, noted, by whom may; and where they begin."""
+
+import pytest
+from django.utils.translation import override
+
+from missions.models import Uav, UavType
+from telemetry.models import Alert, AlertLevel
+from telemetry.selectors.alert_words import TEMPLATES, alert_words
+from telemetry.services.alerts import close_alert, open_alert, tell_of_second_sender
+from tests.missions.outbox import a_uav
+from tests.telemetry.records import at
+from tests.workspace.people import client_of, somebody
+from workspace.models import AuditEntry, Organisation, Role
+
+pytestmark = pytest.mark.django_db
+LATE = "%(uav)s is late: nothing has been heard of it for %(seconds)s s."
+
+
+@pytest.fixture
+def uav() -> Uav:
+    return a_uav("Tern")
+
+
+@pytest.fixture
+def operator():
+    return client_of(somebody(Role.OPERATOR))
+
+
+def an_alert(uav: Uav, code: str = "link-lost", level: str = AlertLevel.WARNING, **facts) -> Alert:
+    alert = open_alert(uav=uav, level=level, code=code, message=LATE, values={"uav": uav.name, "seconds": 12})
+    Alert.objects.filter(pk=alert.pk).update(**facts)
+    return alert
+
+
+def post(client, path, **body):
+    return client.post(f"/api/v1/alerts/{path}", body, content_type="application/json")
+
+
+def found(client, query: str) -> list[str]:
+    return [alert["code"] for alert in client.get(f"/api/v1/alerts?{query}").json()["results"]]
+
+
+def test_alerts_are_filtered_and_paged_the_newest_first(uav, operator):
+    other = a_uav("Kite")
+    an_alert(uav, "gps", opened_at=at(0))
+    an_alert(uav, "zone", AlertLevel.CRITICAL, opened_at=at(10))
+    an_alert(other, "weather", opened_at=at(20), closed_at=at(30))
+    assert found(operator, "") == ["weather", "zone", "gps"]
+    assert found(operator, "state=open") == ["zone", "gps"]
+    assert found(operator, "state=closed") == ["weather"]
+    assert found(operator, "level=critical,advisory") == ["zone"]
+    assert found(operator, "code=gps,weather") == ["weather", "gps"]
+    assert found(operator, f"uav={other.pk}") == ["weather"]
+    assert found(operator, "acknowledged=true") == []
+    begin, end = at(5).isoformat().replace("+00:00", "Z"), at(20).isoformat().replace("+00:00", "Z")
+    assert found(operator, f"opened_from={begin}&opened_before={end}") == ["zone"]
+    first = operator.get("/api/v1/alerts?limit=2").json()
+    assert [alert["code"] for alert in operator.get(first["next"]).json()["results"]] == ["gps"]
+
+
+@pytest.mark.parametrize("query", ["state=shut", "level=bad", "uav=x", "mission=7", "opened_from=yesterday", "acknowledged=maybe"])
+def test_what_cannot_be_asked_for_is_refused(query, operator):
+    assert operator.get(f"/api/v1/alerts?{query}").status_code == 400
+
+
+def test_acknowledged_it_goes_on_and_stays_with_who_was_first(uav, operator):
+    alert = an_alert(uav)
+    answer = post(operator, f"{alert.pk}/acknowledge", note="Called the pilot.").json()
+    assert (answer["closed_at"], answer["notes"]) == (None, 1)
+    again = post(client_of(somebody(Role.ADMINISTRATOR)), f"{alert.pk}/acknowledge").json()
+    for name in ("acknowledged_at", "acknowledged_by", "notes"):
+        assert again[name] == answer[name]
+    assert [step["what"] for step in again["course"]] == ["opened", "acknowledged"]
+    assert [entry.action for entry in AuditEntry.objects.filter(subject_type="alert").order_by("pk")] == ["acknowledge", "note"]
+
+
+def test_a_raised_level_has_to_be_acknowledged_anew(uav, operator):
+    alert = an_alert(uav)
+    post(operator, f"{alert.pk}/acknowledge")
+    an_alert(uav, level=AlertLevel.CRITICAL)
+    answer = operator.get(f"/api/v1/alerts/{alert.pk}").json()
+    assert (answer["level"], answer["acknowledged_at"]) == ("critical", None)
+    assert [step["what"] for step in answer["course"]] == ["opened", "acknowledged", "rose"]
+
+
+def test_a_note_that_is_sent_twice_with_one_key_is_written_once(uav, operator):
+    alert = an_alert(uav)
+    for _ in range(2):
+        answer = operator.post(
+            f"/api/v1/alerts/{alert.pk}/notes", {"text": "Seen."}, content_type="application/json", headers={"Idempotency-Key": "k"}
+        )
+        assert answer.status_code == 201
+    assert [note["text"] for note in operator.get(f"/api/v1/alerts/{alert.pk}").json()["written"]] == ["Seen."]
+
+
+def test_viewers_read_and_others_organisations_see_nothing(uav):
+    alert = an_alert(uav)
+    viewer = client_of(somebody(Role.VIEWER))
+    assert viewer.get(f"/api/v1/alerts/{alert.pk}").status_code == 200
+    assert post(viewer, f"{alert.pk}/acknowledge").status_code == 403
+    stranger = client_of(somebody(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
+    assert found(stranger, "") == []
+    assert [stranger.get(f"/api/v1/alerts/{alert.pk}").status_code, post(stranger, f"{alert.pk}/notes", text="x").status_code] == [404, 404]
+
+
+def test_limits_are_stated_for_a_type_and_checked(operator):
+    uav_type = UavType.objects.create(name="Quad")
+    address = f"/api/v1/uav-types/{uav_type.pk}/alert-limits"
+    answer = operator.put(address, {"off_route_m": 40, "wind_mps": None}, content_type="application/json").json()
+    assert answer["stated"] == {"off_route_m": 40.0}
+    assert (answer["in_force"]["off_route_m"], answer["in_force"]["link_late_s"]) == (40.0, 5.0)
+    for wrong in ({"off_route": 40}, {"off_route_m": "far"}, {"off_route_m": 1}, {"off_route_m": 200}, [1], {"link_late_s": True}):
+        refused = operator.put(address, wrong, content_type="application/json")
+        assert refused.status_code == 400 and refused.json()["error"]["details"]
+    assert operator.get(address).json()["stated"] == {"off_route_m": 40.0}
+    assert AuditEntry.objects.filter(action="state-alert-limits").count() == 1
+
+
+def test_an_alert_is_read_in_german(uav):
+    alert = an_alert(uav)
+    with override("de"):
+        assert alert_words(alert.message, alert.values) == "Tern ist überfällig: Seit 12 s wurde nichts von ihm gehört."
+        same = [text for text in TEMPLATES if alert_words(text, _sevens(text)) == text % _sevens(text)]
+    assert same == []
+
+
+def _sevens(template: str) -> dict[str, str]:
+    return {part.split(")")[0]: "7" for part in template.split("%(")[1:]}
+
+
+def test_two_senders_are_told_and_over(uav):
+    tell_of_second_sender(uav_id=uav.pk, believed="udp a", other="udp b")
+    alert = Alert.objects.get()
+    assert alert_words(alert.message, alert.values) == "Two senders say that they are Tern: udp a, which is believed, and udp b."
+    tell_of_second_sender(uav_id=uav.pk)
+    assert Alert.objects.get().close_reason == "cleared"
+    assert not close_alert(uav=uav, code="second-sender")
