@@ -252,6 +252,7 @@ SPECTACULAR_SETTINGS = {
         "ProposalState": "inspection.models.ProposalState",
         "GapState": "inspection.models.GapState",
         "MissionState": "missions.models.MissionState",
+        "OfferState": "missions.models.OfferState",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
         "UavFigure": "missions.fleet_selectors.FIGURES",

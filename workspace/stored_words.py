@@ -59,6 +59,40 @@ TEMPLATES = (
     gettext_noop("The file could not be read."),
     gettext_noop("polygon is not closed"),
     gettext_noop("the border crosses itself"),
+    # of offers of another plan while a mission flies
+    gettext_noop("Working out what is left"),
+    gettext_noop("Looking up what is left"),
+    gettext_noop("Comparing ways to share it out"),
+    gettext_noop("Worked out"),
+    gettext_noop("It was asked for again."),
+    gettext_noop("Something else has happened since."),
+    gettext_noop("It was not worked out in time."),
+    gettext_noop("The mission does not fly any more."),
+    gettext_noop("It was worked out too long ago."),
+    gettext_noop("Nothing would change: the UAVs fly on as they do."),
+    gettext_noop("No other UAV of the mission is in the air."),
+    gettext_noop("Its battery does not last for its route."),
+    gettext_noop("%(zone)s lies across its route."),
+    gettext_noop("Taken over by %(mission)s."),
+    gettext_noop("Continues %(mission)s."),
+    gettext_noop("%(uav)s was given another command since."),
+    gettext_noop("%(target)s was done meanwhile."),
+    gettext_noop("%(uav)s is not where it was reckoned to be."),
+    gettext_noop("%(uav)s has come too near to where it was to leave its route."),
+    gettext_noop("%(uav)s was not heard of lately: nobody knows where it is."),
+    gettext_noop("%(uav)s has dropped out."),
+    gettext_noop("%(uav)s was told to come down."),
+    gettext_noop("%(uav)s is flown by a companion computer, which is not given another mission in the air."),
+    gettext_noop("%(uav)s has not taken off."),
+    gettext_noop("%(uav)s flies its route in several flights, and lands in between."),
+    gettext_noop("%(uav)s is %(metres)s m off its route."),
+    gettext_noop("%(uav)s would fly below the place where it took off."),
+    gettext_noop("The battery of %(uav)s does not last for it."),
+    gettext_noop("%(uav)s comes to it too soon, or has too little of its route left. Hold it, and plan the rest again."),
+    gettext_noop("%(uav)s has no range left."),
+    gettext_noop("%(uav)s has too little battery left."),
+    gettext_noop("%(uav)s does as many targets as it may."),
+    gettext_noop("A flight of %(uav)s has failed: it does not fly on in this mission."),
 )
 
 
@@ -71,7 +105,9 @@ _PATTERNS = {template: _pattern(template) for template in TEMPLATES}
 
 
 def in_words(stored: str) -> str:
-    """The same sentence in the reader's language; as it is where nobody has foreseen it."""
+    """The same sentence in the reader's language; as it is where nobody has foreseen it. Several stand on lines of their own."""
+    if "\n" in stored:
+        return "\n".join(in_words(line) for line in stored.split("\n"))
     for template, pattern in _PATTERNS.items():
         if match := pattern.fullmatch(stored):
             return _(template) % match.groupdict() if match.groupdict() else _(template)

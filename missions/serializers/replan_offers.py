@@ -1,5 +1,6 @@
 """Offers of another plan in the shapes of the API."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from rest_framework import serializers
@@ -36,6 +37,15 @@ class ReplanAskedSerializer(serializers.Serializer):
     offer = serializers.UUIDField()
 
 
+def difference_in_words(difference: Mapping[str, Any]) -> dict[str, Any]:
+    """As services/replanning/difference.py has it, in the reader's language, and without what the offer was reckoned on."""
+    shown = {name: value for name, value in difference.items() if name != "basis"}
+    for part, told in (("uavs", "why"), ("targets", "message")):
+        if part in shown:
+            shown[part] = [{**entry, told: in_words(entry[told])} for entry in shown[part]]
+    return shown
+
+
 def offer_json(offer: ReplanOffer) -> dict[str, Any]:
     return {
         "id": str(offer.pk),
@@ -44,7 +54,7 @@ def offer_json(offer: ReplanOffer) -> dict[str, Any]:
         "cause": offer.cause,
         "state": offer.state,
         "revision": REVISIONS.get(OfferState(offer.state), DECIDED),
-        "difference": {name: value for name, value in offer.difference.items() if name != "basis"},
+        "difference": difference_in_words(offer.difference),
         "continuation": None if offer.continuation_id is None else str(offer.continuation_id),
         "created_at": offer.created_at,
         "decided_by": offer.decided_by.username if offer.decided_by else None,

@@ -11,7 +11,8 @@ from missions.services.requests import task_from_json
 
 
 def stored_routes(mission: Mission) -> list[PlannedRoute] | None:
-    """In the order of the mission's UAVs, with heights, times and Wh to the digits that are stored; without their targets and lines.
+    """In the order of the mission's UAVs, with heights, times and Wh to the digits that are stored; without their lines. Points of
+    one target share its key: what hangs at a target may be passed near there.
 
     None where it has no plan, or one of before there were times.
     """
@@ -26,7 +27,10 @@ def _stored(route: Route) -> PlannedRoute:
     if not rows:
         return PlannedRoute()
     points = RoutePoints.of([
-        RoutePoint(LonLat(*row.position.coords[:2]), WaypointKind(row.kind), row.altitude_agl_m, task=task_from_json(row.task))
+        RoutePoint(
+            LonLat(*row.position.coords[:2]), WaypointKind(row.kind), row.altitude_agl_m, target=row.target_id,
+            task=task_from_json(row.task),
+        )
         for row in rows
     ])  # fmt: skip
     amsl_m = _column(rows, "altitude_amsl_m")

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from telemetry.alerting.memory import position_of
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Meeting
+
+FloatArray = NDArray[np.float64]
 
 STEP_S = 2.0
 MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
@@ -79,36 +82,47 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
     apart_m = np.hypot(way[:, None, 0, 0] - way[None, :, 0, 0], way[:, None, 0, 1] - way[None, :, 0, 1])
     group = np.array([one.organisation for one in moving])
     near = (apart_m - reach_m[:, None] - reach_m[None, :] < NEAR_M) & (group[:, None] == group[None, :])
-    for one, other in zip(*np.nonzero(np.triu(near, 1)), strict=True):
-        first, second = sorted((moving[one], moving[other]), key=lambda uav: uav.uav_id)
-        meeting = _closest(first, second, way[one] - way[other])
-        if meeting is not None:
+    near &= ~(_least_apart_m(moving, within_s) > NEAR_HEIGHT_M)  # NaN: not known
+    ones, others = np.nonzero(np.triu(near, 1))
+    lateral_m, in_s = _closest(way[ones] - way[others])
+    for pair in np.flatnonzero(lateral_m <= NEAR_M).tolist():
+        first, second = sorted((moving[ones[pair]], moving[others[pair]]), key=lambda uav: uav.uav_id)
+        meeting = _meeting(first, second, float(lateral_m[pair]), float(in_s[pair]))
+        if meeting.height_m <= NEAR_HEIGHT_M:
             found[first.uav_id].append(meeting)
     return found
 
 
-def _closest(first: Moving, second: Moving, between: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Meeting | None:
-    """between (steps, 2) [m]: from the one to the other. Of each step the closest moment counts."""
-    best_m, at_s = math.hypot(*between[0]), 0.0
-    for step in range(len(between) - 1):
-        (x, y), (dx, dy) = between[step], between[step + 1] - between[step]
-        square = dx * dx + dy * dy
-        share = 0.0 if square == 0.0 else min(1.0, max(0.0, -(x * dx + y * dy) / square))
-        metres = math.hypot(x + share * dx, y + share * dy)
-        if metres < best_m:
-            best_m, at_s = metres, (step + share) * STEP_S
-    height_m = _height_between_m(first, second, at_s)
-    if best_m > NEAR_M or height_m > NEAR_HEIGHT_M:
-        return None
+def _least_apart_m(moving: Sequence[Moving], within_s: float) -> FloatArray:
+    """In height, of each pair (n, n), at any time."""
+    height_m = np.array([math.nan if one.height_m is None else one.height_m for one in moving])
+    reach_m = within_s * np.abs([one.climb_mps for one in moving])
+    apart_m: FloatArray = np.abs(height_m[:, None] - height_m[None, :]) - reach_m[:, None] - reach_m[None, :]
+    return apart_m
+
+
+def _closest(between: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """How near (p,) [m], and in how many seconds; between (p, steps, 2) [m] leads from the one to the other at each step."""
+    here, on = between[:, :-1], np.diff(between, axis=1)
+    square = (on * on).sum(axis=2)
+    share = np.clip(-(here * on).sum(axis=2) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    metres = np.hypot(*(here + share[:, :, None] * on).transpose(2, 0, 1))
+    step = metres.argmin(axis=1)
+    rows = np.arange(len(between))
+    return metres[rows, step], (step + share[rows, step]) * STEP_S
+
+
+def _meeting(first: Moving, second: Moving, lateral_m: float, in_s: float) -> Meeting:
+    height_m = _height_between_m(first, second, in_s)
     bound_m = math.hypot(min(first.bound_m, MOST_BOUND_M), min(second.bound_m, MOST_BOUND_M))
     bound_height_m = math.hypot(min(first.bound_height_m, MOST_BOUND_M), min(second.bound_height_m, MOST_BOUND_M))
     return Meeting(
         other_id=second.uav_id,
         other_name=second.name,
-        in_s=float(at_s),
-        lateral_m=float(best_m),
+        in_s=in_s,
+        lateral_m=lateral_m,
         height_m=height_m,
-        least_lateral_m=max(0.0, float(best_m) - bound_m),
+        least_lateral_m=max(0.0, lateral_m - bound_m),
         least_height_m=max(0.0, height_m - bound_height_m),
     )
 

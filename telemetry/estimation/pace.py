@@ -21,9 +21,10 @@ SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
 # Calibrated on the truth generator, on seeds that no test uses; see benchmarks/estimator.py.
 PACE_SD = 0.06  # of a UAV that has not flown yet
-PACE_WANDERS = 0.004  # in a second
+PACE_WANDERS = 0.006  # in a second
+SUREST_SD = 0.012  # of a pace, however long it was seen
 LEAST_PACE, MOST_PACE = 0.4, 1.8
-GUST_SD, GUST_S = 0.025, 18.0  # of speed, and for how long one lasts
+GUST_SD, GUST_S = 0.025, 25.0  # of speed, and for how long one lasts
 SMALLEST_S = 0.04
 NOW_S = 25.0  # for how long the speed of this moment tells of what comes
 NOW_SHARE = 0.8
@@ -208,7 +209,8 @@ def _learnt(
         gain = variance / (variance + seen_s2 / moving_s**2)
         better = pace.pace * (1.0 + gain * float(places_s.mean() - middle_s.mean()) / moving_s)
         variance *= 1.0 - gain
-    return Pace(nominal_s, min(max(better, LEAST_PACE), MOST_PACE), min(variance, PACE_SD**2), _now(profile, clock, places_s, sight))
+    better, variance = min(max(better, LEAST_PACE), MOST_PACE), min(max(variance, SUREST_SD**2), PACE_SD**2)
+    return Pace(nominal_s, better, variance, _now(profile, clock, places_s, sight))
 
 
 def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, sight: Seen) -> float:

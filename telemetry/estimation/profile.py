@@ -28,9 +28,9 @@ SLOWEST_MPS = 0.5
 SLOWS_SHARE, LEAST_CORNER_SHARE = 0.5, 0.1  # of its speed in a corner, for each radian; never below
 STEPS = 12  # of a leg
 # Standard deviations of how long something takes, beside the speed.
-STRAIGHT_S, TURN_S = 0.15, 1.8  # at a waypoint that is passed, and by the sine of half the bend more
-STOP_S = 1.7
-CLIMB_SHARE = 0.18  # of the time that a leg takes because of its height
+STRAIGHT_S, TURN_S = 0.15, 1.6  # at a waypoint that is passed, and by the sine of half the bend more
+STOP_S = 1.6
+CLIMB_SHARE = 0.22  # of the time that a leg takes because of its height
 
 
 @dataclass(frozen=True, eq=False)

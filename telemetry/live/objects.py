@@ -10,6 +10,7 @@ from django.utils import translation
 
 from missions.models import ReplanOffer, UavCommand
 from missions.serializers.commands import command_json
+from missions.serializers.replan_offers import difference_in_words
 from telemetry.live.missions import missions_json
 from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
@@ -55,7 +56,7 @@ def _offers(ids: list[str]) -> list[dict[str, Any]]:
             "code": offer.code,
             "state": offer.state,
             "cause": offer.cause,
-            "difference": offer.difference,
+            "difference": difference_in_words(offer.difference),
             "continuation": offer.continuation_id,
             "created_at": offer.created_at,
             "outcome": in_words(offer.outcome),

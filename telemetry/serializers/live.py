@@ -91,7 +91,7 @@ class LiveTargetSerializer(serializers.Serializer):
     uav = serializers.IntegerField(allow_null=True, help_text="place of the UAV that flies to it")
 
 
-class TargetCountsSerializer(serializers.Serializer):
+class LiveTargetCountsSerializer(serializers.Serializer):
     complete = serializers.IntegerField()
     all = serializers.IntegerField()
 
@@ -106,7 +106,7 @@ class LiveMissionSerializer(serializers.Serializer):
     ended_at = serializers.DateTimeField(allow_null=True)
     uavs = MissionPlaceSerializer(many=True)
     targets = LiveTargetSerializer(many=True)
-    counts = TargetCountsSerializer()
+    counts = LiveTargetCountsSerializer()
 
 
 class LiveOfferSerializer(serializers.Serializer):

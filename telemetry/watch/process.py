@@ -18,6 +18,7 @@ from telemetry.estimation.tracker import Tracker
 from telemetry.selectors.watched import StoredReport, WatchedFlight, newest_reports, places_heard, watched_flights
 from telemetry.services.alerting import look
 from telemetry.services.knowledge import knowledge_of
+from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,
     forget_what_is_over,
@@ -66,6 +67,8 @@ class Watch:
     held: dict[int, Watched] = field(default_factory=dict)  # by UAV
     _stop: threading.Event = field(default_factory=threading.Event)
     _new: NewReports = field(default_factory=NewReports)
+    _targets: TargetChecks = field(default_factory=TargetChecks)
+    _held_at_s: dict[int, float] = field(default_factory=dict)
     _quiet_until_s: float = -AWAY_EVERY_S
     _quiet_about_faults_until_s: float = -AWAY_EVERY_S
 
@@ -89,8 +92,9 @@ class Watch:
         self._read()
         self._learn(now_s)
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
-        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
         self._tell(list(made.values()))
+        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
+        self._check_targets(now_s)
 
     # Who is watched
 
@@ -147,6 +151,13 @@ class Watch:
                 self._quiet_about_faults_until_s = time.monotonic() + AWAY_EVERY_S
                 logger.exception("%s could not be estimated", watched.flight.name)
             return None
+
+    def _check_targets(self, now_s: float) -> None:
+        """Also of UAVs whose mission has just ended: its last targets count as complete by that."""
+        self._held_at_s |= dict.fromkeys(self.held, now_s)
+        self._held_at_s = {uav_id: at_s for uav_id, at_s in self._held_at_s.items() if now_s - at_s <= LOOKED_BACK_S}
+        if self._held_at_s:
+            self._targets.check(sorted(self._held_at_s))
 
     # What is told
 

@@ -54,7 +54,7 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
         approval = approve_mission(mission=held.continuation, actor=actor)
         continuation = held_mission(held.continuation_id, None)
         _hand_over_targets(mission, continuation, held.difference)
-        why = _("Continues %(mission)s.") % {"mission": mission.name}
+        why = f"Continues {mission.name}."
         told = []
         for uav in sorted(uavs, key=lambda one: one["uav"] or 0):
             row = Uav.objects.filter(pk=uav["uav"]).first()
@@ -96,7 +96,7 @@ def _hand_over_targets(mission: Mission, continuation: Mission, difference: Mapp
     now = timezone.now()
     rows = {target.sequence: target for target in mission.targets.all()}
     taken = sorted(target for uav in difference["uavs"] if uav["change"] == "changed" for target in uav["order"])
-    over = _("Taken over by %(mission)s.") % {"mission": continuation.name}
+    over = f"Taken over by {continuation.name}."
     done = []
     for place, target in enumerate(taken):
         row = rows[target]

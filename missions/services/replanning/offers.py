@@ -29,7 +29,7 @@ def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.state != MissionState.ACTIVE:
             raise refuse("not_flying", _("Only what is left of a mission that flies can be planned again."))
-        _set_aside(held, _("It was asked for again."))
+        _set_aside(held, "It was asked for again.")
         return _begin(held, ASKED_FOR, {"code": ASKED_FOR}, actor)
 
 
@@ -47,7 +47,7 @@ def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffe
         known = held.replan_offers.filter(code=code, cause__contains=named).exclude(state=OfferState.OUTDATED)
         if known.exists():
             return None
-        _set_aside(held, _("Something else has happened since."))
+        _set_aside(held, "Something else has happened since.")
         offer, _job = _begin(held, code, {**cause, **named}, None)
     return offer
 
@@ -75,7 +75,7 @@ def settle_offers(*, now: datetime | None = None) -> int:
             if held.state == OfferState.OPEN:
                 words = why_outdated(held, moment)
             elif held.state == OfferState.COMPUTING and held.created_at + WORKED_OUT_WITHIN < moment:
-                words = _("It was not worked out in time.")
+                words = "It was not worked out in time."
             else:
                 continue
             if words:

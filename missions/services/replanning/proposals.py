@@ -51,7 +51,7 @@ class Field:
         zone = self.zones.get(place)
         words = _("%(zone)s lies across its route.") % {"zone": zone} if zone else ""
         words = words or (_("Its battery does not last for its route.") if place in self.forced else "")
-        return " ".join(filter(None, [words, self.troubles.get(place, "")]))
+        return "\n".join(filter(None, [words, self.troubles.get(place, "")]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +148,7 @@ def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
     )
     if not flying:
         reasons = [field.troubles[rest.place] for rest in field.rests if not rest.is_out and rest.place in field.troubles]
-        words = " ".join(reasons) or "No other UAV of the mission is in the air."
+        words = "\n".join(reasons) or "No other UAV of the mission is in the air."
         return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("nobody_left", words)))
     if not wanted:
         return Proposal(field, {}, recalled, {})

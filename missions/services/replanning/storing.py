@@ -5,7 +5,6 @@ from datetime import datetime
 from typing import Any
 
 from django.db import transaction
-from django.utils.translation import gettext as _
 
 from missions.flight_plan.conditions import conditions_from_json
 from missions.models import Mission, MissionUav, Route
@@ -64,8 +63,8 @@ def _store(proposal: Proposal) -> Mission:
         conditions=conditions_from_json(flying.conditions),
         lost_link=lost_link_from_json(flying.lost_link),
     )
-    name = _("%(mission)s, continued") % {"mission": flying.name[: LONGEST_NAME - 20]}
-    draft = create_mission(organisation=flying.organisation, author=flying.author, name=name[:LONGEST_NAME], request=request)
+    name = f"{flying.name[: LONGEST_NAME - 20]}, continued"
+    draft = create_mission(organisation=flying.organisation, author=flying.author, name=name, request=request)
     Mission.objects.filter(pk=draft.pk).update(continues=flying, alert_limits=flying.alert_limits)
     for uav, one in zip(draft.mission_uavs.all(), continued, strict=True):
         MissionUav.objects.filter(pk=uav.pk).update(home_amsl_m=one.leaving.rest.take_off_amsl_m)

@@ -72,7 +72,7 @@ def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, str]
         words += [reason.message for reason in reasons]
     troubles = [field.why(rest.place) for rest in field.rests]
     told = dict.fromkeys(filter(None, [*words, *troubles]))
-    return " ".join(told) or _("Nothing would change: the UAVs fly on as they do.")
+    return "\n".join(told) or _("Nothing would change: the UAVs fly on as they do.")
 
 
 def _open(offer: ReplanOffer, proposal: Proposal) -> list[Reason]:

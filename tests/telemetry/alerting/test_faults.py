@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
+from telemetry.alerting.detector import LOOK_EVERY_S
+from telemetry.alerting.detectors.link import lost_after_s
 from telemetry.alerting.finding import CRITICAL
 from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.surroundings import LinkFacts
 from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
-from tests.telemetry.alerting.faults import FAULTS, LIMITS, Fault
+from tests.telemetry.alerting.faults import FAULTS, LIMITS, Fault, link_lost
 from tests.telemetry.alerting.truth import MISSION, START_S, Instruments, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch
 
@@ -54,6 +56,10 @@ def wrong_with(make, seed: int) -> str:
             words.append(f"{code} {'/'.join(levels)} {late_s:.1f} s late")
         if reached_s is not None and reached_s - START_S < fault.begins_s - 1:
             words.append(f"{code} told before it began")
+    if make is link_lost:
+        lost_s = watch.reached("link-lost", (CRITICAL,))
+        if lost_s is None or lost_s > START_S + fault.begins_s + lost_after_s(LIMITS, interval_s) + LOOK_EVERY_S:
+            words.append("lost too late")
     wanted = {code for code, _, _ in fault.due}
     opened = [(event.code, event.subject) for event in watch.opened()]
     if (wanted and len(opened) != 1) or (not wanted and {code for code, _ in opened} - {"battery-short"}):

@@ -1,13 +1,17 @@
 """The watch estimates UAVs of missions on their way, and keeps what it estimated."""
 
 from datetime import UTC, datetime, timedelta
+from unittest.mock import MagicMock
 
 import pytest
+from django.db import OperationalError
 
 from missions.models import Mission, MissionState, Uav
 from telemetry.decoding.measurement import Measurement
-from telemetry.models import PositionEstimate, UavWatch
+from telemetry.estimation.tracker import Tracker
+from telemetry.models import PositionEstimate, UavLink, UavWatch
 from telemetry.services import NewRecord, store_records
+from telemetry.watch import process
 from telemetry.watch.options import Options
 from telemetry.watch.process import Watch
 from tests.missions.flights import carry, dispatched, fleet, ground
@@ -103,3 +107,49 @@ def test_a_watch_that_stops_gives_its_uavs_back(uav):
     row = UavWatch.objects.get(uav=uav)
     assert row.holder == ""
     assert row.estimated is not None
+
+
+def test_without_a_record_the_link_tells_how_it_does(uav):
+    """An autopilot without GPS makes no record; its heartbeat still names the mode."""
+    for second in range(10):
+        report(uav, float(second), mode="MISSION", velocity_east_mps=10.0, velocity_north_mps=0.0, altitude_relative_m=60.0)
+    facts = {"autopilot": "px4", "mode": "LOITER", "is_in_air": True, "heard_at": NOW + timedelta(seconds=14)}
+    UavLink.objects.update_or_create(uav=uav, defaults=facts)
+    one = watch()
+    one.round(NOW.timestamp() + 15.01)
+    assert UavWatch.objects.get(uav=uav).estimated["report_at"] == "2026-11-22T12:00:14.000Z"
+    assert one.held[uav.pk].tracker.estimate(NOW.timestamp() + 60.0).speed_mps < 1.0
+
+
+def test_one_uav_that_cannot_be_estimated_does_not_blind_the_watch(uav, monkeypatch):
+    def fails(*_):
+        raise FloatingPointError
+
+    report(uav, 0.4)
+    one = watch()
+    monkeypatch.setattr(Tracker, "estimate", fails)
+    one.round(NOW.timestamp() + 1.01)
+    assert list(one.held) == [uav.pk]
+    monkeypatch.undo()
+    one.round(NOW.timestamp() + 2.01)
+    assert seconds() == [2.0]
+
+
+def test_it_waits_for_a_database_that_is_away_and_goes_on(monkeypatch, caplog):
+    one, rounds = watch(), []
+
+    def round_of(now_s: float) -> None:
+        rounds.append(now_s)
+        if len(rounds) == 4:
+            one.stop()
+        if len(rounds) < 4:
+            raise OperationalError("the server at secret.example is gone")
+
+    for name in ("close_old_connections", "connection", "release_watches"):
+        monkeypatch.setattr(process, name, MagicMock())
+    monkeypatch.setattr(process, "_until_next", lambda _: 0.001)
+    monkeypatch.setattr(one, "round", round_of)
+    one.run()
+    assert len(rounds) == 4
+    assert [record.levelname for record in caplog.records].count("WARNING") == 1
+    assert "secret" not in caplog.text

@@ -6,7 +6,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('telemetry', '0008_lists_left_alone'),
+        ('telemetry', '0009_looks_of_live_pages'),
     ]
 
     operations = [

@@ -1,0 +1,112 @@
+"""Two UAVs that come too near each other: told before they meet, by one alert for the pair."""
+
+import math
+
+import numpy as np
+import pytest
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.detectors.converging import CODE, DETECTOR
+from telemetry.alerting.finding import CRITICAL, WARNING
+from telemetry.alerting.meetings import STEP_S, Moving, meetings, moving_of
+from telemetry.alerting.watched import WatchedUav
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.estimate import Ellipse, Estimate
+from telemetry.estimation.report import Report
+from tests.telemetry.alerting.faults import LIMITS
+from tests.telemetry.alerting.truth import MISSION, START_S, Instruments, State, TrueFlight, true_flight
+from tests.telemetry.alerting.watch import Watch
+
+
+def flown_with_another(seed: int, *, passes_m: float, above_m: float = 0.0) -> tuple[list[Watch], int]:
+    """Another UAV flies straight on and passes so far beside this one, and above it, at the second that is returned."""
+    flight, random = true_flight(seed, least_leg_m=700.0), np.random.default_rng(seed)
+    meets = int(random.choice([second for second in flight.cruising(30) if second >= 40])) + 25
+    here = flight.states[meets]
+    speed, course = float(random.uniform(5, 12)), math.atan2(here.north_mps, here.east_mps) + float(random.uniform(1.0, 5.0))
+    east_mps, north_mps = speed * math.cos(course), speed * math.sin(course)
+    # seen from this one the other comes along a straight line, which it passes beside
+    between = np.array([east_mps - here.east_mps, north_mps - here.north_mps])
+    beside = np.array([between[1], -between[0]]) / np.hypot(*between) * passes_m
+    watches = [Watch(), Watch()]
+    instruments = [Instruments(flight, seed), Instruments(flight, seed + 5_000)]
+    for second in range(meets - 60, meets + 20):
+        after_s = second - meets
+        own = flight.states[second]
+        east, north = here.east + beside[0] + after_s * east_mps, here.north + beside[1] + after_s * north_mps
+        other = State(second, east, north, here.height_m + above_m, east_mps, north_mps)
+        look(flight, watches, [instruments[0].values(own), instruments[1].values(other) | {"waypoint_sequence": None}], second)
+    return watches, meets
+
+
+def look(flight: TrueFlight, watches: list[Watch], told: list[dict], second: int) -> None:
+    now_s = START_S + second
+    situations = []
+    for number, (watch, values) in enumerate(zip(watches, told, strict=True)):
+        report = Report(now_s, now_s, Measurement(**values))
+        uav = WatchedUav(number, 1, "Tern" if number == 0 else "Kite", MISSION, MISSION, newest=report, estimate=estimate(report))
+        situations.append(watch.situation(now_s, uav, **({"model": flight.model} if number == 0 else {})))
+    moving = [moving_of(situation, LIMITS.converging_s) for situation in situations]
+    met = meetings(moving, LIMITS.converging_s)
+    for number, (watch, situation) in enumerate(zip(watches, situations, strict=True)):
+        around = {name: getattr(situation, name) for name in ("model", "held")}
+        watch.look(watch.situation(now_s, situation.uav, meetings=tuple(met.get(number, ())), **around), [DETECTOR])
+
+
+def estimate(report: Report) -> Estimate:
+    told = report.measurement
+    return Estimate(
+        at_s=report.measured_s, position=LonLat(told.longitude_deg, told.latitude_deg), altitude_relative_m=told.altitude_relative_m,
+        altitude_amsl_m=told.altitude_amsl_m, speed_mps=10.0, heading_deg=0.0, bound=Ellipse(4.0, 3.0, 0.0), bound_height_m=2.0,
+        bound_speed_mps=1.0, report_s=report.measured_s, is_measured=True, is_lost=False,
+    )  # fmt: skip
+
+
+def wrong_with(seed: int) -> str:
+    watches, meets = flown_with_another(seed, passes_m=float(np.random.default_rng(seed).uniform(-6, 6)))
+    first = watches[0].reached(CODE, (WARNING, CRITICAL))
+    critical = watches[0].reached(CODE, (CRITICAL,))
+    due_s = START_S + meets - LIMITS.converging_s + DETECTOR.delay_s(LIMITS) + STEP_S
+    words = []
+    if first is None or first > due_s:
+        words.append(f"told {first and first - START_S - meets:+} s")
+    if critical is None or critical > START_S + meets - 4:
+        words.append("critical too late")
+    if len(watches[0].opened()) != 1 or watches[1].opened():
+        words.append(f"opened {[len(watch.opened()) for watch in watches]}")
+    return f"seed {seed}: {', '.join(words)}" if words else ""
+
+
+def test_two_that_meet_are_told_in_time_and_once():
+    assert [words for seed in range(5) if (words := wrong_with(seed))] == []
+
+
+@pytest.mark.long
+def test_fifty_pairs_that_meet():
+    assert [words for seed in range(300, 350) if (words := wrong_with(seed))] == []
+
+
+@pytest.mark.parametrize(("passes_m", "above_m"), [(45.0, 0.0), (0.0, 25.0)], ids=["beside", "above"])
+def test_two_that_pass_well_apart_alarm_nobody(passes_m, above_m):
+    for seed in range(5):
+        watches, _ = flown_with_another(seed, passes_m=passes_m, above_m=above_m)
+        assert [event.level for watch in watches for event in watch.events] == []
+
+
+def a_uav(key: int, *, lat_m: float = 0.0, height_m: float | None = 100.0, organisation: int = 1) -> Moving:
+    place = (10.0, 56.0 + lat_m / 111_195.0)
+    return Moving(key, f"UAV {key}", organisation, (place,) * 12, height_m, 0.0, 2.0, 2.0)
+
+
+def test_of_a_pair_the_one_with_the_smaller_key_is_told():
+    met = meetings([a_uav(7), a_uav(3, lat_m=12.0)], 20.0)
+    assert list(met) == [3] and (met[3][0].other_id, round(met[3][0].lateral_m)) == (7, 12)
+
+
+def test_uavs_of_different_organisations_are_told_nothing_of_each_other():
+    assert not meetings([a_uav(1), a_uav(2, organisation=2)], 20.0)
+
+
+def test_a_height_that_is_not_known_counts_as_the_same():
+    assert meetings([a_uav(1), a_uav(2, height_m=None)], 20.0)[1][0].height_m == 0.0
+    assert not meetings([a_uav(1), a_uav(2, height_m=300.0)], 20.0)

@@ -1,0 +1,117 @@
+"""GET /api/v1/live: what a live page shows, and only what belongs to whoever asks."""
+
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+from django.utils import timezone
+
+from missions.models import CommandKind, Mission, MissionUav, OfferState, ReplanOffer, UavCommand
+from missions.services.flying import mark_started, mark_target
+from telemetry.models import Alert, AlertLevel, UavLink
+from telemetry.serializers.live import LiveAnswerSerializer
+from telemetry.services import store_records
+from tests.missions.flights import carry, dispatched, fleet, ground
+from tests.missions.outbox import a_uav, give
+from tests.missions.worlds import world
+from tests.telemetry.records import record
+from tests.workspace.people import client_of, somebody
+from workspace.models import Organisation
+
+pytestmark = pytest.mark.django_db
+
+KINDS = ("uavs", "missions", "alerts", "commands", "offers")
+
+
+def asked(user: Any, query: str = "", **headers: str) -> Any:
+    return client_of(user).get(f"/api/v1/live{query}", headers=headers)
+
+
+def shown(user: Any, query: str = "") -> dict[str, list[dict[str, Any]]]:
+    live: dict[str, list[dict[str, Any]]] = asked(user, query).json()["live"]
+    return live
+
+
+def test_what_flies_is_shown_as_it_is_described(tmp_path: Path) -> None:
+    ground(tmp_path / "ground.tif")
+    user, here, [uav] = somebody(), world(), fleet()
+    mission = dispatched(user, [uav], [here.towers[3]])
+    carry(uav)
+    mark_started(mission_id=mission.pk, uav_id=uav.pk)
+    mark_target(mission_id=mission.pk, target=0, state="complete")
+    store_records([record(uav, 1, battery_percent=80.0, mode="AUTO")])
+    UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "loaded_sha256": "a" * 64, "loaded_flight": 1})
+    Alert.objects.create(uav=uav, mission=mission, level=AlertLevel.WARNING, code="link-late", message="Late", opened_at=timezone.now())
+    ReplanOffer.objects.create(mission=mission, code="uav-out", state=OfferState.OPEN)
+    answer = asked(user)
+    live = answer.json()["live"]
+    assert [len(live[kind]) for kind in KINDS] == [1, 1, 1, 1, 1]
+    described = LiveAnswerSerializer(answer.json()).data
+    assert {kind: set(entries[0]) for kind, entries in described["live"].items()} == {kind: set(live[kind][0]) for kind in KINDS}
+    told = live["uavs"][0]
+    assert (told["mission"], told["place"], told["link"]["loaded"]["flight"]) == (str(mission.pk), 0, 1)
+    assert (told["measured"]["battery_percent"], told["measured"]["mode"], told["measured"]["hdop"]) == (80.0, "AUTO", None)
+    [target] = live["missions"][0]["targets"]
+    assert (target["state"], target["uav"], live["missions"][0]["counts"]) == ("complete", 0, {"complete": 1, "all": 1})
+    assert target["state_at"] is not None
+    assert live["missions"][0]["started_at"] is not None
+
+
+def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:
+    user, now = somebody(), timezone.now()
+    for name, ended_ago in {"just ended": timedelta(minutes=59), "long over": timedelta(minutes=61)}.items():
+        Mission.objects.create(name=name, ended_at=now - ended_ago)
+    Mission.objects.create(name="deleted", ended_at=now, deleted_at=now)
+    Mission.objects.create(name="a draft")
+    heard, silent = a_uav("heard"), a_uav("silent")
+    UavLink.objects.create(uav=heard, heard_at=now - timedelta(hours=23))
+    UavLink.objects.create(uav=silent, heard_at=now - timedelta(hours=25))
+    for code, closed_ago in {"closed": timedelta(minutes=59), "long closed": timedelta(minutes=61)}.items():
+        facts = {"opened_at": now - timedelta(hours=3), "closed_at": now - closed_ago}
+        Alert.objects.create(uav=heard, level=AlertLevel.ADVISORY, code=code, message=code, **facts)
+    done, old = give(heard, CommandKind.HOLD), give(silent, CommandKind.HOLD)
+    UavCommand.objects.filter(pk=done.pk).update(state="applied", finished_at=now - timedelta(minutes=9))
+    UavCommand.objects.filter(pk=old.pk).update(state="applied", finished_at=now - timedelta(minutes=11))
+    live = shown(user)
+    names = {"uavs": "name", "missions": "name", "alerts": "code", "commands": "id"}
+    assert {kind: [entry[name] for entry in live[kind]] for kind, name in names.items()} == {
+        "uavs": ["heard"],
+        "missions": ["just ended"],
+        "alerts": ["closed"],
+        "commands": [str(done.pk)],
+    }
+
+
+def test_of_a_mission_only_what_belongs_to_it_is_shown_whatever_its_state() -> None:
+    user, own, other = somebody(), a_uav("own"), a_uav("other")
+    mission = Mission.objects.create(name="a draft")
+    MissionUav.objects.create(mission=mission, uav=own, sequence=0, name="own", start=own.location, cruise_speed_mps=10.0)
+    for uav in (own, other):
+        UavLink.objects.create(uav=uav, heard_at=timezone.now())
+        Alert.objects.create(uav=uav, level=AlertLevel.WARNING, code="link-late", message="Late", opened_at=timezone.now())
+        give(uav, CommandKind.HOLD)
+    live = shown(user, f"?mission={mission.pk}")
+    assert [uav["name"] for uav in live["uavs"]] == ["own"]
+    assert [entry["name"] for entry in live["missions"]] == ["a draft"]
+    assert [alert["uav"] for alert in live["alerts"]] == [command["uav"]["id"] for command in live["commands"]] == [own.pk]
+
+
+def test_nothing_of_another_organisation_is_shown() -> None:
+    elsewhere = Organisation.objects.create(name="Elsewhere")
+    theirs = Mission.objects.create(name="theirs", organisation=elsewhere, ended_at=timezone.now())
+    UavLink.objects.create(uav=a_uav("their UAV", elsewhere), heard_at=timezone.now())
+    user = somebody()
+    assert shown(user) == {kind: [] for kind in KINDS}
+    assert asked(user, f"?mission={theirs.pk}").status_code == 404
+    assert asked(user, "?mission=7").status_code == 400
+
+
+def test_while_nothing_changes_nothing_is_sent_again() -> None:
+    user, uav = somebody(), a_uav("Tern")
+    store_records([record(uav, 1)])
+    etag = asked(user)["ETag"]
+    again = asked(user, **{"If-None-Match": f"W/{etag}"})  # as it comes back through a proxy that packs
+    assert (again.status_code, again.content, again["ETag"]) == (304, b"", etag)
+    store_records([record(uav, 2)])
+    assert asked(user, **{"If-None-Match": etag}).status_code == 200
