@@ -26,7 +26,10 @@ MOST_STEPS = 30
 def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
     """The address of a mission that is approved and sent to two UAVs, and the UAVs, which have taken it."""
     page = visitor.signs_in("ada")
-    uavs = [writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "link": "http"})["id"] for name, at in STARTS.items()]
+    uavs = [
+        writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "link": "http"})["id"]
+        for name, at in STARTS.items()
+    ]
     tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
     towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=5")["features"]
     made = writes(
