@@ -131,6 +131,11 @@ export function exactClockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
 }
 
+/** "10 Sep 2026". */
+export function dateText(iso) {
+  return new Date(iso).toLocaleDateString(LOCALE, { ...zone, day: "numeric", month: "short", year: "numeric" });
+}
+
 /** "now", "today, 11:40", "yesterday, 09:12", "10 Sep", "10 Sep 2025". */
 export function whenText(iso, now = new Date()) {
   const then = new Date(iso);

@@ -2,12 +2,11 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from django.db.models import F, FloatField, Func, Max, Min, QuerySet, Value, Window
-from django.db.models.functions import Extract, Floor, RowNumber
+from django.db.models import F, FloatField, Func, QuerySet
 
 from inspection.selectors import Box
 from inspection.selectors.assets import area_of
@@ -17,7 +16,6 @@ from telemetry.models import TelemetryRecord
 from workspace.models import Organisation
 
 ROWS_AT_ONCE = 2_000
-SHORTEST_S, LONGEST_S = 1e-3, 366 * 86_400.0  # between chosen records
 
 
 @dataclass(frozen=True)
@@ -48,24 +46,9 @@ def records_that_match(organisation: Organisation, wanted: LogFilter) -> QuerySe
     return found
 
 
-def one_each(records: QuerySet[TelemetryRecord], every_s: float) -> QuerySet[TelemetryRecord]:
-    """The first of each UAV in each stretch of so many seconds, chosen in the database; none of the future."""
-    stretch = Floor(Extract("measured_at", "epoch") / Value(every_s), output_field=FloatField())
-    place = Window(RowNumber(), partition_by=[F("uav_id"), stretch], order_by=[F("measured_at"), F("pk")])
-    in_time = records.filter(is_from_future=False).order_by()
-    return TelemetryRecord.objects.filter(pk__in=in_time.annotate(place=place).filter(place=1).values("pk"))
-
-
-def spacing_for(records: QuerySet[TelemetryRecord], most: int) -> float | None:
-    """How many seconds apart at most so many of them lie, but up to two a UAV; None where they are no more than that."""
-    in_time = records.filter(is_from_future=False).order_by()
-    if len(in_time.values_list("pk")[: most + 1]) <= most:
-        return None
-    facts = in_time.aggregate(first=Min("measured_at"), last=Max("measured_at"))
-    uavs = in_time.values("uav_id").distinct().count()
-    span: timedelta = facts["last"] - facts["first"]
-    stretches = max(most // uavs - 1, 1)  # whole ones; the span may touch one more than it has
-    return min(max(span.total_seconds() / stretches, SHORTEST_S), LONGEST_S)
+def in_time(records: QuerySet[TelemetryRecord]) -> QuerySet[TelemetryRecord]:
+    """None of the future."""
+    return records.filter(is_from_future=False)
 
 
 def latest_record(uav: Uav) -> TelemetryRecord | None:
@@ -74,8 +57,8 @@ def latest_record(uav: Uav) -> TelemetryRecord | None:
 
 
 def newest_of(uav_id: int, *related: str) -> TelemetryRecord | None:
-    in_time = TelemetryRecord.objects.filter(uav_id=uav_id, is_from_future=False)
-    return (in_time.select_related(*related) if related else in_time).order_by("-measured_at", "-pk").first()
+    found = in_time(TelemetryRecord.objects.filter(uav_id=uav_id))
+    return (found.select_related(*related) if related else found).order_by("-measured_at", "-pk").first()
 
 
 def _coordinate(function: str) -> Func:

@@ -16,6 +16,7 @@ from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.visits import Visit, visits_of
 from telemetry.models import Alert, AlertLevel, InspectionResult, TelemetryRecord
+from telemetry.selectors.estimates import estimate_quality_of
 from workspace.models import Organisation
 
 _FIX_COLUMNS = ("measured_at", "altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
@@ -132,6 +133,21 @@ def _summary(mission: Mission, routes: Sequence[RouteOnRecord], targets: Sequenc
         "across_rms_m": _rms([(route.across_rms_m, route.reports) for route in flown]),
         "height_rms_m": _rms([(route.height_rms_m, route.reports) for route in flown]),
         "lowest_battery_percent": min((low for route in flown if (low := route.battery_lowest_percent) is not None), default=None),
+        "estimates": _estimates(mission),
+    }
+
+
+def _estimates(mission: Mission) -> dict[str, Any]:
+    quality = estimate_quality_of(mission.pk)
+    whole = quality.whole
+    return {
+        "compared": whole.count,
+        "untold": quality.untold,
+        "share_inside": whole.inside_share,
+        "rms_m": whole.rms_m,
+        "largest_m": whole.largest_m,
+        "height_share_inside": whole.height_inside_share,
+        "height_rms_m": whole.height_rms_m,
     }
 
 

@@ -40,6 +40,7 @@ class EstimateFeatureSerializer(serializers.Serializer):
 class EstimateCollectionSerializer(serializers.Serializer):
     type = serializers.ChoiceField(choices=["FeatureCollection"])
     features = EstimateFeatureSerializer(many=True)
+    every_s = serializers.FloatField(allow_null=True, help_text="how far apart the estimates of a UAV were chosen; null: all of them")
     next = serializers.CharField(allow_null=True, help_text="path and query of the next page")
 
 

@@ -24,7 +24,7 @@ class RecordMissionSerializer(serializers.Serializer):
     approval = RecordApprovalSerializer(allow_null=True)
 
 
-class TargetCountsSerializer(serializers.Serializer):
+class RecordTargetCountsSerializer(serializers.Serializer):
     all = serializers.IntegerField()
 
     def get_fields(self) -> dict[str, serializers.Field]:
@@ -43,14 +43,27 @@ class TotalsSerializer(serializers.Serializer):
     energy_wh = serializers.FloatField(allow_null=True, help_text="null where a battery is not known")
 
 
+class EstimatesSerializer(serializers.Serializer):
+    """How good the estimates between reports were, by what was measured of the same moments."""
+
+    compared = serializers.IntegerField(help_text="estimates that a measurement tells of")
+    untold = serializers.IntegerField(help_text="those that none tells of")
+    share_inside = serializers.FloatField(allow_null=True, help_text="of positions within their bounds, 0 to 1; they are to hold 0.95")
+    rms_m = serializers.FloatField(allow_null=True)
+    largest_m = serializers.FloatField(allow_null=True)
+    height_share_inside = serializers.FloatField(allow_null=True)
+    height_rms_m = serializers.FloatField(allow_null=True)
+
+
 class RecordSummarySerializer(serializers.Serializer):
-    targets = TargetCountsSerializer()
+    targets = RecordTargetCountsSerializer()
     alerts = AlertCountsSerializer()
     planned = TotalsSerializer()
     flown = TotalsSerializer()
     across_rms_m = serializers.FloatField(allow_null=True, help_text="off the route, sideways")
     height_rms_m = serializers.FloatField(allow_null=True, help_text="outside of the heights that the plan has there")
     lowest_battery_percent = serializers.FloatField(allow_null=True)
+    estimates = EstimatesSerializer()
 
 
 class FlownSerializer(serializers.Serializer):

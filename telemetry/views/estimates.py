@@ -11,7 +11,7 @@ from inspection.views.parameters import invalid
 from missions.views.missions import mission_or_404
 from telemetry.selectors.estimates import estimates_of_mission
 from telemetry.serializers.estimates import EstimateCollectionSerializer, estimate_feature
-from telemetry.views.log_filters import time_of, uav_of
+from telemetry.views.log_filters import THINNED, sampled, time_of, uav_of
 from workspace.paging import page_of
 from workspace.renderers import FastJSONRenderer
 from workspace.schema import PAGE_PARAMETERS
@@ -21,6 +21,7 @@ FILTERS = [
     OpenApiParameter("to", str, description="of moments before this time, with its zone"),
     OpenApiParameter("uav", int, description="id of a UAV"),
     OpenApiParameter("replaced", bool, description="true: those for whose second a measurement came later; false: the others"),
+    *THINNED,
 ]
 
 
@@ -46,8 +47,10 @@ class MissionEstimates(APIView):
             estimated_before=time_of(request, "to"),
             is_replaced=_flag(request, "replaced"),
         )
-        page = page_of(request, estimates, order=("estimated_for", "pk"))
-        return Response({"type": "FeatureCollection", "features": [estimate_feature(row) for row in page.rows], "next": page.next})
+        chosen = sampled(request, estimates, time="estimated_for")
+        page = page_of(request, chosen.rows, order=("estimated_for", "pk"))
+        features = [estimate_feature(row) for row in page.rows]
+        return Response({"type": "FeatureCollection", "features": features, "every_s": chosen.every_s, "next": chosen.next(page.next)})
 
 
 def _flag(request: Request, name: str) -> bool | None:

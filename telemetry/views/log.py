@@ -8,9 +8,9 @@ from rest_framework.views import APIView
 
 from missions.views.uavs import uav_or_404
 from telemetry.exports.geojson_file import record_feature
-from telemetry.selectors.log import as_logged, latest_record, one_each, records_that_match, spacing_for
+from telemetry.selectors.log import as_logged, in_time, latest_record, records_that_match
 from telemetry.serializers.log import RecordCollectionSerializer, RecordFeatureSerializer
-from telemetry.views.log_filters import FILTERS, asked_log, asked_sampling
+from telemetry.views.log_filters import FILTERS, asked_log, sampled
 from workspace.paging import page_of
 from workspace.renderers import FastJSONRenderer
 from workspace.schema import PAGE_PARAMETERS
@@ -32,25 +32,16 @@ class TelemetryLog(APIView):
     )
     def get(self, request: Request) -> Response:
         records = records_that_match(request.user.organisation, asked_log(request))
-        sampling = asked_sampling(request)
-        every_s = spacing_for(records, sampling.most) if sampling.most else sampling.every_s
-        chosen = one_each(records, every_s) if every_s else records
-        page = page_of(request, chosen.select_related("uav", "stream"), order=("measured_at", "pk"))
+        chosen = sampled(request, records, of=in_time)
+        page = page_of(request, chosen.rows.select_related("uav", "stream"), order=("measured_at", "pk"))
         return Response(
             {
                 "type": "FeatureCollection",
                 "features": [record_feature(as_logged(record)) for record in page.rows],
-                "every_s": every_s,
-                "next": _next(page.next, sampling.most, every_s),
+                "every_s": chosen.every_s,
+                "next": chosen.next(page.next),
             }
         )
-
-
-def _next(address: str | None, most: int | None, every_s: float | None) -> str | None:
-    """Later pages keep the spacing that the first one chose, though more records may have come."""
-    if address is None or most is None or every_s is None:
-        return address
-    return address.replace(f"most={most}", f"every_s={every_s!r}")
 
 
 class LatestTelemetry(APIView):

@@ -1,17 +1,21 @@
 """What the log may be asked for, from the address to a filter."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from typing import Any
 from uuid import UUID
 
+from django.db.models import QuerySet
 from django.utils import timezone
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
 
 from inspection.views.parameters import BOX, box_of, invalid
 from telemetry.decoding.companion_reports import instant
-from telemetry.selectors.log import LONGEST_S, SHORTEST_S, LogFilter
+from telemetry.selectors.log import LogFilter
+from telemetry.selectors.thinning import LONGEST_S, SHORTEST_S, one_each, spacing_for
 
 USUAL_SPAN = timedelta(days=1)
 MOST_CHOSEN = 100_000
@@ -19,22 +23,32 @@ TIMES = [
     OpenApiParameter("from", str, description="measured at or after this time, with its zone"),
     OpenApiParameter("to", str, description="measured before this time, with its zone"),
 ]
+THINNED = [
+    OpenApiParameter("every_s", float, description="of each UAV the first record in so many seconds, and none from the future"),
+    OpenApiParameter("most", int, description="so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s"),
+]
 FILTERS = [
     *TIMES,
     OpenApiParameter("uav", int, description="id of a UAV"),
     OpenApiParameter("mission", str, description="id of a mission"),
     BOX,
-    OpenApiParameter("every_s", float, description="of each UAV the first record in so many seconds, and none from the future"),
-    OpenApiParameter("most", int, description="so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s"),
+    *THINNED,
 ]
 
 
 @dataclass(frozen=True)
-class Sampling:
-    """How records are thinned out; None, None: not at all."""
+class Sampled:
+    """Rows as they were thinned out: how far apart those of a UAV were chosen, None where all of them are there."""
 
-    every_s: float | None = None
-    most: int | None = None
+    rows: QuerySet[Any]
+    every_s: float | None
+    most: int | None
+
+    def next(self, address: str | None) -> str | None:
+        """Later pages keep the spacing that the first one chose, though more rows may have come."""
+        if address is None or self.most is None or self.every_s is None:
+            return address
+        return address.replace(f"most={self.most}", f"every_s={self.every_s!r}")
 
 
 def asked_log(request: Request) -> LogFilter:
@@ -47,14 +61,21 @@ def asked_log(request: Request) -> LogFilter:
     return wanted
 
 
-def asked_sampling(request: Request) -> Sampling:
-    """Raises ApiProblem 400."""
+def sampled(
+    request: Request, rows: QuerySet[Any], *, of: Callable[[QuerySet[Any]], QuerySet[Any]] = lambda rows: rows, time: str = "measured_at"
+) -> Sampled:
+    """All rows where no thinning is asked for, else those chosen from `of` them. Raises ApiProblem 400."""
     every_s, most = request.query_params.get("every_s", ""), request.query_params.get("most", "")
     if every_s and most:
         raise invalid("most", "Either every_s or most.")
     if most and not (most.isascii() and most.isdigit() and len(most) < 10 and 1 <= int(most) <= MOST_CHOSEN):
         raise invalid("most", f"A whole number from 1 to {MOST_CHOSEN} is needed.")
-    return Sampling(_seconds(every_s) if every_s else None, int(most) if most else None)
+    if not every_s and not most:
+        return Sampled(rows, None, None)
+    candidates = of(rows)
+    spacing_s = spacing_for(candidates, int(most), time=time) if most else _seconds(every_s)
+    chosen = rows if spacing_s is None else one_each(candidates, spacing_s, time=time)
+    return Sampled(chosen, spacing_s, int(most) if most else None)
 
 
 def time_of(request: Request, name: str) -> datetime | None:

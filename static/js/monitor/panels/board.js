@@ -18,7 +18,7 @@ export function mountBoard(store, { show }) {
   const draw = keyedList(body, ({ key }) => key, make, refresh);
 
   function make({ mission, place }) {
-    return h("tr", {}, h("td", { class: "board-target" }, h("span", { class: "pill" }), h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) })), h("td", { class: "board-state" }), h("td", { class: "number" }));
+    return h("tr", {}, h("td", {}, h("div", { class: "board-target" }, h("span", { class: "pill" }), h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) }))), h("td", { class: "board-state" }), h("td", { class: "number" }));
   }
 
   function refresh(row, { uav, pill, label, state, at, isExpected, reason }) {

@@ -1,0 +1,24 @@
+/** Names of targets as the other stages have them: the UAV's letter and the place on its route. */
+
+import { routeLetter } from "../map/palette.js";
+
+/** Map of target → { label, place, number, position }. */
+export function labelsOf(routes) {
+  const labels = new Map();
+  for (const { place, waypoints } of routes) {
+    let number = 0;
+    for (const { target, position } of waypoints) {
+      if (target === null || labels.has(target)) continue;
+      number += 1;
+      labels.set(target, { label: `${routeLetter(place)}${number}`, place, number, position });
+    }
+  }
+  return labels;
+}
+
+/** "A2", "take-off", "landing" or "turn 7": a waypoint as an end of a leg. kinds: words of start, end, base; pass(number). */
+export function waypointName({ waypoints }, sequence, labels, words) {
+  const waypoint = waypoints.find((one) => one.sequence === sequence);
+  if (!waypoint) return words.pass(sequence);
+  return (waypoint.target !== null && labels.get(waypoint.target)?.label) || words[waypoint.kind] || words.pass(sequence);
+}

@@ -1,0 +1,60 @@
+/** What came of a mission, in a sentence and some figures. Values in, values out. */
+
+import { t, tn } from "../text.js";
+import { clockText, durationText, energyText, exactHeightText, lengthText, percentText } from "../units.js";
+
+const UNDER_WAY = ["dispatched", "active"];
+const NOT_BEGUN = ["draft", "planned", "approved", "dispatched"];
+
+export const isUnderWay = ({ mission }) => UNDER_WAY.includes(mission.state);
+export const isOver = ({ mission }) => !isUnderWay({ mission }) && !NOT_BEGUN.includes(mission.state);
+export const wasFlown = ({ routes }) => routes.some(({ flown }) => flown.reports > 0);
+
+/** "11 of 12 targets complete", "Not flown yet." */
+export function sentenceOf(record) {
+  const { targets } = record.summary;
+  if (!wasFlown(record) && NOT_BEGUN.includes(record.mission.state)) return t("Not flown yet.");
+  if (isUnderWay(record)) return t("{done} of {all} targets complete so far", { done: targets.complete, all: targets.all });
+  return t("{done} of {all} targets complete", { done: targets.complete, all: targets.all });
+}
+
+/** What else has to be known at once. */
+export function factsOf(record) {
+  const { alerts, lowest_battery_percent: lowest } = record.summary;
+  const all = alerts.critical + alerts.warning + alerts.advisory;
+  const facts = [];
+  if (isUnderWay(record) && record.mission.started_at) facts.push(t("Under way since {time}.", { time: clockText(record.mission.started_at) }));
+  if (!wasFlown(record)) facts.push(isOver(record) ? t("Nothing that its UAVs reported is in the log.") : t("Its record is written while it is flown."));
+  else if (lowest !== null) facts.push(t("No battery was below {percent}.", { percent: percentText(Math.floor(lowest)) }));
+  if (all) facts.push(alerts.critical ? tn(all, "{count} alert, {critical} critical.", "{count} alerts, {critical} critical.", { critical: alerts.critical }) : tn(all, "{count} alert, none critical.", "{count} alerts, none critical."));
+  else if (wasFlown(record)) facts.push(t("No alerts."));
+  return facts.join(" ");
+}
+
+const signed = (value, text) => `${value < 0 ? "−" : "+"}${text(Math.abs(value))}`;
+
+/** Rows of the table: [{ words, planned, flown, more }]; a figure that is not known is "—", one that has no meaning is empty. */
+export function figuresOf(record) {
+  const { planned, flown, across_rms_m, height_rms_m, estimates } = record.summary;
+  const hasFlown = wasFlown(record);
+  const compared = (words, name, text) => ({
+    words,
+    planned: text(planned[name]),
+    flown: hasFlown ? text(flown[name]) : "—",
+    more: hasFlown && !isUnderWay(record) && planned[name] !== null && flown[name] !== null ? signed(flown[name] - planned[name], text) : "",
+  });
+  const metres = (value) => (value === null ? "—" : exactHeightText(value));
+  return [
+    compared(t("Distance"), "length_m", lengthText),
+    compared(t("Until the last landing"), "duration_s", durationText),
+    compared(t("Energy"), "energy_wh", energyText),
+    { words: t("Off route, RMS"), planned: "", flown: metres(across_rms_m), more: "" },
+    { words: t("Height error, RMS"), planned: "", flown: metres(height_rms_m), more: "" },
+    ...(estimates.compared
+      ? [
+          { words: t("Estimates inside bound"), planned: percentText(95), flown: percentText(estimates.share_inside * 100), more: "" },
+          { words: t("Estimates off, RMS"), planned: "", flown: metres(estimates.rms_m), more: "" },
+        ]
+      : []),
+  ];
+}
