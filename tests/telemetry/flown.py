@@ -43,9 +43,13 @@ def _each_second(route: FrozenRoute, leaves_out: int | None) -> Iterator[Measure
         for step in range(1, steps + 1 + _hold_s(waypoint)):
             share = min(step / steps, 1.0)
             battery -= USED_PERCENT_S
+            is_moving = step <= steps
             yield Measurement(
                 *_degrees(frame, east + share * (to_east - east), north + share * (to_north - north)),
                 altitude_relative_m=height_m + share * (waypoint.altitude_relative_m - height_m),
+                velocity_east_mps=(to_east - east) / steps if is_moving else 0.0,
+                velocity_north_mps=(to_north - north) / steps if is_moving else 0.0,
+                heading_deg=math.degrees(math.atan2(to_east - east, to_north - north)) % 360.0,
                 battery_percent=battery,
                 mode="Mission",
                 is_armed=True,

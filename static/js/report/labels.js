@@ -16,9 +16,9 @@ export function labelsOf(routes) {
   return labels;
 }
 
-/** "A2", "take-off", "landing" or "turn 7": a waypoint as an end of a leg. kinds: words of start, end, base; pass(number). */
-export function waypointName({ waypoints }, sequence, labels, words) {
+/** "A2", "take-off", "end" or "point 7": a waypoint as an end of a leg. words: of the kinds start, end and base; otherwise(sequence). */
+export function waypointName({ waypoints }, sequence, labels, words, otherwise) {
   const waypoint = waypoints.find((one) => one.sequence === sequence);
-  if (!waypoint) return words.pass(sequence);
-  return (waypoint.target !== null && labels.get(waypoint.target)?.label) || words[waypoint.kind] || words.pass(sequence);
+  const target = labels.get(waypoint?.target)?.label;
+  return target ?? words[waypoint?.kind] ?? otherwise(sequence);
 }

@@ -24,8 +24,8 @@ function shapeOf(heading_deg) {
   return svg("path", { d: "M13 2L21 23L13 18L5 23Z", transform: `rotate(${heading_deg} 13 13)` });
 }
 
-/** onPick(id of a UAV). */
-export function createUavMarkers(map, { onPick }) {
+/** onPick(id of a UAV). glide_ms: between two places; 0 where they follow each other as frames do. */
+export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
   const flyers = new Map(); // id → { marker, parts, from, to, began_ms }
   let frame = 0;
 
@@ -34,8 +34,8 @@ export function createUavMarkers(map, { onPick }) {
     let isMoving = false;
     for (const flyer of flyers.values()) {
       const since_ms = now_ms - flyer.began_ms;
-      flyer.marker.setLngLat(between(flyer.from, flyer.to, since_ms, calm.matches ? 0 : GLIDE_MS));
-      isMoving ||= since_ms < GLIDE_MS && !calm.matches;
+      flyer.marker.setLngLat(between(flyer.from, flyer.to, since_ms, calm.matches ? 0 : glide_ms));
+      isMoving ||= since_ms < glide_ms && !calm.matches;
     }
     if (isMoving) frame = requestAnimationFrame(glide);
   }

@@ -1,0 +1,135 @@
+"""The record of a flown mission: the sentence, the figures, the flight once more by pointer and keys."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Site, Visitor
+from tests.browser.operator_map import TOO_WIDE, asks, stores_mission, wait_for_map
+from tests.browser.pictures import HAS_PICTURES
+from tests.browser.test_accessibility import faults
+
+pytestmark = pytest.mark.browser
+
+Picture = Callable[[Page, str], None]
+STARTS = {"Dunlin": [-83.045, 39.935], "Plover": [-82.945, 39.945]}
+VIEWS: dict[str, dict[str, Any]] = {
+    "light": {"theme": "light", "size": (1440, 900)},
+    "dark": {"theme": "dark", "size": (1440, 900)},
+    "tablet-light": {"theme": "light", "size": (1024, 768)},
+    "phone-light": {"theme": "light", "size": (390, 844), "touch": True},
+    "phone-dark": {"theme": "dark", "size": (390, 844), "touch": True},
+}
+_flown: dict[str, str] = {}
+
+
+def posts(page: Page, path: str, body: dict[str, Any]) -> Any:
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    answer = page.request.post(f"/api/v1{path}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"})
+    assert answer.ok, f"{path}: {answer.status} {answer.text()}"
+    return answer.json()
+
+
+@pytest.fixture
+def flown(visitor: Visitor, site: Site) -> str:
+    """The address of the report of a mission that two UAVs have flown; flown once for all tests."""
+    if site.address not in _flown:
+        page = visitor.signs_in("ada")
+        uavs = [posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})["id"] for name, position in STARTS.items()]
+        towers = asks(page, "/assets?kind=tower&bbox=-83.02,39.87,-82.93,39.94&limit=400")["features"]
+        towers = towers[:: len(towers) // 8][:8]
+        body = {
+            "name": "South belt, autumn", "uavs": [{"id": uav, "most_targets": 4} for uav in uavs],
+            "targets": [{"asset": tower["id"]} for tower in towers],
+            "objective": "makespan", "return_to_start": True, "plan": True,
+        }  # fmt: skip
+        key = posts(page, "/missions", body)["id"]
+        posts(page, f"/missions/{key}/approve", {})
+        posts(page, f"/missions/{key}/dispatch", {})
+        site.does(f"from tests.browser.flown_mission import fly_mission; fly_mission('{key}')")
+        page.context.close()
+        _flown[site.address] = f"/missions/{key}/report"
+    return _flown[site.address]
+
+
+def opened(page: Page, address: str) -> Page:
+    page.goto(address)
+    wait_for_map(page)
+    return page
+
+
+def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: str) -> None:
+    page = opened(visitor.signs_in("opal"), flown)
+    expect(page.get_by_role("heading", name="7 of 8 targets complete")).to_be_visible()
+    figures = page.get_by_role("table", name="Planned and flown")
+    expect(figures.get_by_role("row", name=re.compile(r"^Distance \d.* km \d.* km [+−]"))).to_be_visible()
+    missed = page.get_by_role("region", name=re.compile("^Missed"))
+    expect(missed.get_by_role("listitem")).to_have_count(1)
+    expect(missed).to_contain_text("The UAV went past it at a distance.")
+
+    page.locator("#report-targets > summary").click()
+    expect(page.locator("#report-targets .report-target-state.complete")).to_have_count(7)
+    page.locator("#report-legs > summary").click()
+    page.get_by_role("table", name=re.compile("Dunlin RMS")).get_by_role("row").nth(2).hover()
+    page.locator("#report-alerts > summary").click()
+    expect(page.locator("#report-alerts").get_by_role("listitem")).to_have_count(2)
+
+    slider = page.get_by_role("slider", name="Time of the replay")
+    slider.focus()
+    page.keyboard.press("End")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("Dunlin lands|Plover lands"))
+    page.keyboard.press("Home")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("09:10:0., Dunlin takes off"))
+    page.keyboard.press(".")
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("reached|Plover takes off"))
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()
+    before = slider.get_attribute("aria-valuenow")
+    expect(slider).not_to_have_attribute("aria-valuenow", before or "")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
+
+    page.locator("#report-alerts").get_by_role("button", name="09:14:12").click()
+    expect(page.locator("#replay-strips .replay-row").first).to_contain_text("estimated, ±")
+    expect(page.locator("#map .map-flyer.estimated")).to_have_count(1)
+    page.get_by_role("button", name="A Dunlin").click()
+    expect(page.get_by_role("button", name="A Dunlin")).to_have_attribute("aria-pressed", "true")
+    box = slider.bounding_box()
+    assert box
+    page.mouse.click(box["x"] + box["width"] * 0.5, box["y"] + 40)
+    whole = int(slider.get_attribute("aria-valuemax") or 0)
+    assert int(slider.get_attribute("aria-valuenow") or 0) == pytest.approx(whole / 2, abs=whole * 0.02)
+    with page.expect_download() as download:
+        page.get_by_role("link", name="All data (ZIP)").click()
+    assert download.value.suggested_filename.endswith("-record.zip")
+
+
+@pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["dark", "phone-light"])
+def test_the_record_fits_every_window(visitor: Visitor, flown: str, picture: Picture, view: str) -> None:
+    page = opened(visitor.signs_in("vera", **VIEWS[view]), flown)
+    expect(page.get_by_role("heading", name="7 of 8 targets complete")).to_be_visible()
+    page.locator("#report-alerts button").first.evaluate("(button) => button.click()")
+    picture(page, f"report-{view}")
+    for part in ("targets", "legs", "alerts", "commands"):
+        page.locator(f"#report-{part} > summary").click()
+    assert faults(page) == []
+    if HAS_PICTURES:
+        page.locator("#report-targets > summary").scroll_into_view_if_needed()
+        picture(page, f"report-parts-{view}")
+        page.locator("#report-legs > summary").scroll_into_view_if_needed()
+        page.locator(".report-leg").nth(2).hover()
+        page.screenshot(path=f"/tmp/recpage_legs_{view}.png")
+        page.screenshot(path=f"/tmp/recpage_full_{view}.png", full_page=True)
+
+
+def test_a_mission_that_nobody_has_flown_says_so(visitor: Visitor, picture: Picture) -> None:
+    page = visitor.signs_in("opal")
+    opened(page, f"{stores_mission(page, 'Not flown')}/report")
+    expect(page.get_by_role("heading", name="Not flown yet.")).to_be_visible()
+    expect(page.locator("#dock")).to_contain_text("Nothing to replay yet.")
+    expect(page.get_by_role("slider")).to_have_count(0)
+    assert page.evaluate(TOO_WIDE) == []
+    picture(page, "report-empty-light")
