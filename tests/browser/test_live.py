@@ -15,7 +15,7 @@ from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.browser.uav_over_http import Flyer
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 
 STARTS = {"Kite": [-82.945, 39.945], "Tern": [-82.93, 39.94]}
 STEP_M = 9.0

@@ -3,7 +3,7 @@
 import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
-import { exactClockText, exactText } from "../../units.js";
+import { clockText, exactClockText, exactText } from "../../units.js";
 import { boardRows, STATES } from "../board.js";
 import { eventsOf } from "../event_log.js";
 
@@ -30,7 +30,7 @@ export function mountBoard(store, { show }) {
     row.querySelector(".pill").textContent = pill;
     row.querySelector("button").textContent = label;
     row.cells[1].replaceChildren(h("span", {}, icon(image, "small"), words), reason && h("small", {}, reason));
-    row.cells[2].replaceChildren(at ? h("time", { datetime: at, title: exactText(at) }, `${isExpected ? "~\u2009" : ""}${exactClockText(at)}`) : "—");
+    row.cells[2].replaceChildren(at ? h("time", { datetime: at, title: exactText(at) }, isExpected ? `~\u2009${clockText(at)}` : exactClockText(at)) : "—");
   }
 
   const drawLog = keyedList(
