@@ -1,8 +1,9 @@
 """The route to one target alone for which a UAV lacks least of its battery, as it is drawn over the ground and what stands tall."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import permutations, product
 from typing import NamedTuple
 
 from missions.flight_plan.heights import GroundHeights
@@ -20,6 +21,7 @@ from missions.services.wishes import may_do
 IsClear = Callable[[PlannedRoute], bool]
 
 MOST_DRAWN = 300  # routes of one plan
+MOST_LISTED = 4  # targets of which each order is looked at
 
 
 class Lack(NamedTuple):
@@ -93,7 +95,8 @@ class LeastLacks:
         return ways
 
     def _ways(self, target: int) -> list[tuple[float, int, tuple[int, ...]]]:
-        """For each UAV that has the range, by its number in the request, the visits of the least route; and what it is counted to lack.
+        """For each UAV that has the range, by its number in the request, the visits of routes that may be the least; and what each is
+        counted to lack.
 
         Of one that charges on the way no lack is counted, and it comes by others only where it has to; of one without a battery none is.
         """
@@ -110,13 +113,26 @@ class LeastLacks:
                     ways += [(-math.inf, uav, shortest.order)] if shortest.amount <= min(limit_m, NO_WAY_M) else []
                     continue
                 least = (routes.route(start, visit).order for routes in (self._wh, self._metres))
-                orders = ((visit,), *least) if charges else tuple(least)
-                for order in [order for order in orders if self._metres_of(start, order) <= min(limit_m, NO_WAY_M)][:1]:
+                orders = ((visit,), *least) if charges else (*least, *self._orders_of_few(visit))
+                within = [order for order in dict.fromkeys(orders) if self._metres_of(start, order) <= min(limit_m, NO_WAY_M)]
+                for order in within[:1] if charges else within:
                     counted_wh = self.found.problem.route_wh(start, order)
                     if counted_wh is not None and math.isfinite(counted_wh):
                         lacks_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - usable_wh
                         ways.append((-math.inf if charges else lacks_wh, uav, order))
         return ways
+
+    def _orders_of_few(self, visit: int) -> Iterator[tuple[int, ...]]:
+        """Every order over the visit, where targets are few: what is counted least may, as it is drawn, take more than another."""
+        own = self.found.problem.visits[visit].target
+        others = [number for number in range(len(self._visits)) if number != own]
+        if len(others) >= MOST_LISTED:
+            return
+        for count in range(len(others) + 1):
+            for targets in permutations(others, count):
+                for visits in product(*(self._visits[target] for target in targets)):
+                    for place in range(count + 1):
+                        yield (*visits[:place], visit, *visits[place:])
 
     def _metres_of(self, start: int, order: tuple[int, ...]) -> float:
         return self.found.problem.route_length_m(start, order)

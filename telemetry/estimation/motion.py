@@ -25,7 +25,7 @@ BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
 STEERED_S = 6.0  # how long a velocity tells of one that a person steers
 STEERED_MPS2 = 0.9
-SHARED_M, SHARED_HEIGHT_M = 1.12, 0.95  # errors that reports share: of GPS, and of the barometer
+SHARED_M, SHARED_HEIGHT_M = 1.07, 0.95  # errors that reports share: of GPS, and of the barometer
 
 
 @dataclass(frozen=True, eq=False)

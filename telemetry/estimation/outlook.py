@@ -9,8 +9,8 @@ from telemetry.estimation.estimate import Arrival
 from telemetry.estimation.motion import State, Track
 from telemetry.estimation.pace import clock_of
 
-SURE_S = 1.0
-LASTS_SHARE = 0.07  # by which a whole flight's pace may differ from what was seen of it: winds that come up
+SURE_S = 2.0
+LASTS_SHARE = 0.1  # by which a whole flight's pace may differ from what was seen of it: winds that come up
 
 
 def arrivals_of(state: State, track: Track) -> tuple[Arrival, ...]:

@@ -21,8 +21,8 @@ SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
 # Calibrated on the truth generator, on seeds that no test uses; see benchmarks/estimator.py.
 PACE_SD = 0.06  # of a UAV that has not flown yet
-PACE_WANDERS = 0.006  # in a second
-SUREST_SD = 0.012  # of a pace, however long it was seen
+PACE_WANDERS = 0.008  # in a second
+SUREST_SD = 0.02  # of a pace, however long it was seen
 LEAST_PACE, MOST_PACE = 0.4, 1.8
 GUST_SD, GUST_S = 0.025, 25.0  # of speed, and for how long one lasts
 SMALLEST_S = 0.04

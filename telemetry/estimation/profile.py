@@ -30,7 +30,7 @@ STEPS = 12  # of a leg
 # Standard deviations of how long something takes, beside the speed.
 STRAIGHT_S, TURN_S = 0.15, 1.6  # at a waypoint that is passed, and by the sine of half the bend more
 STOP_S = 1.6
-CLIMB_SHARE = 0.22  # of the time that a leg takes because of its height
+CLIMB_SHARE = 0.26  # of the time that a leg takes because of its height
 
 
 @dataclass(frozen=True, eq=False)

@@ -56,7 +56,6 @@ class UavWatch(models.Model):
     updated_at = models.DateTimeField(db_default=Now())
 
     class Meta:
-        indexes = [models.Index(fields=["organisation", "version"], name="uav_watch_of_organisation_idx")]
         verbose_name_plural = "UAV watches"
 
     def __str__(self) -> str:

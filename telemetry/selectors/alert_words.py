@@ -41,6 +41,10 @@ TEMPLATES = (
     gettext_noop("%(uav)s holds a mix of missions. %(words)s"),
     gettext_noop("The UAV %(uav)s holds something else than what was approved."),
     gettext_noop("The UAV %(uav)s does not say what it holds."),
+    gettext_noop(
+        "%(uav)s is held and was to fly on with %(mission)s, but a step failed: %(step)s. %(words)s"
+        " Send it its mission again and start it, or tell it to return."
+    ),
     gettext_noop("Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."),
 )
 
@@ -49,7 +53,7 @@ def alert_words(message: str, values: Mapping[str, Any]) -> str:
     """What was stored without values, or does not fit its template, is as it was stored."""
     if not values:
         return message
-    read = {name: outcome_in_words(value) if name == "words" else value for name, value in values.items()}
+    read = {name: outcome_in_words(value) if name == "words" else _(value) if name == "step" else value for name, value in values.items()}
     try:
         return _(message) % read
     except (KeyError, TypeError, ValueError):

@@ -24,7 +24,7 @@ class RecordMissionSerializer(serializers.Serializer):
     approval = RecordApprovalSerializer(allow_null=True)
 
 
-class TargetCountsSerializer(serializers.Serializer):
+class RecordTargetCountsSerializer(serializers.Serializer):
     all = serializers.IntegerField()
 
     def get_fields(self) -> dict[str, serializers.Field]:
@@ -56,7 +56,7 @@ class EstimatesSerializer(serializers.Serializer):
 
 
 class RecordSummarySerializer(serializers.Serializer):
-    targets = TargetCountsSerializer()
+    targets = RecordTargetCountsSerializer()
     alerts = AlertCountsSerializer()
     planned = TotalsSerializer()
     flown = TotalsSerializer()

@@ -5,18 +5,23 @@ from telemetry.models import Alert, AlertLevel
 from telemetry.services.alerts import close_alert, open_alert
 
 WAITS = "hand-over-failed"
+IS_STUCK = (
+    "%(uav)s is held and was to fly on with %(mission)s, but a step failed: %(step)s. %(words)s"
+    " Send it its mission again and start it, or tell it to return."
+)
 
 
 def settle_hand_over_alerts() -> None:
     """Opens those that are due, and closes those that are over."""
     stuck = {command.uav_id: command for command in stuck_hand_overs()}
     for command in stuck.values():
-        message = (
-            f"{command.uav.name} is held and was to fly on with {command.mission}, but a step failed: {command.get_kind_display()}."
-            f" {command.outcome} Send it its mission again and start it, or tell it to return."
-        )
-        details = {"command": str(command.pk)}
-        open_alert(uav=command.uav, level=AlertLevel.CRITICAL, code=WAITS, message=message, mission=command.mission, details=details)
+        values = {
+            "uav": command.uav.name, "mission": str(command.mission), "step": command.get_kind_display(), "words": command.outcome,
+        }  # fmt: skip
+        open_alert(
+            uav=command.uav, level=AlertLevel.CRITICAL, code=WAITS, message=IS_STUCK, values=values, mission=command.mission,
+            details={"command": str(command.pk)},
+        )  # fmt: skip
     for alert in Alert.objects.filter(code=WAITS, closed_at=None).exclude(uav__in=list(stuck)).select_related("uav"):
         if alert.uav is not None:
             close_alert(uav=alert.uav, code=WAITS)

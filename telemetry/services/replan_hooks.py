@@ -17,7 +17,7 @@ def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
     for mission_id, uav_id, finding in findings:
         code = code_of(finding)
         if code is not None:
-            suggest(mission_id=mission_id, code=code, cause={"uav": uav_id, "alert": finding.code, **finding.values})
+            suggest(mission_id=mission_id, code=code, cause={"figures": finding.values, "uav": uav_id, "alert": finding.code})
 
 
 def code_of(finding: Finding) -> str | None:

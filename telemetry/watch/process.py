@@ -15,9 +15,10 @@ from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
-from telemetry.selectors.watched import StoredReport, WatchedFlight, newest_reports, places_heard, watched_flights
+from telemetry.selectors.watched import WatchedFlight, newest_reports, places_heard, watched_flights
 from telemetry.services.alerting import look
 from telemetry.services.knowledge import knowledge_of
+from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,
     forget_what_is_over,
@@ -38,6 +39,7 @@ logger = logging.getLogger(__name__)
 EVERY_S = 1.0
 AWAY_EVERY_S = 60.0  # one line of log
 READ_BACK = 60  # reports of a UAV, to know again what was known of it
+FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
 WITHOUT_RECORD_S = 3.0
 LEARN_AT_ONCE = 3  # UAVs a round
 HEARD_BACK, HEARD_EVERY = 20_000, 20  # records of a UAV
@@ -52,8 +54,7 @@ class Watched:
     newest: Report | None = None  # record
     has_learnt: bool = False
 
-    def take(self, report: Report) -> None:
-        self.tracker.take(report)
+    def note(self, report: Report) -> None:
         if self.newest is None or report.measured_s > self.newest.measured_s:
             self.newest = report
 
@@ -66,6 +67,9 @@ class Watch:
     held: dict[int, Watched] = field(default_factory=dict)  # by UAV
     _stop: threading.Event = field(default_factory=threading.Event)
     _new: NewReports = field(default_factory=NewReports)
+    _targets: TargetChecks = field(default_factory=TargetChecks)
+    _held_at_s: dict[int, float] = field(default_factory=dict)
+    _replaced: set[tuple[int, datetime]] = field(default_factory=set)  # UAVs, and seconds that were measured
     _quiet_until_s: float = -AWAY_EVERY_S
     _quiet_about_faults_until_s: float = -AWAY_EVERY_S
 
@@ -89,8 +93,9 @@ class Watch:
         self._read()
         self._learn(now_s)
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
-        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
         self._tell(list(made.values()))
+        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
+        self._check_targets(now_s)
 
     # Who is watched
 
@@ -114,22 +119,35 @@ class Watch:
 
     def _begin(self, flights: list[WatchedFlight]) -> None:
         """From what is stored, as if it had been watched before."""
-        for flight in flights:
-            known = knowledge_of(flight.approval_id, flight.uav_id, flight.flight)
-            self.held[flight.uav_id] = Watched(flight, Tracker(known))
-        if flights:
-            for stored in newest_reports([flight.uav_id for flight in flights], most=READ_BACK):
-                self.held[stored.uav_id].take(stored.report)
+        if not flights:
+            return
+        begun = {
+            flight.uav_id: Watched(flight, Tracker(knowledge_of(flight.approval_id, flight.uav_id, flight.flight))) for flight in flights
+        }
+        newest = newest_reports(list(begun), most=READ_BACK)
+        self.held |= begun
+        for stored in newest:
+            self._take(self.held[stored.uav_id], stored.report)
 
     def _read(self) -> None:
         reports = self._new.read(sorted(self.held), time.monotonic()) if self.held else []
         for stored in reports:
-            self.held[stored.uav_id].take(stored.report)
-        if reports:
-            replace_estimates(reports=_seconds(reports))
+            self._take(self.held[stored.uav_id], stored.report)
+            self._replaced.add((stored.uav_id, _end_of_second(stored.measured_at)))
+        if self._replaced:
+            replace_estimates(reports=sorted(self._replaced))
+            self._replaced.clear()
         for watched in self.held.values():
             if (told := _told_by_link(watched)) is not None:
-                watched.tracker.take(told)
+                self._take(watched, told, is_record=False)
+
+    def _take(self, watched: Watched, report: Report, *, is_record: bool = True) -> None:
+        if is_record:
+            watched.note(report)
+        try:
+            watched.tracker.take(report)
+        except FAULTS:
+            self._tell_fault(watched)
 
     def _learn(self, now_s: float) -> None:
         """Of UAVs that have fallen silent: where they were heard on earlier flights; a few in a round."""
@@ -142,11 +160,21 @@ class Watch:
         """A fault in one UAV's filter does not blind the watch for the others."""
         try:
             return _made(watched, now_s)
-        except (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError):
-            if time.monotonic() >= self._quiet_about_faults_until_s:
-                self._quiet_about_faults_until_s = time.monotonic() + AWAY_EVERY_S
-                logger.exception("%s could not be estimated", watched.flight.name)
+        except FAULTS:
+            self._tell_fault(watched)
             return None
+
+    def _tell_fault(self, watched: Watched) -> None:
+        if time.monotonic() >= self._quiet_about_faults_until_s:
+            self._quiet_about_faults_until_s = time.monotonic() + AWAY_EVERY_S
+            logger.exception("%s cannot be estimated", watched.flight.name)
+
+    def _check_targets(self, now_s: float) -> None:
+        """Also of UAVs whose mission has just ended: its last targets count as complete by that."""
+        self._held_at_s |= dict.fromkeys(self.held, now_s)
+        self._held_at_s = {uav_id: at_s for uav_id, at_s in self._held_at_s.items() if now_s - at_s <= LOOKED_BACK_S}
+        if self._held_at_s:
+            self._targets.check(sorted(self._held_at_s))
 
     # What is told
 
@@ -210,11 +238,6 @@ def _told_by_link(watched: Watched) -> Report | None:
 
 def _flight_of(flight: WatchedFlight) -> tuple[UUID, int]:
     return flight.approval_id, flight.flight
-
-
-def _seconds(reports: list[StoredReport]) -> list[tuple[int, datetime]]:
-    """One report of each second of each UAV is enough to replace what was estimated for it."""
-    return sorted({(stored.uav_id, _end_of_second(stored.measured_at)) for stored in reports})
 
 
 def _end_of_second(at: datetime) -> datetime:

@@ -5,6 +5,7 @@ FOR_OPERATORS = (
     "/",
     "/missions/new",
     "/uavs",
+    "/live",
     "/assets",
     "/assets/gaps",
     "/terrain",

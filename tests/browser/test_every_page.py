@@ -20,8 +20,8 @@ VIEWS: dict[str, dict[str, Any]] = {
     "phone-dark": {"theme": "dark", "size": (390, 844), "touch": True},
 }
 PAGES = {
-    "missions": "/", "map": "/missions/new", "fleet": "/uavs", "assets": "/assets", "gaps": "/assets/gaps", "terrain": "/terrain",
-    "zones": "/zones", "account": "/account", "not-found": "/no-such-page",
+    "missions": "/", "map": "/missions/new", "fleet": "/uavs", "live": "/live", "assets": "/assets",
+    "gaps": "/assets/gaps", "terrain": "/terrain", "zones": "/zones", "account": "/account", "not-found": "/no-such-page",
 }  # fmt: skip
 
 

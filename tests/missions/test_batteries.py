@@ -17,7 +17,8 @@ from missions.services import TargetRequest, make_plan
 from missions.services.lacks import least_missing
 from missions.services.refusals import LeftOut
 from missions.services.requests import UavRequest
-from tests.missions.worlds import island, request, uav, world
+from tests.inspection import ground
+from tests.missions.worlds import island, power_line, rebuild, request, uav, world
 
 pytestmark = pytest.mark.django_db
 
@@ -250,6 +251,28 @@ def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path
     small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN, sorties=2)
     (item,) = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=300.0))["unassigned"]
     assert item["message"].endswith("there and back, 0.7 Wh more than the battery of Tern may give.")
+
+
+def test_what_is_missing_is_of_the_route_that_is_the_least_as_it_is_drawn() -> None:
+    """Over another target it is longer, and round wires over which the straight way rises; the search counts no rises.
+
+         there
+    tower --|-- wire -- tower
+      beside|
+           UAV
+    """
+    world()
+    power_line([ground.tower((lon, 55.9975), height_m=104.0) for lon in (9.997, 10.005)])
+    rebuild()
+    there, beside = TargetRequest(None, LonLat(9.9985, 55.9985)), TargetRequest(None, LonLat(9.9958, 55.9975))
+
+    def plan(battery_wh: float, *targets: TargetRequest) -> dict[str, Any]:
+        return make_plan(request=request(*targets, uavs=(iris((9.9985, 55.9965), battery_wh=battery_wh / 0.8),)))
+
+    straight_wh, round_wh = (plan(40.0, *targets)["total_energy_wh"] for targets in ((there,), (beside, there)))
+    assert round_wh < straight_wh - 0.5
+    said = next(item["message"] for item in plan(round_wh - 0.3, beside, there)["unassigned"] if item["target"] == 1)
+    assert f"it takes {round_wh:.1f} Wh there, 0.3 Wh more" in said
 
 
 MID_WAY = (10.16, 56.0)  # from here a UAV reaches the line of the world, or the island; from the one to the other it does not

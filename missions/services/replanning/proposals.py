@@ -166,10 +166,8 @@ def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
             continue
         try:
             continued[place] = continued_route(leaving, _with_places(route, wanted), whole, conditions_from_json(field.mission.conditions))
-        except CannotLeave as error:
-            own = set(field.rest(place).ahead)
-            lost = [target for target in whole if place in field.forced or target not in own]
-            unreached |= {target: ("beyond_energy", str(error)) for target in lost}
+        except CannotLeave as error:  # others may have been given what it would keep: the whole proposal falls
+            return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("beyond_energy", str(error))))
     return Proposal(field, continued, recalled | more, unreached, plan)
 
 

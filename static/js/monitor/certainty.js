@@ -1,5 +1,6 @@
 /** How sure a live page is of where a UAV is: measured, estimated, or lost. Values in, values out; times in milliseconds since 1970. */
 
+export const FRESH_S = 3; // a report that is no older is shown as it is: one a second may well be two seconds on its way
 export const LATE_S = 5; // a report older than this is said in amber
 export const SILENT_S = 10; // and from here on it is said that there is none
 
@@ -23,6 +24,7 @@ export function certaintyOf(uav, now_ms) {
   const isFresh = age_s !== null && age_s < SILENT_S;
   if (isRenewed(uav, now_ms)) {
     if (estimated.is_lost) return LOST;
+    if (age_s !== null && age_s < FRESH_S && measured.position) return MEASURED;
     return estimated.is_measured && isFresh ? MEASURED : estimated.is_measured ? LOST : ESTIMATED;
   }
   return isFresh && measured.position ? MEASURED : LOST;

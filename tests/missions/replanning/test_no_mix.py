@@ -2,6 +2,8 @@
 
 import random
 from collections import Counter
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 from django.db.models import F
@@ -21,6 +23,8 @@ from workspace.models import Job, JobState
 
 pytestmark = pytest.mark.django_db
 STEPS = 14
+TAKEN = (0, 1)  # in whose course an offer is taken
+Happening = Callable[[Flight, random.Random], Any]
 
 
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 40))])
@@ -28,22 +32,32 @@ def test_no_mission_is_mixed_from_two_plans(seed, tmp_path):
     ground(tmp_path / "hill.tif", 100.0)
     flight = two_in_the_air(somebody())
     draw, done = random.Random(seed), Counter()
-    for _step in range(STEPS):
-        what = draw.choice(HAPPENINGS)
+    for what in _course(draw):
         try:
             what(flight, draw)
             done[what.__name__] += 1
         except Refused:
             done["refused"] += 1
         _check(flight)
-    assert sum(done.values()) == STEPS
+    assert done["offer_worked_out"] and done.total() == STEPS
+    if seed in TAKEN:
+        assert ReplanOffer.objects.filter(state=OfferState.ACCEPTED).exists()
+
+
+def _course(draw: random.Random) -> list[Happening]:
+    """At random, but that an offer is worked out early and somebody wants to take it soon after."""
+    course = draw.choices(HAPPENINGS, k=STEPS - 2)
+    first = draw.randint(0, 2)
+    course.insert(first, offer_worked_out)
+    course.insert(draw.randint(first + 1, first + 2), offer_taken)
+    return course
 
 
 def offer_worked_out(flight: Flight, draw: random.Random) -> None:
     active = Mission.objects.filter(state="active").order_by("created_at").first()
     if active is None:
         return
-    uav = draw.choice(flight.uavs)
+    uav = flight.uavs[0] if draw.random() < 0.8 else flight.uavs[1]
     suggest(mission_id=active.pk, code="uav-out", cause={"uav": uav.pk})
     for job in Job.objects.filter(state=JobState.QUEUED, task="missions.tasks.replan_mission"):
         worked_out(ReplanOffer.objects.get(pk=job.parameters["offer"]), job)
@@ -74,7 +88,7 @@ def a_uav_flies_on(flight: Flight, draw: random.Random) -> None:
 
 
 def a_flight_fails(flight: Flight, draw: random.Random) -> None:
-    mark_flight_ended(mission_id=flight.mission.pk, uav_id=draw.choice(flight.uavs).pk, flight=1, end=FlightEnd.FAILED)
+    mark_flight_ended(mission_id=flight.mission.pk, uav_id=flight.uavs[draw.random() < 0.2].pk, flight=1, end=FlightEnd.FAILED)
 
 
 def a_flight_ends(flight: Flight, draw: random.Random) -> None:

@@ -69,7 +69,6 @@ def _flight(author: Any, draw: random.Random, number: int) -> Flight | None:
         if max(abs(tower.centre.x - centre[0]), abs(tower.centre.y - centre[1])) < NEAR_DEG
     ]
     if len(towers) < TARGETS:
-        print("few", len(towers))
         return None
     uavs = fleet(*(f"UAV {number}-{place}" for place in range(UAVS)))
     asked = tuple(
@@ -88,12 +87,10 @@ def _flight(author: Any, draw: random.Random, number: int) -> Flight | None:
     draft = create_mission(organisation=author.organisation, author=author, name=f"Drawn {number}", request=request)
     mission = plan_mission(mission=draft, actor=author)
     if mission.routes.filter(geometry__isnull=False).count() < UAVS:
-        print("unused", [t.unassigned_message for t in mission.targets.all()])
         return None
     try:
         flight = started(author, uavs, mission)
-    except Refused as e:
-        print("refused", e)
+    except Refused:
         return None
     for place in range(UAVS):
         flight.fly_to(place, max(1, draw.randrange(flight.route(place).waypoints.count()) // 2), draw.random())

@@ -14,6 +14,7 @@ from django.db import connection
 
 from missions.mavlink.signing import FrameWriter
 from telemetry.models import Alert, TelemetryRecord, TelemetryStream, UavLink
+from telemetry.selectors.alert_words import alert_words
 from tests.telemetry.gateway.program import free_port, gateway_program
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav, wait_for
 
@@ -167,7 +168,7 @@ def test_of_two_senders_with_one_system_id_the_first_is_kept_and_both_are_named(
         alert = wait_for(told)
         ports = [str(sender.socket.getsockname()[1]) for sender in (link, other)]
     assert TelemetryRecord.objects.count() == 1
-    assert all(port in alert.message for port in ports)
+    assert all(port in alert_words(alert.message, alert.values) for port in ports)
     assert UavLink.objects.get().losses["second-sender"] >= 1
 
 

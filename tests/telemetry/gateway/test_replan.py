@@ -162,7 +162,7 @@ def test_a_uav_that_cannot_be_given_its_route_stays_held_and_it_is_said(mission,
         assert ended(upload).state == CommandState.FAILED
         settle_hand_over_alerts()
         alert = Alert.objects.get(uav=own, code="hand-over-failed", closed_at=None)
-        assert "return" in alert.message and own.name in alert.message
+        assert "return" in alert.message and alert.values["uav"] == own.name
         assert vehicles[1].custom_mode == 17, "in BRAKE"
         assert not UavCommand.objects.filter(uav=own, mission=offer.continuation, kind=CommandKind.START).exists()
         home = command_uav(uav=own, kind=CommandKind.RETURN, actor=mission.author)

@@ -52,7 +52,7 @@ export function mountAlerts(store, page, { pick, commanding }) {
     const isKnown = !isUnanswered(alert);
     row.className = `alert ${isKnown ? "known" : alert.level} ${isOpenAlert(alert) ? "" : "over"}`;
     const level = LEVELS[alert.level];
-    const kind = canFly && isOpenAlert(alert) && uav ? ACTS[alert.code] : null;
+    const kind = canFly && isUnanswered(alert) && uav ? ACTS[alert.code] : null;
     const said = [
       alert.closed_at && t("Over since {time}.", { time: exactClockText(alert.closed_at) }),
       alert.acknowledged_at && t("Acknowledged by {who}, {time}.", { who: alert.acknowledged_by ?? t("somebody who has left"), time: exactClockText(alert.acknowledged_at) }),
@@ -67,8 +67,8 @@ export function mountAlerts(store, page, { pick, commanding }) {
       h("div", { class: "alert-said" },
         h("p", { class: "alert-title" }, h("span", { class: "unseen" }, `${level.words}: `), uav ? h("button", { type: "button", class: "alert-uav", onclick: () => pick(uav.id) }, uav.name) : null, h("span", {}, alert.message)),
         said && h("p", { class: "caption" }, said),
-        h("div", { class: "alert-acts" }, act, known, write)),
-      h("time", { datetime: alert.opened_at, title: exactText(alert.opened_at) }, exactClockText(alert.opened_at)),
+        (act || known) && h("div", { class: "alert-acts" }, act, known)),
+      h("div", { class: "alert-side" }, h("time", { datetime: alert.opened_at, title: exactText(alert.opened_at) }, exactClockText(alert.opened_at)), write),
     );
     if (hadFocus) row.querySelector("button")?.focus({ preventScroll: true });
   }

@@ -3,7 +3,7 @@
 import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
-import { exactClockText, exactText } from "../../units.js";
+import { clockText, exactClockText, exactText } from "../../units.js";
 import { boardRows, STATES } from "../board.js";
 import { eventsOf } from "../event_log.js";
 
@@ -18,7 +18,7 @@ export function mountBoard(store, { show }) {
   const draw = keyedList(body, ({ key }) => key, make, refresh);
 
   function make({ mission, place }) {
-    return h("tr", {}, h("td", { class: "board-target" }, h("span", { class: "pill" }), h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) })), h("td", { class: "board-state" }), h("td", { class: "number" }));
+    return h("tr", {}, h("td", {}, h("div", { class: "board-target" }, h("span", { class: "pill" }), h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) }))), h("td", { class: "board-state" }), h("td", { class: "number" }));
   }
 
   function refresh(row, { uav, pill, label, state, at, isExpected, reason }) {
@@ -30,7 +30,7 @@ export function mountBoard(store, { show }) {
     row.querySelector(".pill").textContent = pill;
     row.querySelector("button").textContent = label;
     row.cells[1].replaceChildren(h("span", {}, icon(image, "small"), words), reason && h("small", {}, reason));
-    row.cells[2].replaceChildren(at ? h("time", { datetime: at, title: exactText(at) }, `${isExpected ? "~\u2009" : ""}${exactClockText(at)}`) : "—");
+    row.cells[2].replaceChildren(at ? h("time", { datetime: at, title: exactText(at) }, isExpected ? `~\u2009${clockText(at)}` : exactClockText(at)) : "—");
   }
 
   const drawLog = keyedList(

@@ -28,12 +28,12 @@ export function mountCards(store, { pick, jumpTo, follow }) {
 
   function make(uav) {
     const at = {
-      letter: h("span", { class: "letter" }), name: h("strong", {}), chip: h("span", { class: "chip" }), simulated: h("span", { class: "chip draft", title: t("No real aircraft") }, t("simulated")), age: h("span", { class: "age" }), mission: h("p", { class: "caption of-mission" }),
+      letter: h("span", { class: "letter" }), name: h("strong", {}), chip: h("span", { class: "chip" }), age: h("span", { class: "age" }), mission: h("p", { class: "caption of-mission" }),
       estimate: h("p", { class: "estimate" }), figures: h("dl", { class: "figures" }), strip: h("div", { class: "strip-place" }), next: h("p", { class: "next" }), command: h("p", { class: "card-command" }), alerts: h("ul", { class: "card-alerts" }),
       jump: h("button", { type: "button", class: "text-button", onclick: () => jumpTo(uav.id) }, t("Show on the map")), follow: h("button", { type: "button", class: "text-button", "aria-pressed": "false", onclick: follow }, t("Follow")),
     };
     at.acts = h("div", { class: "card-acts" }, at.jump, at.follow);
-    at.head = h("button", { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) }, at.letter, at.name, at.chip, at.simulated);
+    at.head = h("button", { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) }, at.letter, at.name, at.chip);
     const card = h("li", { class: "card", onclick: (event) => !event.target.closest("button, a") && pick(uav.id) }, h("div", { class: "card-top" }, at.head, at.age), at.mission, at.command, at.estimate, at.figures, at.strip, at.next, at.alerts, at.acts);
     parts.set(card, at);
     return card;
@@ -53,12 +53,12 @@ export function mountCards(store, { pick, jumpTo, follow }) {
     const state = stateOf(uav);
     at.chip.textContent = state.words;
     at.chip.className = `chip ${state.level === "warning" ? "aborted" : state.level === "active" ? "draft" : ""}`;
-    at.simulated.hidden = !uav.is_simulated;
     const age = ageWords(uav, now_ms);
     refill(at.age, `${age.isLate} ${age.words}`, () => [age.isLate && icon("signal", "small"), age.words]);
     at.age.classList.toggle("late", age.isLate);
-    at.mission.hidden = missions.length < 2 && uav.mission !== null;
-    at.mission.textContent = mission ? mission.name : t("not in a mission");
+    const about = [mission ? missions.length > 1 && mission.name : t("not in a mission"), uav.is_simulated && t("simulated, no real aircraft")].filter(Boolean).join(" · ");
+    at.mission.hidden = about === "";
+    at.mission.textContent = about;
     const estimate = estimateWords(uav, certainty);
     at.estimate.hidden = estimate === null;
     if (estimate) refill(at.estimate, `${estimate.strong} ${estimate.rest}`, () => [icon("circle-dashed"), h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`)]);
@@ -107,5 +107,6 @@ export function mountCards(store, { pick, jumpTo, follow }) {
     byId("no-uavs").hidden = uavs.length > 0;
     draw(inOrder(uavs, alerts, chosen));
   });
+  store.listen(["chosen"], () => (byId("part-uavs").scrollTop = 0)); // it stands first
   new ResizeObserver(() => draw(inOrder(store.state.uavs, store.state.alerts, store.state.chosen))).observe(list);
 }

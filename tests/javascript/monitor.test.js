@@ -1,0 +1,146 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { newAlerts } from "../../static/js/monitor/alarm.js";
+import { boardRows } from "../../static/js/monitor/board.js";
+import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/monitor/certainty.js";
+import { eventsOf } from "../../static/js/monitor/event_log.js";
+import { progressOf } from "../../static/js/monitor/live_strip.js";
+import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
+import { between } from "../../static/js/monitor/map/glide.js";
+import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
+import { sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
+import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
+import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
+import { distance_m } from "../../static/js/mission/span_strip.js";
+
+const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
+const ago = (seconds) => new Date(NOW_MS - seconds * 1000).toISOString();
+const plain = (text) => text.replace(/[\u00a0\u2009]/g, " ");
+
+function uav({ id = 1, age_s = 0.7, estimated = null, place = 0, ...measured } = {}) {
+  return {
+    id, name: `UAV ${id}`, mission: "m", place, link: { mode: "Mission", is_in_air: true, waypoint_sequence: null }, estimated,
+    measured: { measured_at: ago(age_s), received_at: ago(age_s), position: [10, 50], altitude_relative_m: 45, speed_mps: 9.8, heading_deg: 90, battery_percent: 71, mode: "Mission", is_in_air: true, ...measured },
+  };
+}
+
+const estimate = (change = {}) => ({
+  at: ago(0.5), report_at: ago(74), position: [10.01, 50], altitude_relative_m: 46, altitude_amsl_m: null, speed_mps: 10, heading_deg: 80,
+  bound: { along_m: 410, across_m: 60, bearing_deg: 90, height_m: 5, speed_mps: 1 }, is_measured: false, is_lost: false, waypoint_sequence: 3,
+  along_route_m: 2000, to_go_m: 12_500, arrivals: [{ waypoint_sequence: 4, target: 2, at: ago(-235), earliest: ago(-200), latest: ago(-270) }], ends_at: ago(-1260), contact_expected_at: ago(-70), ...change,
+});
+
+test("a UAV with a fresh report is measured, a silent one is estimated, and lost once nobody vouches for it", () => {
+  assert.equal(certaintyOf(uav(), NOW_MS), MEASURED);
+  assert.equal(certaintyOf(uav({ age_s: 74, estimated: estimate() }), NOW_MS), ESTIMATED);
+  assert.equal(certaintyOf(uav({ age_s: 74, estimated: estimate({ is_lost: true }) }), NOW_MS), LOST);
+});
+
+test("an estimate that nobody renews does not make a silent UAV look certain", () => {
+  assert.equal(certaintyOf(uav({ age_s: 74, estimated: estimate({ at: ago(60) }) }), NOW_MS), LOST);
+  assert.equal(certaintyOf(uav({ age_s: 74, estimated: estimate({ is_measured: true }) }), NOW_MS), LOST);
+  assert.equal(certaintyOf({ measured: null, estimated: null, link: {} }, NOW_MS), null);
+});
+
+test("an estimated UAV stands where the estimate says, a measured one where it was measured", () => {
+  assert.deepEqual(standsAt(uav({ age_s: 74, estimated: estimate() }), ESTIMATED).position, [10.01, 50]);
+  assert.deepEqual(standsAt(uav({ estimated: estimate({ is_measured: true }) }), MEASURED).position, [10, 50]);
+});
+
+test("the age of a report is said, late ones in amber", () => {
+  assert.deepEqual(ageWords(uav(), NOW_MS), { words: "0.7 s ago", isLate: false });
+  assert.deepEqual(ageWords(uav({ age_s: 6 }), NOW_MS), { words: "6.0 s ago", isLate: true });
+  assert.equal(plain(ageWords(uav({ age_s: 74 }), NOW_MS).words), "no report for 74 s");
+});
+
+test("estimated figures have a tilde and name what a height is above", () => {
+  const figures = figuresOf(uav({ age_s: 74, estimated: estimate() }), ESTIMATED);
+  assert.deepEqual(figures.slice(0, 3).map(({ figure, unit, words }) => plain(`${figure} ${unit} ${words}`)), ["~ 71 % battery", "~ 46 m over take-off", "~ 10 m/s speed"]);
+  assert.equal(plain(figuresOf(uav(), MEASURED)[1].figure), "45");
+  assert.equal(figuresOf(uav({ altitude_relative_m: null, altitude_amsl_m: 300 }), MEASURED)[1].words, "over the sea");
+  assert.equal(figuresOf(uav({ battery_percent: null }), MEASURED)[0].figure, "—");
+});
+
+test("the box says how far off an estimate may be", () => {
+  const { strong, rest } = estimateWords(uav({ age_s: 74, estimated: estimate() }), ESTIMATED);
+  assert.equal(plain(strong), "Estimated, within 410 m");
+  assert.match(rest, /95 of 100 times.*Contact expected by/);
+  assert.equal(estimateWords(uav(), MEASURED), null);
+});
+
+test("modes of autopilots are said in one word each", () => {
+  assert.equal(stateOf(uav({ mode: "AUTO.LOITER" })).words, "Holding");
+  assert.equal(stateOf(uav({ mode: "RTL" })).words, "Returning");
+  assert.equal(stateOf(uav({ is_in_air: false, is_armed: false })).words, "On the ground");
+  assert.equal(stateOf(uav({ mode: "ZIGZAG" })).words, "ZIGZAG");
+});
+
+const alert = (id, level, change = {}) => ({ id, uav: id, mission: "m", level, code: "x", message: `alert ${id}`, opened_at: ago(id), closed_at: null, acknowledged_at: null, acknowledged_by: null, ...change });
+
+test("UAVs stand with the chosen one first, then by alert, then by landing time", () => {
+  const uavs = [1, 2, 3, 4].map((id) => uav({ id, estimated: estimate({ ends_at: ago(-1000 + id) }) }));
+  const order = inOrder(uavs, [alert(2, "critical"), alert(1, "warning"), alert(3, "critical", { closed_at: ago(1) })], 4);
+  assert.deepEqual(order.map(({ id }) => id), [4, 2, 1, 3]);
+});
+
+test("alerts stand by level, the newest first; what somebody knows of comes after", () => {
+  const alerts = [alert(1, "advisory"), alert(2, "critical", { acknowledged_at: ago(1) }), alert(3, "warning"), alert(4, "critical"), alert(5, "critical")];
+  assert.deepEqual(alertsInOrder(alerts).map(({ id }) => id), [4, 5, 3, 1, 2]);
+});
+
+test("a cause is told once, and again where it has become worse", () => {
+  const told = new Map([[1, "warning"], [2, "warning"]]);
+  assert.deepEqual(newAlerts([alert(1, "warning"), alert(2, "critical"), alert(3, "warning"), alert(4, "critical", { acknowledged_at: ago(1) })], told).map(({ id }) => id), [2, 3]);
+});
+
+test("the board shows what goes on before what is to come and what is done", () => {
+  const target = (place, state, state_at = null) => ({ place, label: `Tower ${place}`, state, state_at, state_reason: "", uav: 0 });
+  const missions = [{ id: "m", targets: [target(0, "complete", ago(100)), target(1, "complete", ago(50)), target(2, "pending"), target(3, "pending"), target(4, "failed", ago(60))] }];
+  const details = new Map([["m", { plan: { routes: [{ targets: [0, 1, 2, 3, 4] }] } }]]);
+  const rows = boardRows(missions, [uav({ estimated: estimate() })], details);
+  assert.deepEqual(rows.map(({ pill, state }) => `${pill} ${state}`), ["A3 in-progress", "A4 pending", "A5 failed", "A2 complete", "A1 complete"]);
+  assert.equal(boardRows(missions, [uav({ mode: "Hold", estimated: estimate() })], details)[0].state, "held");
+});
+
+test("the log has every step of a command and of an alert, the newest first", () => {
+  const command = { id: "c", uav: { id: 1, name: "Kite" }, kind: "hold", created_by: "opal", state: "failed", outcome: "no answer", created_at: ago(20), sent_at: ago(19), acknowledged_at: null, finished_at: ago(5) };
+  const events = eventsOf({ commands: [command], alerts: [alert(9, "warning", { closed_at: ago(1) })], missions: [] });
+  assert.deepEqual(events.map(({ words }) => words), ["Over: alert 9", "Kite: Hold, failed – no answer", "alert 9", "Kite: Hold, sent", "Kite: Hold, given by opal"]);
+});
+
+test("a ring is as large as its bound and lies along its bearing", () => {
+  const ring = ellipseRing([10, 50], { along_m: 400, across_m: 100, bearing_deg: 90 });
+  assert.ok(Math.abs(distance_m([10, 50], ring[0]) - 400) < 1);
+  assert.ok(ring[0][0] > 10 && Math.abs(ring[0][1] - 50) < 1e-9); // east
+  assert.ok(Math.abs(distance_m([10, 50], ring[12]) - 100) < 1);
+  assert.deepEqual(ring[0], ring.at(-1));
+  assert.ok(Math.abs(distance_m([10, 50], ellipseRing([10, 50], { along_m: 1, across_m: 1, bearing_deg: 0 }, 30)[5]) - 30) < 0.2);
+  assert.ok(Math.abs(metresPerPixel(0, 0) - 78_271.5) < 1);
+});
+
+test("a marker glides and never overshoots", () => {
+  assert.deepEqual(between([0, 0], [2, 4], 150, 300), [1, 2]);
+  assert.deepEqual(between([0, 0], [2, 4], 900, 300), [2, 4]);
+  assert.deepEqual(between([0, 0], [2, 4], 0, 0), [2, 4]);
+});
+
+test("a flown line is broken where nothing was heard, and takes no report twice", () => {
+  const report = (seconds, longitude) => ({ geometry: { coordinates: [longitude, 50] }, properties: { uav: 7, measured_at: ago(seconds) } });
+  const flown = flownParts([report(100, 1), report(99, 2), report(20, 3), report(20, 3), { geometry: null, properties: { uav: 7, measured_at: ago(10) } }]);
+  assert.deepEqual(flown.get(7).parts, [[[1, 50], [2, 50]], [[3, 50]]]);
+  assert.equal(addReport(flown, 7, [4, 50], NOW_MS - 19_000), true);
+  assert.equal(addReport(flown, 7, [4, 50], NOW_MS - 30_000), false);
+});
+
+test("progress along the route is the estimate's, else that of the last waypoint passed", () => {
+  assert.deepEqual(progressOf(uav({ estimated: estimate() }), [0, 100]), { at_m: 2000, within_m: 410 });
+  assert.deepEqual(progressOf(uav({ waypoint_sequence: 2 }), [0, 100, 300]), { at_m: 100, within_m: 0 });
+  assert.equal(progressOf(uav(), [0, 100]), null);
+});
+
+test("an offer is said in a sentence, and target by target", () => {
+  const offer = { difference: { uavs: [{ change: "changed" }, { change: "out" }], targets: [{ label: "Tower 31", from: 1, to: 2, message: "" }, { label: "Tower 51", from: 1, to: null, message: "Its battery does not last for it." }], unreached: 1 } };
+  assert.equal(sentenceOf(offer), "1 UAV gets another route, 1 target changes hands, 1 target stays undone");
+  assert.deepEqual(targetLines(offer), ["Tower 31: B → C", "Tower 51: B → Its battery does not last for it."]);
+});
