@@ -30,7 +30,8 @@ POLL_S = 0.5
 STOP_S = 60
 BROWSER_TESTS_AFTER = ("tests/browser/ground", "tests/browser/people")  # in line with the others; the rest run beside, about as long
 WAITING_TESTS = (  # for other processes, more than they compute: beside the others they cost little
-    "tests/telemetry/gateway", "tests/telemetry/live", "tests/telemetry/watch", "tests/telemetry/test_companion.py", "tests/telemetry/test_command_delivery.py",
+    "tests/telemetry/gateway", "tests/telemetry/live", "tests/telemetry/watch", "tests/telemetry/test_companion.py",
+    "tests/telemetry/test_command_delivery.py",
     "tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py", "tests/workspace/test_live.py", "tests/scripts",
 )  # fmt: skip
 
