@@ -39,6 +39,7 @@ def fly_mission(mission_id: str, *, ends: bool = True) -> None:
     if ends:
         InspectionTarget.objects.filter(mission=mission).update(state_at=timezone.now() - timedelta(seconds=10))
         TargetChecks().check([first.pk, second.pk])
+        InspectionTarget.objects.filter(mission=mission).update(state_at=BEGAN_AT + timedelta(minutes=20))
         last = TelemetryRecord.objects.filter(mission=mission).latest("measured_at")
         Mission.objects.filter(pk=mission.pk).update(departs_at=BEGAN_AT, started_at=BEGAN_AT, ended_at=last.measured_at)
 
