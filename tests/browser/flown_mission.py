@@ -6,13 +6,16 @@ from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
 
-from missions.models import Approval, InspectionTarget, Mission
+from missions.models import Approval, InspectionTarget, LinkKind, Mission
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
+from telemetry.decoding.measurement import Measurement
 from telemetry.models import AlertLevel, PositionEstimate, TelemetryRecord
+from telemetry.services import NewRecord, store_records
 from telemetry.services.alerts import open_alert
 from telemetry.services.targets_checked import TargetChecks
 from tests.telemetry.flown import fly, route_of
 
+AFTER_ALL = 1_000_000  # in the order of reports
 BEGAN_AT = datetime(2026, 9, 10, 9, 10, tzinfo=UTC)
 SILENT_FROM, SILENT_UNTIL = timedelta(minutes=4), timedelta(minutes=6)
 
@@ -26,7 +29,10 @@ def fly_mission(mission_id: str, *, ends: bool = True) -> None:
     visited = [waypoint for waypoint in route_of(approval, second).waypoints if waypoint.target is not None]
     for place, (uav, left_out) in enumerate(((first, None), (second, visited[1].sequence))):
         mark_started(mission_id=mission.pk, uav_id=uav.pk)
-        fly(approval, uav, BEGAN_AT + timedelta(minutes=2 * place), leaves_out=left_out)
+        over = fly(approval, uav, BEGAN_AT + timedelta(minutes=2 * place), leaves_out=left_out) + timedelta(seconds=1)
+        if ends:
+            on_ground = Measurement(altitude_relative_m=0.0, is_armed=False, is_in_air=False)
+            store_records([NewRecord(uav.pk, LinkKind.MAVLINK, "flight", AFTER_ALL, over, over, on_ground, mission_id=mission.pk)])
         if ends:
             mark_waypoint_reached(mission_id=mission.pk, uav_id=uav.pk, waypoint=route_of(approval, uav).waypoints[-1].sequence)
             mark_flight_ended(mission_id=mission.pk, uav_id=uav.pk, flight=1, end=FlightEnd.FLOWN)
