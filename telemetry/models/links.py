@@ -34,6 +34,7 @@ class UavLink(models.Model):
     loaded_read_at = models.DateTimeField(null=True, blank=True, help_text="when it was last read back, by the server's clock")
     loaded_doubt = models.CharField(
         max_length=20,
+        default="",
         db_default="",
         blank=True,
         help_text="why it may hold something else by now; empty = nothing says so",

@@ -56,7 +56,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
         for flyer in flyers:
             flyer.obeys()
     for uav in uavs:
-        writes(page, "PATCH", f"/uavs/{uav}", {"is_retired": True})
+        writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
 
 
 def opened(page: Page, path: str) -> Page:

@@ -52,7 +52,8 @@ class Flyer:
         self.sequence += 1
         record = {
             "sequence": self.sequence, "measured_at": datetime.now(UTC).isoformat(), "position": position, "altitude_relative_m": 45.0,
-            "speed_mps": 9.0, "heading_deg": heading_deg, "battery_percent": 71.0, "mode": "Mission", "is_armed": True, "is_in_air": True,
+            "velocity_north_mps": 9.0 * math.cos(math.radians(heading_deg)), "velocity_east_mps": 9.0 * math.sin(math.radians(heading_deg)),
+            "heading_deg": heading_deg, "battery_percent": 71.0, "mode": "Mission", "is_armed": True, "is_in_air": True,
             "gps_fix": 3, "satellites": 14, "hdop": 0.8, "waypoint_sequence": waypoint,
         } | told  # fmt: skip
         answer = self.link.ask("POST", "telemetry", {"stream": "boot-1", "records": [record]})
