@@ -97,8 +97,8 @@ def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: st
     page.locator("#report-alerts").get_by_role("button", name="09:14:12").click()
     expect(page.locator("#replay-strips .replay-row").first).to_contain_text("estimated, ±")
     expect(page.locator("#map .map-flyer.estimated")).to_have_count(1)
-    page.get_by_role("button", name="A Dunlin").click()
-    expect(page.get_by_role("button", name="A Dunlin")).to_have_attribute("aria-pressed", "true")
+    page.get_by_role("button", name="A Dunlin", exact=True).click()
+    expect(page.get_by_role("button", name="A Dunlin", exact=True)).to_have_attribute("aria-pressed", "true")
     box = slider.bounding_box()
     assert box
     page.mouse.click(box["x"] + box["width"] * 0.5, box["y"] + 40)

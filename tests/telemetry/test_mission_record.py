@@ -7,12 +7,13 @@ from datetime import datetime, timedelta
 from typing import Any
 
 import pytest
+from django.contrib.gis.geos import Point
 from django.test import Client
 from django.utils import timezone
 
 from missions.models import Approval, InspectionTarget, Mission, MissionState, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
-from telemetry.models import AlertLevel, InspectionResult, TelemetryStream
+from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert
 from telemetry.services.targets_checked import TargetChecks
 from tests.missions.flights import an_operator, dispatched, fleet
@@ -97,6 +98,27 @@ def test_a_flown_mission_is_told_by_leg_and_target(client: Client, mission: Miss
     assert datetime.fromisoformat(route["flown"]["ended_at"]) == pytest.approx(over, abs=timedelta(seconds=1))
     for target in told["targets"]:
         assert target["state"] == TargetState.COMPLETE and target["closest_m"] < 15.0 and target["reached_at"] is not None
+
+
+def test_the_record_says_how_good_the_estimates_were_and_they_can_be_thinned_out(
+    client: Client, mission: Mission, approval: Approval, tern: Uav
+) -> None:
+    fly(approval, tern, began())
+    records = list(TelemetryRecord.objects.filter(mission=mission).order_by("measured_at")[100:140])
+    PositionEstimate.objects.bulk_create(
+        PositionEstimate(
+            uav=tern, mission=mission, estimated_for=record.measured_at, made_at=record.measured_at, speed_mps=12.0,
+            position=Point(record.position.x, record.position.y + (0.001 if number < 10 else 0.0), srid=4326),
+            bound_along_m=20.0, bound_across_m=20.0, bound_bearing_deg=0.0, bound_height_m=5.0, bound_speed_mps=2.0,
+        )
+        for number, record in enumerate(records)
+    )  # fmt: skip
+    told = record_of(client, mission)["summary"]["estimates"]
+    assert (told["compared"], told["untold"], told["share_inside"]) == (40, 0, 0.75)
+    assert told["largest_m"] == pytest.approx(111.0, abs=2.0) and told["rms_m"] == pytest.approx(55.7, abs=1.5)
+    thinned = client.get(f"/api/v1/missions/{mission.pk}/estimates?most=10").json()
+    assert 4 <= len(thinned["features"]) <= 11 and thinned["every_s"] > 3.0
+    assert len(client.get(f"/api/v1/missions/{mission.pk}/estimates?most=100").json()["features"]) == 40
 
 
 def test_a_mission_that_has_not_flown_has_a_record_without_figures(client: Client, mission: Mission) -> None:
