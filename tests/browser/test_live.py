@@ -69,15 +69,15 @@ def card(page: Page, name: str) -> Any:
     return page.locator("#uav-cards .card").filter(has=page.get_by_role("button", name=re.compile(name)))
 
 
-def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, **told: Any) -> float:
-    """A report a second of each until the page shows what is waited for; how far they have come."""
-    for _ in range(MOST_STEPS):
+def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0) -> float:
+    """A report a second of each until the page shows what is waited for, the first so much further aside with each; how far they have come."""
+    for step in range(MOST_STEPS):
         if fact():
             return along_m
         along_m += STEP_M
         for number, flyer in enumerate(flyers):
             flyer.obeys()
-            flyer.reports(along_m, **(told if number == 0 else {}))
+            flyer.reports(along_m, aside_m=0.0 if number else drifts_m * step)
         page.wait_for_timeout(1000)  # a UAV reports once a second
     raise AssertionError("the page does not show it")
 
@@ -103,8 +103,8 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
     expect(kite.locator(".figures")).to_contain_text("over take-off")
     expect(kite.locator(".live-strip")).to_be_visible()
 
-    off_route = watcher.locator(".alert").filter(has_text=re.compile("off (its|the) route"))
-    flies_until(watcher, lambda: off_route.count() > 0, flyers, along_m, aside_m=180.0)
+    off_route = watcher.locator(".alert").filter(has_text="beside its route")
+    flies_until(watcher, lambda: off_route.count() > 0, flyers, along_m, drifts_m=6.0)
     expect(watcher.locator("#alert-badge")).not_to_have_text("")
     kite.get_by_role("button", name=re.compile("Kite")).click()
     expect(watcher.get_by_role("group", name="Commands to Kite")).to_be_visible()

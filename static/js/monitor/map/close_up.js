@@ -4,7 +4,7 @@ import { h, icon } from "../../dom.js";
 import { provideImages } from "../../map/images.js";
 import { maplibre } from "../../map/maplibre.js";
 import { boxAround } from "../../map/map_view.js";
-import { mapStyle } from "../../map/style.js";
+import { mapStyle, repaint } from "../../map/style.js";
 import { t } from "../../text.js";
 import { ESTIMATED, withinOf_m } from "../certainty.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
@@ -25,14 +25,16 @@ export function createCloseUp(view, frame, page) {
   const box = h("section", { class: "close-up float", "aria-label": t("Close-up"), hidden: true }, h("header", {}, letter, title, h("span", { class: "quiet-text" }, t("close up")), h("button", { type: "button", class: "icon-button tight", "aria-label": t("Close the close-up"), onclick: () => (box.dataset.closed = shownFor, (box.hidden = true)) }, icon("x", "small"))), place);
   frame.append(box);
   let shownFor = "";
+  const options = { tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`, baseMap: page.baseMap, satellite: page.satellite, under: "" };
   let small = null;
+  let redrawImages = null;
   let markers = null;
   let isReady = false;
   let latest = null;
 
   function start() {
-    small = new maplibre.Map({ container: place, style: mapStyle(view.palette(), { tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`, baseMap: page.baseMap, satellite: page.satellite, under: "" }), interactive: false, attributionControl: false, fadeDuration: 0, center: latest.position, zoom: 14 });
-    provideImages(small, () => view.palette());
+    small = new maplibre.Map({ container: place, style: mapStyle(view.palette(), options), interactive: false, attributionControl: false, fadeDuration: 0, center: latest.position, zoom: 14 });
+    redrawImages = provideImages(small, () => view.palette());
     small.on("load", () => {
       flightLayers.addTo(small, view.palette());
       markers = createUavMarkers(small, { onPick: () => {} });
@@ -70,9 +72,9 @@ export function createCloseUp(view, frame, page) {
     },
     recolour() {
       if (!isReady) return;
-      small.remove();
-      [small, markers, isReady] = [null, null, false];
-      if (!box.hidden) start();
+      repaint(small, view.palette(), options);
+      flightLayers.recolour(small, view.palette());
+      redrawImages();
     },
   };
 }
