@@ -28,6 +28,7 @@ from scripts.supervision import Supervisor
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 POLL_S = 0.5
 STOP_S = 60
+BROWSER_TESTS_AFTER = ("tests/browser/ground", "tests/browser/people")  # in line with the others; the rest run beside, about as long
 WAITING_TESTS = (  # for other processes, more than they compute: beside the others they cost little
     "tests/telemetry/gateway", "tests/telemetry/live", "tests/telemetry/watch", "tests/telemetry/test_companion.py",
     "tests/telemetry/test_command_delivery.py",
@@ -79,7 +80,10 @@ def steps(arguments: list[str]) -> list[Step]:
     if scripts := sorted(str(path) for path in (PROJECT_DIR / "tests" / "javascript").glob("**/*.test.*js")):
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
     if not is_fast:
-        found.append(Step("browser tests", _browser_tests("all", f"browser{without_long}", ["tests/browser"]), runs_beside=True))
+        expression = f"browser{without_long}"
+        found.append(Step("browser tests of the ground and its people", _browser_tests("ground", expression, list(BROWSER_TESTS_AFTER))))
+        others = [f"--ignore={folder}" for folder in BROWSER_TESTS_AFTER]
+        found.append(Step("browser tests", _browser_tests("others", expression, ["tests/browser", *others]), runs_beside=True))
     return found
 
 
