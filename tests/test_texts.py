@@ -14,7 +14,7 @@ NOT_FOR_PEOPLE = re.compile(
 )
 ELEMENT = re.compile(r"<(script|style|code|kbd|svg)\b.*?</\1>|<[^<>]*>|\b[a-z-]+=\"[^\"]*\"", re.S)
 SPOKEN = re.compile(r'(?:aria-label|title|placeholder|alt)="([^"]*)"')
-OWN_NAMES = {"Spanwise", "Spanwise administration", "English", "Deutsch", "UTC"}
+OWN_NAMES = {"Spanwise", "Spanwise administration", "English", "Deutsch", "UTC", "CSV", "GeoJSON", "GPX", "KML"}
 
 
 def _forms(text: str | list[str] | tuple[str, ...]) -> list[str]:

@@ -70,7 +70,7 @@ def card(page: Page, name: str) -> Any:
 
 
 def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0) -> float:
-    """A report a second of each until the page shows what is waited for, the first so much further aside with each; how far they have come."""
+    """A report a second of each until the page shows what is waited for; the first drifts aside. Returns how far they have come."""
     for step in range(MOST_STEPS):
         if fact():
             return along_m

@@ -15,7 +15,7 @@ from tests.browser.test_accessibility import faults
 pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
-STARTS = {"Dunlin": [-83.045, 39.935], "Plover": [-82.945, 39.945]}
+STARTS = {"Pintail": [-83.045, 39.935], "Garganey": [-82.945, 39.945]}
 VIEWS: dict[str, dict[str, Any]] = {
     "light": {"theme": "light", "size": (1440, 900)},
     "dark": {"theme": "dark", "size": (1440, 900)},
@@ -76,17 +76,17 @@ def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: st
     page.locator(".report-route > summary").first.click()
     page.locator(".report-leg").nth(2).hover()
     page.locator("#report-alerts > summary").click()
-    for words in ("Dunlin: no report for 12 s", "Plover: 300 m off its route"):
+    for words in ("Pintail: no report for 12 s", "Garganey: 300 m off its route"):
         expect(page.locator("#report-alerts")).to_contain_text(words)
 
     slider = page.get_by_role("slider", name="Time of the replay")
     slider.focus()
     page.keyboard.press("End")
-    expect(slider).to_have_attribute("aria-valuetext", re.compile("Dunlin lands|Plover lands"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("Pintail lands|Garganey lands"))
     page.keyboard.press("Home")
-    expect(slider).to_have_attribute("aria-valuetext", re.compile("09:10:0., Dunlin takes off"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("09:10:0., Pintail takes off"))
     page.keyboard.press(".")
-    expect(slider).to_have_attribute("aria-valuetext", re.compile("reached|Plover takes off"))
+    expect(slider).to_have_attribute("aria-valuetext", re.compile("reached|Garganey takes off"))
     page.keyboard.press("Space")
     expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()
     before = slider.get_attribute("aria-valuenow")
@@ -97,8 +97,8 @@ def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: st
     page.locator("#report-alerts").get_by_role("button", name="09:14:12").click()
     expect(page.locator("#replay-strips .replay-row").first).to_contain_text("estimated, ±")
     expect(page.locator("#map .map-flyer.estimated")).to_have_count(1)
-    page.get_by_role("button", name="A Dunlin", exact=True).click()
-    expect(page.get_by_role("button", name="A Dunlin", exact=True)).to_have_attribute("aria-pressed", "true")
+    page.get_by_role("button", name="A Pintail", exact=True).click()
+    expect(page.get_by_role("button", name="A Pintail", exact=True)).to_have_attribute("aria-pressed", "true")
     box = slider.bounding_box()
     assert box
     page.mouse.click(box["x"] + box["width"] * 0.5, box["y"] + 40)

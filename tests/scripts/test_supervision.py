@@ -150,16 +150,27 @@ def _expressions(arguments: list[str]) -> dict[str, str]:
 
 
 def test_fast_leaves_the_browser_out_and_long_takes_the_long_tests_in() -> None:
-    ground, others = "browser tests of the ground and its people", "browser tests"
-    assert _expressions([]) == {"pytest": "not browser and not long", ground: "browser and not long", others: "browser and not long"}
+    ground, others, quick = "browser tests of the ground and its people", "browser tests", "not browser and not long"
+    assert _expressions([]) == {
+        "pytest": quick, "tests that wait": quick, ground: "browser and not long", others: "browser and not long",
+    }  # fmt: skip
     assert not {ground, others} & {step.name for step in steps(["--fast"])}
-    assert _expressions(["--long"]) == {"pytest": "not browser", ground: "browser", others: "browser"}
+    assert _expressions(["--long"]) == {"pytest": "not browser", "tests that wait": "not browser", ground: "browser", others: "browser"}
 
 
 def test_every_browser_test_runs_in_one_of_two_steps() -> None:
     after, beside = (step.command[step.command.index("-m", 3) + 2 :] for step in steps([]) if step.name.startswith("browser"))
     assert beside == ["tests/browser", *(f"--ignore={folder}" for folder in after)]
     assert all((PROJECT_DIR / folder).is_dir() for folder in after)
+
+
+def test_what_waits_runs_beside_and_nowhere_else() -> None:
+    by_name = {step.name: step for step in steps([])}
+    waiting = [argument for argument in by_name["tests that wait"].command if argument.startswith("tests/")]
+    assert waiting and all((PROJECT_DIR / place).exists() for place in waiting)
+    assert [argument for argument in by_name["pytest"].command if argument.startswith("--ignore")] == [
+        f"--ignore={place}" for place in waiting
+    ]
 
 
 def test_other_arguments_go_to_pytest_alone() -> None:

@@ -41,7 +41,6 @@ export default {
   "measured": "gemessen",
   "estimated": "geschätzt",
   "lost": "verloren",
-  "{name}, {certainty}, {fact}": "{name}, {certainty}, {fact}",
   "A UAV has dropped out": "Ein UAV ist ausgefallen",
   "A no-fly zone has come into force": "Eine Flugverbotszone gilt jetzt",
   "A battery will not do": "Ein Akku reicht nicht",
