@@ -4,11 +4,10 @@ import { byId } from "../dom.js";
 import { get } from "../api.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
-import { routeClicks } from "../map/click_router.js";
 import * as routesLayer from "../map/layers/routes.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { routeLetter } from "../map/palette.js";
-import { tipOf } from "../map/tips.js";
+import { showTipsOnly } from "../map/tips_only.js";
 import { rememberedUnder } from "../map/under.js";
 import { createTargetPills } from "../monitor/map/target_pills.js";
 import { createUavMarkers } from "../monitor/map/uav_markers.js";
@@ -47,18 +46,7 @@ export function createReportMap(page, { onPick }) {
     layers.lookAt(map, looked, rest());
   };
   const controls = mountControls(view, page, { fit: () => fit(), recoloured: (palette) => parts && (layers.recolour(map, palette), light()) });
-  map.on("movestart", () => tip(null));
-  routeClicks(map, {
-    tool: () => "point",
-    kinds: () => null,
-    click: (thing, place) => controls.click(place) || (thing && tip(`${thing.kind} ${thing.id}`, map.project(place), (refresh) => tipOf({ ...thing, place }, refresh), { soon: true })),
-    hover(thing, point, place) {
-      controls.hover(place);
-      tip(thing && !controls.isMeasuring() ? `${thing.kind} ${thing.id}` : null, point, (refresh) => tipOf({ ...thing, place }, refresh));
-    },
-    box: () => {},
-    lasso: () => {},
-  });
+  showTipsOnly(map, { controls, tip });
 
   const ready = view.ready.then(() => {
     layers.addTo(map, view.palette());

@@ -6,8 +6,7 @@ import { createTip } from "../../map/furniture.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { boxAround, createMap } from "../../map/map_view.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
-import { routeClicks } from "../../map/click_router.js";
-import { tipOf } from "../../map/tips.js";
+import { showTipsOnly } from "../../map/tips_only.js";
 import { rememberedUnder } from "../../map/under.js";
 import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";
@@ -46,18 +45,7 @@ export function mountMonitorMap(store, page, { pick }) {
   let parts = null; // once the map has its style
   const controls = mountControls(view, page, { fit: () => fit(), recoloured: (palette) => (flightLayers.recolour(map, palette), parts?.closeUp.recolour()) });
   map.on("dragstart", () => store.update({ isFollowing: false }));
-  map.on("movestart", () => tip(null));
-  routeClicks(map, {
-    tool: () => "point",
-    kinds: () => null,
-    click: (thing, place) => controls.click(place) || (thing && tip(`${thing.kind} ${thing.id}`, map.project(place), (refresh) => tipOf({ ...thing, place }, refresh), { soon: true })),
-    hover(thing, point, place) {
-      controls.hover(place);
-      tip(thing && !controls.isMeasuring() ? `${thing.kind} ${thing.id}` : null, point, (refresh) => tipOf({ ...thing, place }, refresh));
-    },
-    box: () => {},
-    lasso: () => {},
-  });
+  showTipsOnly(map, { controls, tip });
 
   const drawn = ({ uavs, now_ms, chosen }) => uavs.map((uav) => drawnUav(uav, now_ms, chosen)).filter(Boolean);
   const routesShown = ({ missions, details }) => missions.flatMap(({ id }) => (details.get(id)?.plan?.routes ?? []).map((route, sequence) => ({ sequence, geometry: route.geometry })));
