@@ -24,6 +24,7 @@ NAMES = ("Dunlin", "Ruff")
 NAME = "South belt, two by two"
 FIRST_SYSTEM = 201
 TOWERS, BESIDE_DEG = 8, 0.002
+LANDS_WITHIN_MS, WORKED_OUT_WITHIN_MS = 400_000, 40_000
 
 
 @dataclass
@@ -97,43 +98,78 @@ def card(page: Page, name: str) -> Any:
     return page.locator("#uav-cards .card").filter(has=page.get_by_role("button", name=re.compile(name)))
 
 
-def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_other(
-    visitor: Visitor, flight: Flight, picture: Picture
-) -> None:
+def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
+    """The pages of who started the flight and of who watches it, once another plan is offered on both."""
     pilot = opened(visitor.signs_in("opal"), f"/missions/{flight.mission}")
     watcher = opened(visitor.signs_in("rory"), f"/missions/{flight.mission}/fly")
     for name in NAMES:
         starts(pilot, name)
     expect(watcher.locator("#mission-state")).to_have_text("Active")
     expect(watcher.locator(".map-flyer.measured")).to_have_count(2)
-    expect(card(watcher, "Dunlin").locator(".figures")).to_contain_text(re.compile(r"[4-9]\d"))  # it has climbed
+    expect(card(watcher, "Dunlin").locator(".figures")).to_contain_text(re.compile(r"over take-off\s*[4-9]\d"))  # it has climbed
     flight.vehicles["Dunlin"].comes_home()
     lost = watcher.locator(".alert.critical").filter(has_text="without a command of ours")
-    expect(lost).to_be_visible()
-    pilot.goto("/live")
-    offers = [page.locator("#offers") for page in (pilot, watcher)]
-    for offer in offers:
-        expect(offer).to_contain_text("A UAV has dropped out. 1 UAV gets another route")
-        expect(offer).to_contain_text(re.compile(r"Ruff gets another route \+\d"))
-    in_both_themes(watcher, picture, "live-offer")
-    assert faults(watcher) == []
     lost.get_by_role("button", name="Acknowledge").click()
+    pilot.goto("/live")
     expect(pilot.locator(".alert.known").filter(has_text="Acknowledged by rory")).to_be_visible()
+    for page in (pilot, watcher):
+        expect(page.locator("#offers")).to_contain_text("A UAV has dropped out. 1 UAV gets another route", timeout=WORKED_OUT_WITHIN_MS)
+        expect(page.locator("#offers")).to_contain_text(re.compile(r"Ruff gets another route \+\d"))
+    return pilot, watcher
 
-    offers[1].get_by_role("button", name="Accept").click()
-    question = watcher.get_by_role("dialog", name="Fly the other plan?")
+
+def accepts(page: Page) -> None:
+    page.locator("#offers").get_by_role("button", name="Accept").click()
+    question = page.get_by_role("dialog", name="Fly the other plan?")
     expect(question).to_contain_text("Ruff: held, given the new route while they hover, and started again.")
     question.get_by_role("button", name="Fly the other plan").click()
-    expect(offers[0]).to_contain_text("The other plan is flown. Decided by rory")
+
+
+def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_other(
+    visitor: Visitor, flight: Flight, picture: Picture
+) -> None:
+    pilot, watcher = drops_out(visitor, flight)
+    in_both_themes(watcher, picture, "live-offer")
+    assert faults(watcher) == []
+    accepts(watcher)
+    expect(pilot.locator("#offers")).to_contain_text("The other plan is flown. Decided by rory")
+    pilot.context.close()
     expect(watcher.locator("#mission-state")).to_have_text("Aborted")
     watcher.get_by_role("link", name="Watch it go on").click()
     wait_for_map(watcher)
     expect(watcher.get_by_role("heading", name=f"{NAME}, continued")).to_be_visible()
+    expect(watcher.locator("#mission-state")).to_have_text("Active", timeout=40_000)
     ruff = card(watcher, "Ruff")
-    expect(ruff.locator(".card-command")).to_contain_text("Start: done", timeout=40_000)
-    expect(watcher.locator("#mission-state")).to_have_text("Active")
-    expect(ruff.locator(".live-strip")).to_have_accessible_name(re.compile(f"0 of {TOWERS} targets"))
+    expect(ruff.locator(".card-command")).to_contain_text("Start: done")
+    expect(ruff.locator(".live-strip")).to_have_accessible_name(re.compile(r"Ruff: \d of \d targets"))
 
     watcher.goto(f"/missions/{flight.mission}/report")
     wait_for_map(watcher)
     expect(watcher.get_by_role("region", name=re.compile("^Missed"))).to_contain_text(f"Taken over by {NAME}, continued.")
+
+
+@pytest.mark.long
+def test_the_other_plan_is_flown_to_its_end_and_told_by_its_record(visitor: Visitor, flight: Flight, picture: Picture) -> None:
+    pilot, watcher = drops_out(visitor, flight)
+    pilot.set_viewport_size({"width": 390, "height": 844})
+    in_both_themes(pilot, picture, "live-offer-phone")
+    accepts(watcher)
+    watcher.get_by_role("link", name="Watch it go on").click()
+    pilot.context.close()
+    wait_for_map(watcher)
+    expect(watcher.locator("#mission-state")).to_have_text("Completed", timeout=LANDS_WITHIN_MS)
+    expect(card(watcher, "Ruff").locator(".letter")).to_have_text("A")
+    expect(watcher.locator(".alert")).to_have_count(0)
+    in_both_themes(watcher, picture, "live-over")
+    watcher.goto(watcher.url.replace("/fly", "/report"))
+    wait_for_map(watcher)
+    expect(watcher.get_by_role("heading", name=re.compile(r"^(\d) of \1 targets complete$"))).to_be_visible()
+    in_both_themes(watcher, picture, "record-continued")
+
+
+@pytest.mark.long
+def test_an_offer_that_is_declined_changes_nothing_and_the_other_page_says_who_did(visitor: Visitor, flight: Flight) -> None:
+    pilot, watcher = drops_out(visitor, flight)
+    pilot.locator("#offers").get_by_role("button", name="Decline").click()
+    expect(watcher.locator("#offers")).to_contain_text("what was approved is flown. Decided by opal")
+    expect(watcher.locator("#mission-state")).to_have_text("Active")

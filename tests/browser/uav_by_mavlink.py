@@ -1,7 +1,7 @@
 """A UAV that a browser test watches: a scripted autopilot that flies what it holds, on a socket to the installation's gateway."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -11,7 +11,7 @@ from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.vehicles.px4 import LAND, MISSION, RETURN, Px4
 
 METRES_A_DEGREE = 111_195.0
-CLIMB_MPS, SINK_MPS, NEAR_M, TELLS_EVERY_S = 6.0, 2.0, 1.0, 1.0
+CLIMB_MPS, SINK_MPS, NEAR_M, TELLS_EVERY_S = 12.0, 2.0, 1.0, 1.0
 HOME_AMSL_M = 220.0  # about that of Columbus
 BATTERY_PERCENT_S = 0.02
 
@@ -28,6 +28,7 @@ class Autopilot(Flyer):
     _moved_s: float = 0.0
     _told_s: float = 0.0
     _velocity_mps: tuple[float, float] = (0.0, 0.0)
+    _reached: list[int] = field(default_factory=list)
 
     def __enter__(self) -> "Autopilot":
         self._home = self.at
@@ -49,10 +50,12 @@ class Autopilot(Flyer):
         if east_mps or north_mps:
             told.hdg = round(math.degrees(math.atan2(east_mps, north_mps)) % 360.0 * 100)
         home.longitude, home.latitude, home.altitude = round(self._home[0] * 1e7), round(self._home[1] * 1e7), round(HOME_AMSL_M * 1000)
+        reached = [mavlink.MAVLink_mission_item_reached_message(item) for item in self._reached]
+        self._reached.clear()
         if now_s < self._told_s + TELLS_EVERY_S:
-            return [told, home]
+            return [told, home, *reached]
         self._told_s = now_s
-        return [told, home, *self._of_the_second(round((now_s - self.booted_s) * 1e6))]
+        return [told, home, *reached, *self._of_the_second(round((now_s - self.booted_s) * 1e6))]
 
     def _of_the_second(self, boot_us: int) -> list[Any]:
         lat_e7, lon_e7, alt_mm = round(self.at[1] * 1e7), round(self.at[0] * 1e7), round(self.altitude_amsl_m * 1000)
@@ -84,6 +87,7 @@ class Autopilot(Flyer):
         if item.command == mavlink.MAV_CMD_NAV_LAND:
             self._lands_at(place, for_s)
         elif item.frame == mavlink.MAV_FRAME_MISSION or self._goes_to(place, item.altitude_m, for_s):
+            self._reached.append(self.vehicle.current_item)
             self.vehicle.current_item += 1
 
     def _lands_at(self, place: tuple[float, float], for_s: float) -> None:
