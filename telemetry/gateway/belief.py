@@ -57,12 +57,17 @@ class Belief:
     def received(self) -> dict[str, Any] | None:
         return None if self._check is None else dict(self._check.last)
 
+    @property
+    def _has_shown_its_key(self) -> bool:
+        """To this gateway or one before it: who speaks without it now is somebody else, though unsigned frames be allowed."""
+        return self._check is not None and bool(self._check.last)
+
     def _refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
         if self._check is not None and frame.is_signed:
             refusal = self._check.refusal(frame, now_s)
             self.has_signed |= refusal is None
             return refusal
-        if not self.uav.allows_unsigned:
+        if not self.uav.allows_unsigned or self._has_shown_its_key:
             return Refusal.NO_KEY if frame.is_signed else Refusal.UNSIGNED
         if self.peer is None or peer == self.peer or not is_within(self.heard_s, now_s, SENDER_SILENT_S):
             return None
