@@ -100,11 +100,8 @@ def test_who_fills_all_connections_does_not_keep_a_vehicle_out(listeners, heard,
             await until(lambda number=number: len(heard) >= number + 2)
             connection = socket.create_connection(("127.0.0.1", port))
             idle.append(connection)
-            await until(
-                lambda connection=connection: any(
-                    one.get_extra_info("peername") == connection.getsockname() for one in listeners._connections
-                )
-            )
+            own = connection.getsockname()
+            await until(lambda own=own: own in [writer.get_extra_info("peername") for writer in listeners._connections])
         assert len(listeners._connections) == 5
         before = len(heard)
         with another(port):
