@@ -174,9 +174,10 @@ def main() -> None:
     steps.sort(key=lambda done: done.wanted_hz)
     best = max((done.sent_hz for done in steps if done.is_whole), default=0.0)
     head = ["records a second sent", "sent", "stored", "cores of the gateway"]
+    command = f"python -m benchmarks.gateway_rate --seconds {options.seconds:g} --start {options.start:g}"
     text = (
-        f"`python -m benchmarks.gateway_rate --seconds {options.seconds:g} --start {options.start:g}`: {best:,.0f} records a second of {options.vehicles} vehicles without losing one, "
-        f"each with a second message, through one socket. {machine('pymavlink', 'psycopg', 'django')}"
+        f"`{command}`: {best:,.0f} records a second of {options.vehicles} vehicles without losing one, each with a second message, "
+        f"through one socket. {machine('pymavlink', 'psycopg', 'django')}"
     )
     text += "\n\n" + table(head, [cells(done) for done in steps])
     print(text)
