@@ -4,8 +4,8 @@
 
 A gateway of its own process, on the database of the settings, hears vehicles that another process plays: each report is a
 GLOBAL_POSITION_INT with an ATTITUDE before it, each in a datagram of its own. The rate goes up by a quarter from step to step until a
-report is missing; where it is at the first step, down until none is. The UAVs and their records are removed afterwards. With --write the table goes to docs/performance.md. Exits with 1
-where the bar is missed.
+report is missing; where one is missing at the first step, down until none is. The UAVs and their records are removed afterwards. With
+--write the table goes to docs/performance.md. Exits with 1 where the bar is missed.
 """
 
 import argparse

@@ -113,17 +113,18 @@ def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | N
         return None
     values = USUAL | {name: value / 100.0 if name in IN_CENTIMETRES else value for name, value in parameters.items()}
     bends_by = next((f"{name} {values[name]:g}" for name in BENDING[autopilot] if values.get(name)), "")
-    told = {
-        "parameter": parameter,
-        "height_m": values[parameter],
-        "bends_by": bends_by,
-        "untold": "" if straight[0] in parameters else straight[0],
-    }
+    untold = "" if straight[0] in parameters else straight[0]
     if autopilot == PX4:
-        return Px4Return(**told, near_m=values["RTL_MIN_DIST"], cone_deg=values["RTL_CONE_ANG"], accepted_m=values["NAV_ACC_RAD"])
+        return Px4Return(
+            parameter, values[parameter], bends_by, untold,
+            near_m=values["RTL_MIN_DIST"], cone_deg=values["RTL_CONE_ANG"], accepted_m=values["NAV_ACC_RAD"],
+        )  # fmt: skip
     slope = values["RTL_CONE_SLOPE"]
     return CopterReturn(
-        **told,
+        parameter,
+        values[parameter],
+        bends_by,
+        untold,
         shuns_home=values.get("RALLY_INCL_HOME") == 0.0,
         rally_points=int(values["RALLY_TOTAL"]) if "RALLY_TOTAL" in values else None,
         climb_m=max(values.get("RTL_CLIMB_MIN_M", values.get("RTL_CLIMB_MIN", 0.0)), 0.0),
