@@ -93,6 +93,7 @@ INSTALLED_APPS = [
     "inspection",
     "missions",
     "telemetry",
+    "simulation",
 ]
 
 MIDDLEWARE = [
