@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from uuid import UUID
 
 import numpy as np
 from django.contrib.gis.geos import Point
@@ -17,6 +18,7 @@ from missions.mavlink.frozen import route_from_json
 from missions.models import EndAction, Mission, MissionState, Uav
 from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval import approve_mission
+from telemetry.models import UavLink
 from tests.inspection import ground
 from tests.inspection.terrain.tiffs import write_geotiff
 from tests.missions import worlds
@@ -47,6 +49,8 @@ class Line:
     lon: float
     lat: float
     heights_m: tuple[tuple[float, ...], tuple[float, ...]]
+    approval: UUID
+    sha256: str  # of its flight, as it is read back from the UAV
 
 
 @contextmanager
@@ -110,8 +114,9 @@ def _make_mission(row: int, user: User) -> list[Line]:
     request = worlds.request(*targets, uavs=tuple(asked for _, asked in uavs))
     draft = create_mission(organisation=user.organisation, author=user, name=f"Row {row + 1}", request=request)
     mission = plan_mission(mission=draft, actor=user)
-    document = approve_mission(mission=mission, actor=user).document
-    routes = {route["uav"]: route_from_json(route["route"]) for route in document["routes"]}
+    approval = approve_mission(mission=mission, actor=user)
+    approved = {route["uav"]: route for route in approval.document["routes"]}
+    routes = {uav_id: route_from_json(route["route"]) for uav_id, route in approved.items()}
     if len(routes) < UAVS_A_MISSION:
         raise SystemExit(f"row {row}: only {len(routes)} UAVs fly")
     return [
@@ -124,6 +129,8 @@ def _make_mission(row: int, user: User) -> list[Line]:
                 tuple(waypoint.position.lon for waypoint in routes[uav.pk].waypoints),
                 tuple(waypoint.altitude_relative_m for waypoint in routes[uav.pk].waypoints),
             ),
+            approval=approval.pk,
+            sha256=approved[uav.pk]["flights"][0]["content_sha256"],
         )
         for uav, asked in uavs
     ]
@@ -139,3 +146,7 @@ def put_under_way(lines: Sequence[Line]) -> None:
         cursor.execute(f"TRUNCATE {', '.join(OF_A_RUN)} CASCADE")  # names of tables, all from here
     Mission.objects.update(state=MissionState.APPROVED, started_at=None, ended_at=None)
     Mission.objects.filter(routes__mission_uav__uav__in=[line.uav_id for line in lines]).update(state=MissionState.ACTIVE)
+    UavLink.objects.bulk_create(
+        UavLink(uav_id=line.uav_id, autopilot="px4", loaded_approval=line.approval, loaded_flight=1, loaded_sha256=line.sha256)
+        for line in lines
+    )

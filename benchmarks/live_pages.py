@@ -54,7 +54,8 @@ WARM_UP_S = 3.0
 SETTLES_S = 6.0
 CURVE = ((20, 10), (50, 50), (100, 50), (200, 10), (200, 100), (250, 50))
 CURVE_S = 20.0
-IN_MISSION = 4 << 16 | 4 << 24  # PX4's custom mode: automatic, mission
+IN_MISSION, BY_HAND = 4 << 16 | 4 << 24, 3 << 16  # PX4's custom modes: automatic, mission; position
+EACH_BY_HAND = 20  # an alert each
 
 
 @dataclass(frozen=True)
@@ -136,11 +137,12 @@ def play(port: int, lines: list[Line], seconds: float, began_s: float, told: Any
     for number in range(int(seconds * len(lines))):
         time.sleep(max(first_s + number * every_s - time.monotonic(), 0.0))
         line = lines[number % len(lines)]
+        mode = IN_MISSION if line.system % EACH_BY_HAND else BY_HAND
         ms = int((time.monotonic() - began_s) * 1000)
         lat, lon = round(line.lat * PER_DEGREE), round(line.lon * PER_DEGREE) + ms
         height_mm = round(1_000 * float(np.interp(lon / PER_DEGREE, *line.heights_m)))
         for message in (
-            mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 209, IN_MISSION, 4, 3),
+            mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 209, mode, 4, 3),
             mavlink.MAVLink_attitude_message(ms, 0.1, 0.2, 0.3, 0.0, 0.0, 0.0),
             mavlink.MAVLink_global_position_int_message(
                 ms, lat, lon, round(GROUND_M * 1_000) + height_mm, height_mm, 0, round(SPEED_MPS * 100), 0, 9_000
