@@ -7,6 +7,14 @@ import { clockText, lengthText, percentText } from "../units.js";
 const CAUSES = { "uav-out": t("A UAV has dropped out"), "zone-active": t("A no-fly zone has come into force"), "battery-short": t("A battery will not do"), "asked-for": t("Asked for") };
 const CHANGES = { untouched: t("flies on as approved"), changed: t("gets another route"), recalled: t("is told to return"), out: t("has dropped out") };
 
+const OUTCOMES = { accepted: t("The other plan is flown."), declined: t("The other plan was declined: what was approved is flown."), outdated: t("The other plan is offered no more."), impossible: t("No other plan can be flown.") };
+
+/** Of an offer that is over: { strong, rest }. */
+export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
+  strong: OUTCOMES[state],
+  rest: decided_by ? t("Decided by {who}, {time}.", { who: decided_by, time: clockText(decided_at) }) : (outcome ?? ""),
+});
+
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
 export const causeWords = ({ code }) => CAUSES[code] ?? code;
 
