@@ -439,6 +439,24 @@ class SimulatedUav:
         return self._battery.percent_after(self._used_wh)
 
     @property
+    def is_armed(self) -> bool:
+        return self._cockpit.is_armed
+
+    @property
+    def mission_state(self) -> MissionState:
+        return self._mission_state()
+
+    @property
+    def battery_percent(self) -> float:
+        return self._percent
+
+    @property
+    def true_place(self) -> tuple[float, float, float, float, float]:
+        """What a long record of a flight is made of, cheaper than `state`: seconds, lon, lat, height above home and above ground."""
+        motion, cockpit = self._motion, self._cockpit
+        return self.now_s, motion.lon_deg, motion.lat_deg, cockpit.here[2], cockpit.agl_m
+
+    @property
     def state(self) -> UavState:
         """Of this step; made when it is asked for."""
         if self._state is None:
