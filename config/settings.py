@@ -255,6 +255,7 @@ SPECTACULAR_SETTINGS = {
         "MissionState": "missions.models.MissionState",
         "OfferState": "missions.models.OfferState",
         "VerdictLevel": "simulation.models.VerdictLevel",
+        "AlertLevel": "telemetry.models.AlertLevel",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
         "UavFigure": "missions.fleet_selectors.FIGURES",

@@ -13,7 +13,7 @@ from workspace.models import Job, Organisation
 
 
 class VerdictLevel(models.TextChoices):
-    PASS = "pass", _("Pass")  # noqa: S105 - no password
+    PASS = "pass", _("Pass")
     WARNINGS = "warnings", _("Pass with warnings")
     FAIL = "fail", _("Fail")
 

@@ -33,7 +33,9 @@ def rehearse_mission(job_id: str) -> None:
     except Refused as refused:
         fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
     except NoGraph:
-        fail_job(job=job, code="no_graph", message="There is no network yet: import infrastructure first, or wait until it has been linked.")
+        fail_job(
+            job=job, code="no_graph", message="There is no network yet: import infrastructure first, or wait until it has been linked."
+        )
     except SoftTimeLimitExceeded:
         message = f"Not flown within {SOFT_LIMIT_S // 60} min. Rehearse fewer conditions at once, or split the mission."
         fail_job(job=job, code="took_too_long", message=message)

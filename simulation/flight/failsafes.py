@@ -52,9 +52,9 @@ class Failsafes:
 
 
 def _act(cockpit: Cockpit, mode: Mode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
-    manoeuvre: Manoeuvre | None = {OwnAction.HOLD: Hold, OwnAction.RETURN: Return, OwnAction.LAND: Land}[action]() if (
-        action is not OwnAction.NONE
-    ) else None
+    manoeuvre: Manoeuvre | None = (
+        {OwnAction.HOLD: Hold, OwnAction.RETURN: Return, OwnAction.LAND: Land}[action]() if (action is not OwnAction.NONE) else None
+    )
     if manoeuvre is None or not cockpit.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
         cockpit.say(why, severity)
         return None

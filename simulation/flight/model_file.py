@@ -54,4 +54,3 @@ def mixer_of(code: str) -> tuple[tuple[float, ...], ...]:
     if not np.isfinite(inverse).all():
         raise ValueError(f"The rotors of the airframe {code!r} cannot turn it.")
     return tuple(tuple(float(share) for share in inverse[:, axis]) for axis in range(len(AXES)))
-

@@ -163,7 +163,7 @@ def orders(items: Sequence[MissionItem], *, is_home_first: bool) -> tuple[Order,
     return read
 
 
-def _order(index: int, item: MissionItem) -> Order:  # noqa: PLR0911 - one line a command
+def _order(index: int, item: MissionItem) -> Order:
     command = item.command
     one, two, three, four = item.parameters
     if command == mavlink.MAV_CMD_NAV_TAKEOFF:

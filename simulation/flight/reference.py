@@ -33,8 +33,10 @@ class Reference:
         wanted_mps = max(min(piece.fastest_mps * share, in_time_mps), min(SLOWEST_MPS, share * SLOWEST_MPS))
         change_mps = self._acceleration_mps2 * dt_s
         # It slows as hard as the course asks for: it was drawn so that this is no more than what is gained each second.
-        speed_mps = min(wanted_mps, self.speed_mps + change_mps) if wanted_mps > self.speed_mps else max(
-            wanted_mps, self.speed_mps - 1.5 * change_mps
+        speed_mps = (
+            min(wanted_mps, self.speed_mps + change_mps)
+            if wanted_mps > self.speed_mps
+            else max(wanted_mps, self.speed_mps - 1.5 * change_mps)
         )
         self.gain_mps2 = (speed_mps - self.speed_mps) / dt_s
         self._s_m += 0.5 * (speed_mps + self.speed_mps) * dt_s

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -12,7 +11,7 @@ from simulation.flight.airframe import Airframe
 from simulation.flight.battery import Battery
 from simulation.flight.camera import Camera
 from simulation.flight.cockpit import Cockpit
-from simulation.flight.events import Armed, Crashed, Disarmed, Event, ItemReached, LandedAt, ModeChanged, PhotoTaken, TookOff
+from simulation.flight.events import Armed, Crashed, Disarmed, Event, LandedAt, ModeChanged, PhotoTaken, TookOff
 from simulation.flight.failsafes import Failsafes
 from simulation.flight.faults import Faults
 from simulation.flight.ground import FlatGround, Ground
@@ -423,9 +422,7 @@ class SimulatedUav:
         cockpit, motion = self._cockpit, self._motion
         position = cockpit.position_of(cockpit.here)
         item = self._mission.index if self._mission is not None and self._manoeuvre is self._mission else None
-        cockpit.events.append(
-            PhotoTaken(self.now_s, cockpit.camera.number, position, motion.altitude_amsl_m, cockpit.facing_deg, item)
-        )
+        cockpit.events.append(PhotoTaken(self.now_s, cockpit.camera.number, position, motion.altitude_amsl_m, cockpit.facing_deg, item))
 
     # --- what it says --------------------------------------------------------------------------------------------------------------
 

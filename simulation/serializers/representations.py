@@ -94,13 +94,16 @@ def rehearsal_detail_json(rehearsal: Rehearsal, mission: Mission, **known: Any) 
     }
 
 
-def track_json(run: int, tracks: Mapping[int, RehearsalTrack], rehearsal: Rehearsal, planned: Mapping[int, list[dict[str, Any]]]) -> dict[str, Any]:
+def track_json(
+    run: int, tracks: Mapping[int, RehearsalTrack], rehearsal: Rehearsal, planned: Mapping[int, list[dict[str, Any]]]
+) -> dict[str, Any]:
     names = {uav["uav"]: uav["name"] for uav in rehearsal.uavs}
     return {
         "run": run,
         "is_simulated": True,
         "routes": [
-            {"uav": uav, "name": names.get(uav, ""), "flights": track.flights, "planned": planned.get(uav, [])} for uav, track in tracks.items()
+            {"uav": uav, "name": names.get(uav, ""), "flights": track.flights, "planned": planned.get(uav, [])}
+            for uav, track in tracks.items()
         ],
     }
 

@@ -1,6 +1,5 @@
 """Shapes of rehearsals, for the OpenAPI document and for what comes in."""
 
-from typing import Any
 
 from rest_framework import serializers
 
@@ -19,8 +18,8 @@ class RehearsalInputSerializer(serializers.Serializer):
         max_length=MOST_CONDITIONS,
         required=False,
         help_text=(
-            "each flown by itself: calm, as-planned, strong-wind, weak-battery, or an object with own figures: name, wind and temperature_c "
-            "as in a mission's conditions, gusts_mps, turbulence_mps_at_20ft, battery_percent; what is left out is as planned"
+            "each flown by itself: calm, as-planned, strong-wind, weak-battery, or an object with own figures: name, wind and "
+            "temperature_c as in a mission's conditions, gusts_mps, turbulence_mps_at_20ft, battery_percent; what is left out is as planned"
         ),
     )
     seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7, help_text="of gusts: the same seed, the same flight")
@@ -147,7 +146,7 @@ class RehearsalUavSerializer(serializers.Serializer):
     words = serializers.CharField()
 
 
-class LimitSerializer(serializers.Serializer):
+class RehearsalLimitSerializer(serializers.Serializer):
     name = serializers.CharField()
     value = serializers.FloatField()
     source = serializers.CharField()
@@ -178,7 +177,7 @@ class RehearsalSerializer(serializers.Serializer):
 
 class RehearsalDetailSerializer(RehearsalSerializer):
     runs = RehearsalRunWithVerdictSerializer(many=True)
-    limits = LimitSerializer(many=True)
+    limits = RehearsalLimitSerializer(many=True)
 
 
 class RehearsalPageSerializer(serializers.Serializer):
@@ -240,5 +239,3 @@ class TypeAirframeSerializer(serializers.Serializer):
 
 class RehearsalRuleSerializer(serializers.Serializer):
     requires_green = serializers.BooleanField(help_text="missions are approved only after a rehearsal of the very plan that did not fail")
-
-

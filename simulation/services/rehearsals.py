@@ -123,9 +123,7 @@ def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, too
         held.verdict, held.level, held.took_s = verdict_to_json(verdict), str(verdict.level), took_s
         held.finished_at = timezone.now()
         held.save()
-        RehearsalTrack.objects.bulk_create(
-            RehearsalTrack(run=held, uav=route.uav, flights=track_to_json(route.tracks)) for route in flown
-        )
+        RehearsalTrack.objects.bulk_create(RehearsalTrack(run=held, uav=route.uav, flights=track_to_json(route.tracks)) for route in flown)
 
 
 def _finish(rehearsal_id: UUID, job: Job) -> None:

@@ -52,7 +52,9 @@ class MissionRehearsals(APIView):
     )
     def get(self, request: Request, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
-        page = page_of(request, selectors.rehearsals_of_mission(request.user.organisation, mission_id), order=NEWEST_FIRST, default_limit=20)
+        page = page_of(
+            request, selectors.rehearsals_of_mission(request.user.organisation, mission_id), order=NEWEST_FIRST, default_limit=20
+        )
         known = _known(mission)
         return Response({"results": [rehearsal_json(row, **known) for row in page.rows], "next": page.next})
 
@@ -60,8 +62,9 @@ class MissionRehearsals(APIView):
         operation_id="start_rehearsal",
         summary="Fly a mission in simulation",
         description=(
-            "Every route of the present plan is flown by a simulated UAV from the very items that a UAV would be given, all of them together "
-            "in time, once for each of the conditions. A job flies them; its state, and afterwards the verdict: GET the address in Location."
+            "Every route of the present plan is flown by a simulated UAV from the very items that a UAV would be given, all of them "
+            "together in time, once for each of the conditions. A job flies them; its state, and afterwards the verdict: GET the address "
+            "in Location."
         ),
         request=shapes.RehearsalInputSerializer,
         responses={202: shapes.RehearsalSerializer, **REFUSED},
