@@ -7,7 +7,7 @@ from django.http import HttpResponse
 from django.test import Client
 
 from missions.models import Mission, Uav, UavCommand
-from missions.services.commands import note_failed
+from missions.services.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unheard
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.outbox import a_uav, claim, fence
