@@ -11,6 +11,7 @@ import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
 import { sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
 import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
+import { unheardLines } from "../../static/js/monitor/unheard.js";
 import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { distance_m } from "../../static/js/mission/span_strip.js";
 
@@ -143,4 +144,14 @@ test("an offer is said in a sentence, and target by target", () => {
   const offer = { difference: { uavs: [{ change: "changed" }, { change: "out" }], targets: [{ label: "Tower 31", from: 1, to: 2, message: "" }, { label: "Tower 51", from: 1, to: null, message: "Its battery does not last for it." }], unreached: 1 } };
   assert.equal(sentenceOf(offer), "1 UAV gets another route, 1 target changes hands, 1 target stays undone");
   assert.deepEqual(targetLines(offer), ["Tower 31: B → C", "Tower 51: B → Its battery does not last for it."]);
+});
+
+test("of UAVs that are not heard it is said who is told all the same", () => {
+  const named = (name, kind, heard_s) => ({ name, link: { kind, heard_at: heard_s === null ? null : ago(heard_s) } });
+  const uavs = [named("Tern", "mavlink", 60), named("Kite", "http", 60), named("Gull", "mavlink", 7_200), named("Wren", "mavlink", null)];
+  const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
+  assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
+  assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
+  assert.match(unheardLines(uavs.slice(0, 1), "pause", NOW_MS)[0], /^There is no link to Tern now/);
+  assert.deepEqual(unheardLines([], "return", NOW_MS), []);
 });
