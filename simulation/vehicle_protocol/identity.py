@@ -14,7 +14,6 @@ CAPABILITIES = (
 DEVELOPMENT = 0  # of the firmware's types: one that is no release is not compared with the latest release
 VERSIONS = {Flavour.PX4: (1, 15, 0), Flavour.ARDUPILOT: (4, 6, 0)}
 VENDOR, PRODUCT = 0x5350, 0x5349
-MAVLINK_2 = 200
 
 
 def version(flavour: Flavour, system: int) -> Message:
@@ -26,7 +25,3 @@ def version(flavour: Flavour, system: int) -> Message:
     return mavlink.MAVLink_autopilot_version_message(
         CAPABILITIES, firmware, firmware, 0, 0, nothing, nothing, nothing, VENDOR, PRODUCT, unique
     )
-
-
-def protocol_version() -> Message:
-    return mavlink.MAVLink_protocol_version_message(MAVLINK_2, MAVLINK_2, MAVLINK_2, [0] * 8, [0] * 8)

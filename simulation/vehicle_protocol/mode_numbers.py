@@ -12,12 +12,12 @@ PX4_AUTO, PX4_POSITION = 4, 3
 PX4_SUB_MODES = {Mode.TAKE_OFF: 2, Mode.HOLD: 3, Mode.GO_TO: 3, Mode.MISSION: 4, Mode.RETURN: 5, Mode.LAND: 6}
 PX4_ORDERED = {2: Mode.TAKE_OFF, 3: Mode.HOLD, 4: Mode.MISSION, 5: Mode.RETURN, 6: Mode.LAND}
 
-STABILIZE, AUTO, GUIDED, BRAKE = 0, 3, 4, 17
+STABILIZE, AUTO, GUIDED, LOITER, BRAKE = 0, 3, 4, 5, 17
 COPTER_MODES = {
     Mode.TAKE_OFF: GUIDED, Mode.HOLD: BRAKE, Mode.GO_TO: GUIDED, Mode.MISSION: AUTO, Mode.RETURN: 6, Mode.LAND: 9,
 }  # fmt: skip
 COPTER_ORDERED = {
-    STABILIZE: Mode.HOLD, 2: Mode.HOLD, AUTO: Mode.MISSION, GUIDED: Mode.HOLD, 5: Mode.HOLD, 6: Mode.RETURN, 9: Mode.LAND,
+    STABILIZE: Mode.HOLD, 2: Mode.HOLD, AUTO: Mode.MISSION, GUIDED: Mode.HOLD, LOITER: Mode.HOLD, 6: Mode.RETURN, 9: Mode.LAND,
     16: Mode.HOLD, BRAKE: Mode.HOLD,
 }  # fmt: skip
 COPTER_BY_HAND = frozenset({STABILIZE, 2})  # fall without a pilot: only on the ground
@@ -54,5 +54,10 @@ class ShownMode:
     def at_start(cls, flavour: Flavour) -> "ShownMode":
         return cls(flavour, STABILIZE if flavour is Flavour.ARDUPILOT else usual_number(flavour, Mode.HOLD))
 
-    def number(self, mode: Mode) -> int:
-        return self.asked if ordered_mode(self.flavour, self.asked) is mode else usual_number(self.flavour, mode)
+    def number(self, mode: Mode, *, is_in_air: bool) -> int:
+        """ArduPilot stands in a mode from which it can be armed, as if its switch had been put back after the landing."""
+        if ordered_mode(self.flavour, self.asked) is mode:
+            return self.asked
+        if self.flavour is Flavour.ARDUPILOT and mode is Mode.HOLD and not is_in_air:
+            return LOITER
+        return usual_number(self.flavour, mode)

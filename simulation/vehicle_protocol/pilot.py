@@ -46,7 +46,8 @@ class Pilot:
 
     @property
     def custom_mode(self) -> int:
-        return self.shown.number(self.vehicle.state.mode)
+        state = self.vehicle.state
+        return self.shown.number(state.mode, is_in_air=state.is_in_air)
 
     def carry_out(self, command: Command) -> int:
         """A MAV_RESULT; UNSUPPORTED for what is not a pilot's matter."""
@@ -89,7 +90,7 @@ class Pilot:
         """PX4 is told before it is armed, by the height above sea level; ArduCopter armed in GUIDED, by the height above home."""
         state, height_m = self.vehicle.state, command[7]
         if self.flavour is Flavour.ARDUPILOT:
-            if not state.is_armed or self.shown.number(state.mode) != GUIDED:
+            if not state.is_armed or self.custom_mode != GUIDED:
                 return self._refused("Take-off needs an armed vehicle in GUIDED")
             if height_m is None or height_m <= 0:
                 return DENIED

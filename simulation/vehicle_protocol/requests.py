@@ -34,8 +34,6 @@ class Requests:
         number = command.whole(1)
         if number == mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION:
             return ACCEPTED, [identity.version(self.flavour, self.system)]
-        if number == mavlink.MAVLINK_MSG_ID_PROTOCOL_VERSION:
-            return ACCEPTED, [identity.protocol_version()]
         if number == mavlink.MAVLINK_MSG_ID_MESSAGE_INTERVAL:
             return self._told_interval(command.whole(2))
         if number is None or number not in REPORTS:
@@ -60,9 +58,6 @@ class Requests:
     def _version(self, command: Command) -> Answer:
         return ACCEPTED, [identity.version(self.flavour, self.system)]
 
-    def _protocol_version(self, command: Command) -> Answer:
-        return ACCEPTED, [identity.protocol_version()]
-
     def _home(self, command: Command) -> Answer:
         return ACCEPTED, [home(self.report())]
 
@@ -72,6 +67,5 @@ _ANSWERS: dict[int, Callable[[Requests, Command], Answer]] = {
     mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: Requests._set_interval,
     mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: Requests._interval,
     mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: Requests._version,
-    mavlink.MAV_CMD_REQUEST_PROTOCOL_VERSION: Requests._protocol_version,
     mavlink.MAV_CMD_GET_HOME_POSITION: Requests._home,
 }
