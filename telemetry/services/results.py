@@ -9,11 +9,12 @@ from uuid import UUID
 from django.db import transaction
 from django.db.models.functions import Least
 
-from missions.given_selectors import approvals_given_to, number_of_flights, places_of_targets
+from missions.given_selectors import approvals_given_to, is_end_known, number_of_flights, places_of_targets
 from missions.models import Approval, InspectionTarget, LinkKind, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
+from telemetry.services.heard import note_on_ground_over_http
 from telemetry.services.replan_hooks import UAV_OUT
 
 
@@ -67,8 +68,11 @@ def take_results(
     for flight in flights:
         if flight.flight > numbers.get(flight.approval_id, 0):
             continue
-        if given[flight.approval_id].revoked_at is None:
-            mission_id = given[flight.approval_id].mission_id
+        approval = given[flight.approval_id]
+        if not is_end_known(uav_id, approval, flight.flight):
+            note_on_ground_over_http(uav_id=uav_id)
+        if approval.revoked_at is None:
+            mission_id = approval.mission_id
             mark_flight_ended(mission_id=mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
             if flight.end is FlightEnd.FAILED:
                 suggest(mission_id=mission_id, code=UAV_OUT, cause={"uav": uav_id, "flight": flight.flight})

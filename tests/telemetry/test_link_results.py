@@ -8,6 +8,7 @@ from missions.models import Approval, CommandKind, LinkKind, Mission, MissionSta
 from missions.services.approval import revoke_approval
 from missions.services.outbox import queue_command
 from telemetry.models import InspectionResult, UavLink
+from telemetry.selectors.watched import watched_flights
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.worlds import World, world
 from tests.telemetry.uav_clients import UavClient, linked_uav, report, seconds_ago
@@ -158,6 +159,20 @@ def test_a_mission_is_complete_when_its_last_flight_is_flown(mission: Mission, k
     assert kite.get("route").status_code == 204
     tell(kite, flights=[flight])
     assert Mission.objects.get().state == MissionState.COMPLETED
+
+
+def test_a_uav_whose_flight_is_told_to_be_over_is_down_though_no_report_says_so(mission: Mission, kite: UavClient) -> None:
+    """Else it would be watched, and missed, long after its mission has ended."""
+    kite.get("route")
+    flight = {"approval": str(Approval.objects.get().pk), "flight": 1, "outcome": "flown"}
+    assert kite.report(report(1, mode="Mission", is_in_air=True)).status_code == 200
+    assert [flown.uav_id for flown in watched_flights()] == [kite.uav.pk]
+    tell(kite, flights=[flight])
+    assert Mission.objects.get().state == MissionState.COMPLETED
+    assert watched_flights() == []
+    kite.report(report(2, measured_at=seconds_ago(0), mode="Mission", is_in_air=True))
+    tell(kite, flights=[flight])
+    assert UavLink.objects.get(uav=kite.uav).is_in_air, "it has taken off again since, and the same word comes twice"
 
 
 def test_a_flight_that_was_never_approved_ends_no_mission(mission: Mission, kite: UavClient) -> None:

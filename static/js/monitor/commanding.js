@@ -10,6 +10,7 @@ import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 import { certaintyOf, MEASURED } from "./certainty.js";
+import { inAir } from "./in_air.js";
 import { unheardLines } from "./unheard.js";
 
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -21,7 +22,7 @@ const ALL = {
 /** UAVs that can be told something: on a mission that is on its way, and not known to stand on the ground. */
 export function flyingUavs({ uavs, missions }) {
   const onItsWay = new Set(missions.filter(isOnItsWay).map(({ id }) => id));
-  return uavs.filter(({ mission, measured, link }) => onItsWay.has(mission) && (measured?.is_in_air ?? link?.is_in_air) !== false);
+  return uavs.filter((uav) => onItsWay.has(uav.mission) && inAir(uav) !== false);
 }
 
 /** Figures of now in a question: the battery, what is left, the targets that stay open. */

@@ -140,4 +140,10 @@ export default {
   "{count} note.": ["{count} Notiz.", "{count} Notizen."],
   "{count} open alert": ["{count} offener Alarm", "{count} offene Alarme"],
   "{count} mission": ["{count} Mission", "{count} Missionen"],
+  "The other plan was declined: what was approved is flown.": "Der andere Plan wurde abgelehnt: Geflogen wird, was freigegeben ist.",
+  "The other plan is offered no more.": "Der andere Plan wird nicht mehr angeboten.",
+  "No other plan can be flown.": "Kein anderer Plan kann geflogen werden.",
+  "Decided by {who}, {time}.": "Entschieden von {who}, {time}.",
+  "Put away": "Weglegen",
+  "Watch it go on": "Weiter zusehen",
 };
