@@ -16,6 +16,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),
     path("api/v1/", include("telemetry.urls")),
+    path("api/v1/", include("simulation.urls")),
     path("", include("workspace.page_urls")),
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),

@@ -12,7 +12,7 @@ import pytest
 from django.core.management import get_commands
 
 ROOT = Path(__file__).resolve().parents[1]
-APPS = ("workspace", "inspection", "missions", "telemetry")
+APPS = ("workspace", "inspection", "missions", "telemetry", "simulation")
 LONGEST_FILE = 450
 UNNAMED = {"utils", "util", "helpers", "helper", "common", "misc"}
 CLOCKS = {"datetime.now", "datetime.utcnow", "datetime.today", "date.today", "datetime.datetime.now", "datetime.date.today"}

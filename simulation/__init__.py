@@ -1,0 +1,1 @@
+"""A UAV that is not there: it flies the very mission in JSBSim, and speaks MAVLink like any other."""
