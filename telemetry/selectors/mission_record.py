@@ -177,7 +177,7 @@ def _rms(values: Sequence[tuple[float | None, int]]) -> float | None:
 
 def _route(route: RouteOnRecord, mission: Mission) -> dict[str, Any]:
     flown = asdict(route.flown)
-    legs = flown.pop("legs")
+    legs, stages = flown.pop("legs"), flown.pop("stages")
     return {
         "place": route.place,
         "uav": route.uav_id,
@@ -186,6 +186,7 @@ def _route(route: RouteOnRecord, mission: Mission) -> dict[str, Any]:
         "planned": {name: route.planned[name] for name in ("length_m", "duration_s", "energy_wh")},
         "flown": _with_times(flown) | {"energy_wh": _used_wh(route)},
         "legs": [_with_times(leg) for leg in legs],
+        "stages": [{"flight": stage["flight"], "target": stage["target"], **_with_times(stage["whole"])} for stage in stages],
         "waypoints": [
             {
                 "sequence": waypoint.sequence,
