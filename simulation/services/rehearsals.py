@@ -13,6 +13,7 @@ from inspection.selectors.planning import PlanningGround, heights_at, planning_r
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
 from missions.services.missions import note
+from simulation.flight.airframe import AIRFRAMES
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from simulation.rehearsing.flying import fly
 from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
@@ -20,11 +21,12 @@ from simulation.services.fleet import stand_in_to_json
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import surroundings_of
 from simulation.services.vehicles import vehicle_maker
-from simulation.verdict.finding import Level, worst
+from simulation.verdict.finding import Finding, Level, worst
 from simulation.verdict.flown import FlownRoute
 from simulation.verdict.judging import Verdict, judge
 from simulation.verdict.limits import Limits, limits_to_json
 from simulation.verdict.stored import track_to_json, verdict_to_json
+from simulation.verdict.wind import wind_finding
 from workspace.models import Job, User
 from workspace.services import cancel_job, create_job_within, finish_job
 
@@ -110,8 +112,17 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
     maker = vehicle_maker(plan.stand_ins, sky, heights_at(ground.edition))
     on_progress(0.0)
     flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
-    verdict = judge(flown, surroundings_of(plan.routes, ground, plan.departs_s), limits_of_settings())
+    around = surroundings_of(plan.routes, ground, plan.departs_s)
+    verdict = judge(flown, around, limits_of_settings(), known=_too_windy(plan, sky))
     _store(run, flown, verdict, time.monotonic() - began_s)
+
+
+def _too_windy(plan: PlanToFly, sky: Sky) -> list[Finding]:
+    found = (
+        wind_finding(route.uav, route.route, sky.conditions, AIRFRAMES[stand_in.airframe].max_airspeed_mps)
+        for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
+    )
+    return [finding for finding in found if finding is not None]
 
 
 def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, took_s: float) -> None:
