@@ -111,7 +111,8 @@ def course(start: Vector, vias: Sequence[Via], pace: Pace) -> tuple[Piece, ...]:
 
 
 def _legs(start: Vector, vias: Sequence[Via], pace: Pace) -> list[_Leg]:
-    legs, here = [], start
+    legs: list[_Leg] = []
+    here = start
     for via in vias:
         away = (via.place[0] - here[0], via.place[1] - here[1], via.place[2] - here[2])
         length_m = math.sqrt(away[0] ** 2 + away[1] ** 2 + away[2] ** 2)

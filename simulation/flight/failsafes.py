@@ -52,11 +52,17 @@ class Failsafes:
 
 
 def _act(cockpit: Cockpit, mode: Mode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
-    manoeuvre: Manoeuvre | None = (
-        {OwnAction.HOLD: Hold, OwnAction.RETURN: Return, OwnAction.LAND: Land}[action]() if (action is not OwnAction.NONE) else None
-    )
+    manoeuvre = _manoeuvre(action)
     if manoeuvre is None or not cockpit.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
         cockpit.say(why, severity)
         return None
     cockpit.say(f"{why}: {manoeuvre.mode}", severity)
     return manoeuvre
+
+
+def _manoeuvre(action: OwnAction) -> Manoeuvre | None:
+    if action is OwnAction.HOLD:
+        return Hold()
+    if action is OwnAction.RETURN:
+        return Return()
+    return Land() if action is OwnAction.LAND else None

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 class GovernorRules:
     """The reference slows from `lag_m` behind it on and waits at `most_lag_m`; likewise beside it.
 
-    `effort` is the share of the horizontal acceleration that is asked for; above `high_effort` the speed falls by up to `fall_per_s` of itself
-    a second, below `low_effort` it comes back by `rise_per_s`.
+    `effort` is the share of the horizontal acceleration that is asked for; above `high_effort` the speed falls by up to `fall_per_s` of
+    itself a second, below `low_effort` it comes back by `rise_per_s`.
     """
 
     lag_m: float = 0.8

@@ -15,11 +15,11 @@ from simulation.flight.reference import Reference
 class GuidanceRules:
     """`pull_per_s`: m/s of correction for each metre off the reference, up to `most_pull_mps`; likewise up and down."""
 
-    pull_per_s: float = 1.0
+    pull_per_s: float = 1.2
     most_pull_mps: float = 3.0
     lift_per_s: float = 1.2
     most_lift_mps: float = 1.5
-    lead_s: float = 0.2
+    lead_s: float = 0.3
     slow_landing_mps: float = 0.6
     landing_slope_per_s: float = 0.25  # m/s for each metre above ground
 

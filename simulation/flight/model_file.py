@@ -19,9 +19,9 @@ def flight_model(code: str, step_s: float, seed: int) -> jsbsim.FGFDMExec:
     model.set_debug_level(0)
     model.set_aircraft_path(str(MODELS))
     model.set_systems_path(str(MODELS / "systems"))
+    model.set_dt(step_s)  # before the model is loaded: its filters and integrals take the step that is set then
     if not model.load_model(code):
         raise ValueError(f"The airframe {code!r} has no model file that can be loaded.")
-    model.set_dt(step_s)
     model["simulation/randomseed"] = seed % 2**31
     for axis, row in zip(AXES, mixer_of(code), strict=True):
         for number, share in enumerate(row, start=1):

@@ -33,6 +33,7 @@ _READ = (
     "battery/used-j",
     "battery/power-w",
 )
+_VELOCITY = slice(3, 6)  # of these, in feet a second
 _SET_POINTS = (
     "setpoint/north-mps",
     "setpoint/east-mps",
@@ -109,7 +110,9 @@ class Plant:
         return self.motion
 
     def _moved(self) -> Motion:
-        motion = Motion._make([node.get_double_value() for node in self._read])
+        values = [node.get_double_value() for node in self._read]
+        values[_VELOCITY] = [speed * FOOT_M for speed in values[_VELOCITY]]
+        motion = Motion._make(values)
         # One sum is not a number if any of its parts is not; infinities do not cancel out unseen, either.
         if not math.isfinite(sum(motion)) or not abs(motion.altitude_amsl_m) < HIGHEST_M:
             raise CameApart("the state of the model is not a number")

@@ -31,6 +31,7 @@ OVERTURNED_RAD = math.radians(60.0)
 HARD_DOWN_MPS, HARD_ALONG_MPS = 3.0, 2.5  # what the legs bear
 SETTLES_S = 2.0  # on the ground, until the model rests
 GROUND_EACH_M = 1.0  # the ground is asked for its height each time so far has been flown
+LOW_M, LOW_GROUND_EACH_M = 15.0, 0.2
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)
 TIMES_SEED = 2_654_435_761  # keeps the draws of gusts, drift and turbulence apart (Knuth's multiplier)
 
@@ -184,7 +185,7 @@ class SimulatedUav:
             return self.take_off()
         if mode is Mode.GO_TO:
             return self._order(Hold()) if self._manoeuvre.mode is not Mode.GO_TO else DONE
-        return self._order({Mode.HOLD: Hold, Mode.RETURN: Return, Mode.LAND: Land}[mode]())
+        return self._order(Return() if mode is Mode.RETURN else Land() if mode is Mode.LAND else Hold())
 
     def hold(self) -> Outcome:
         return self.set_mode(Mode.HOLD)
@@ -272,8 +273,9 @@ class SimulatedUav:
         except CameApart as error:
             self._crash(f"The flight model: {error}.")
             return
+        before = self._motion
         self._look_around(motion)
-        self._touch(motion)
+        self._touch(motion, before)
 
     def take_events(self) -> list[Event]:
         """What happened since the last call."""
@@ -353,7 +355,8 @@ class SimulatedUav:
         cockpit.velocity = (motion.east_mps, motion.north_mps, -motion.down_mps)
         cockpit.facing_deg = math.degrees(motion.heading_rad) % 360.0
         at_east_m, at_north_m = cockpit.level_of(self._ground_at)
-        if math.hypot(east_m - at_east_m, north_m - at_north_m) > GROUND_EACH_M:
+        each_m = GROUND_EACH_M if cockpit.agl_m > LOW_M else LOW_GROUND_EACH_M
+        if math.hypot(east_m - at_east_m, north_m - at_north_m) > each_m:
             ground_m = cockpit.ground.elevation_m(position)
             self._ground_at = position
             if math.isfinite(ground_m) and ground_m != self._ground_m:
@@ -361,8 +364,8 @@ class SimulatedUav:
                 self._plant.set_ground_m(ground_m)
         cockpit.agl_m = motion.altitude_amsl_m - self._ground_m
 
-    def _touch(self, motion: Motion) -> None:
-        """Off the ground, onto it, or into it."""
+    def _touch(self, motion: Motion, before: Motion) -> None:
+        """Off the ground, onto it, or into it: how hard is told by the speed before the legs took it up."""
         cockpit = self._cockpit
         above_m = cockpit.agl_m - self._plant.leg_m
         if not cockpit.is_in_air:
@@ -375,11 +378,11 @@ class SimulatedUav:
         tilt = max(abs(motion.roll_rad), abs(motion.pitch_rad))
         if above_m > 0.5 or not (self._plant.legs_down or above_m < 0.0 or tilt > OVERTURNED_RAD):
             return
-        along_mps = math.hypot(motion.east_mps, motion.north_mps)
+        along_mps = math.hypot(before.east_mps, before.north_mps)
         if tilt > OVERTURNED_RAD:
             self._crash("It overturned.")
-        elif self._plant.legs_down and (motion.down_mps > HARD_DOWN_MPS or along_mps > HARD_ALONG_MPS):
-            self._crash(f"It hit the ground at {math.hypot(motion.down_mps, along_mps):.1f} m/s.")
+        elif self._plant.legs_down and (before.down_mps > HARD_DOWN_MPS or along_mps > HARD_ALONG_MPS):
+            self._crash(f"It hit the ground at {math.hypot(before.down_mps, along_mps):.1f} m/s.")
         elif self._plant.legs_down and (self._manoeuvre.is_landing or not cockpit.is_armed):
             self._landed()
         elif self._plant.legs_down and not self._manoeuvre.is_landing:
@@ -437,6 +440,24 @@ class SimulatedUav:
     @property
     def _percent(self) -> float:
         return self._battery.percent_after(self._used_wh)
+
+    @property
+    def is_armed(self) -> bool:
+        return self._cockpit.is_armed
+
+    @property
+    def mission_state(self) -> MissionState:
+        return self._mission_state()
+
+    @property
+    def battery_percent(self) -> float:
+        return self._percent
+
+    @property
+    def true_place(self) -> tuple[float, float, float, float, float]:
+        """What a long record of a flight is made of, cheaper than `state`: seconds, lon, lat, height above home and above ground."""
+        motion, cockpit = self._motion, self._cockpit
+        return self.now_s, motion.lon_deg, motion.lat_deg, cockpit.here[2], cockpit.agl_m
 
     @property
     def state(self) -> UavState:
