@@ -6,6 +6,7 @@ from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerSplitVie
 
 from config.health import healthz, readyz
 
+admin.autodiscover()
 urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("missions.urls")),  # first, with what is asked for most: addresses are tried one after the other
     path("healthz", healthz),

@@ -3,6 +3,7 @@
 import account from "./de/account.js";
 import admin from "./de/admin.js";
 import administration from "./de/administration.js";
+import alertLimits from "./de/alert_limits.js";
 import assets from "./de/assets.js";
 import draw from "./de/draw.js";
 import fleet from "./de/fleet.js";
@@ -23,4 +24,4 @@ import terrain from "./de/terrain.js";
 import uavChanges from "./de/uav_changes.js";
 import zones from "./de/zones.js";
 
-export default { ...account, ...admin, ...administration, ...assets, ...draw, ...fleet, ...flight, ...flying, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...monitor, ...planning, ...report, ...terrain, ...uavChanges, ...zones };
+export default { ...account, ...admin, ...administration, ...alertLimits, ...assets, ...draw, ...fleet, ...flight, ...flying, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...monitor, ...planning, ...report, ...terrain, ...uavChanges, ...zones };

@@ -59,7 +59,7 @@ export function mountCards(store, { pick, jumpTo, follow }) {
     const about = [mission ? missions.length > 1 && mission.name : t("not in a mission"), uav.is_simulated && t("simulated, no real aircraft")].filter(Boolean).join(" · ");
     at.mission.hidden = about === "";
     at.mission.textContent = about;
-    const estimate = estimateWords(uav, certainty);
+    const estimate = estimateWords(uav, certainty, now_ms);
     at.estimate.hidden = estimate === null;
     if (estimate) refill(at.estimate, `${estimate.strong} ${estimate.rest}`, () => [icon("circle-dashed"), h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`)]);
     const figures = figuresOf(uav, certainty);
