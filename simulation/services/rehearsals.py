@@ -90,7 +90,7 @@ def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
     runs = list(rehearsal.runs.all())
     for number, run in enumerate(runs):
         if run.finished_at is None:
-            share = _shares(progress, number, len(runs), str(run.conditions["code"]))
+            share = _shares(progress, number, len(runs))
             _fly_run(run, plan, planning_read().ground(), rehearsal.seed, share)
     _finish(rehearsal.pk, job)
 
@@ -99,9 +99,9 @@ def limits_of_settings() -> Limits:
     return Limits.of(settings.FLIGHT_RULES, settings.SEPARATION_RULES, zone_height_m=settings.ZONE_RULES.height_margin_m)
 
 
-def _shares(progress: OnProgress, number: int, runs: int, code: str) -> Callable[[float], None]:
+def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], None]:
     def told(share: float) -> None:
-        progress(f"Flying {number + 1} of {runs}: {code}", (number + share) / runs)
+        progress(f"Flying {number + 1} of {runs}", (number + share) / runs)
 
     return told
 
