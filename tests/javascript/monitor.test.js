@@ -70,6 +70,9 @@ test("a flight that was told to be over is over, whatever the last report said",
   assert.equal(inAir(down), false);
   assert.equal(stateOf(down).words, "On the ground");
   assert.equal(inAir({ ...uav(), measured: null }), true);
+  const switchedOff = uav({ age_s: 7200, is_in_air: false });
+  assert.equal(certaintyOf(switchedOff, NOW_MS), MEASURED, "it stands where it landed");
+  assert.deepEqual(ageWords(switchedOff, NOW_MS), { words: "no report for 2\u00a0h", isLate: false });
 });
 
 test("a UAV keeps its letter after its mission, until it flies another that is on the page", () => {
