@@ -8,7 +8,14 @@ const CAUSES = { "uav-out": t("A UAV has dropped out"), "zone-active": t("A no-f
 const CHANGES = { untouched: t("flies on as approved"), changed: t("gets another route"), recalled: t("is told to return"), out: t("has dropped out") };
 
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
-export const causeWords = ({ code }) => CAUSES[code] ?? code;
+/** Of a zone: which one, and between which targets it lies across whose route. */
+export const causeWords = ({ code, cause }) => (cause?.leg ? t("{zone} lies across the route of {uav}, {way}", { zone: cause.zone_name, uav: cause.uav_name, way: wayWords(cause.leg) }) : (CAUSES[code] ?? code));
+
+function wayWords([start, end]) {
+  if (start && end) return t("{start} to {end}|way", { start, end });
+  return start ? t("after {start}", { start }) : end ? t("start to {end}|way", { end }) : t("on its way");
+}
+
 
 /** The sentence first: "2 UAVs get another route, 3 targets change hands, 1 stays undone." */
 export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 0 } }) {
