@@ -1,0 +1,93 @@
+"""What a manoeuvre sees of the UAV and may do with it."""
+
+import math
+from dataclasses import dataclass, field
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from simulation.flight.airframe import Airframe
+from simulation.flight.camera import Camera
+from simulation.flight.course import Vector, Via, course
+from simulation.flight.events import Event, Said
+from simulation.flight.faults import Faults
+from simulation.flight.ground import Ground
+from simulation.flight.guidance import Gate, Guidance
+from simulation.flight.orders import Above, Place
+from simulation.flight.settings import Settings
+from simulation.flight.states import Severity
+
+
+@dataclass
+class Cockpit:
+    """Vectors are metres to east, north and up of the home; `here` is where the UAV takes itself to be.
+
+    `looks_at` and `heading_deg` override the heading along the course, the first before the second.
+    """
+
+    airframe: Airframe
+    settings: Settings
+    ground: Ground
+    home: LonLat
+    home_amsl_m: float
+    frame: LocalFrame
+    guidance: Guidance
+    camera: Camera
+    speed_mps: float
+    faults: Faults = field(default_factory=Faults)
+    now_s: float = 0.0
+    here: Vector = (0.0, 0.0, 0.0)
+    velocity: Vector = (0.0, 0.0, 0.0)
+    agl_m: float = 0.0
+    facing_deg: float = 0.0
+    flown_m: float = 0.0
+    is_armed: bool = False
+    is_in_air: bool = False
+    looks_at: Vector | None = None
+    heading_deg: float | None = None
+    events: list[Event] = field(default_factory=list)
+
+    def say(self, text: str, severity: Severity = Severity.INFO) -> None:
+        self.events.append(Said(self.now_s, text, severity))
+
+    def level_of(self, position: LonLat) -> tuple[float, float]:
+        """East and north of home [m]."""
+        east_m = (position.lon - self.home.lon) * self.frame.metres_per_degree_east
+        return east_m, (position.lat - self.home.lat) * self.frame.metres_per_degree_north
+
+    def position_of(self, place: Vector) -> LonLat:
+        lon = self.home.lon + place[0] / self.frame.metres_per_degree_east
+        return LonLat(lon, self.home.lat + place[1] / self.frame.metres_per_degree_north)
+
+    def vector_of(self, place: Place) -> Vector:
+        """Where a mission's place is; what it leaves open is where the UAV is."""
+        east_m, north_m = self.here[:2] if place.position is None else self.level_of(place.position)
+        if place.height_m is None:
+            return east_m, north_m, self.here[2]
+        if place.above is Above.HOME:
+            return east_m, north_m, place.height_m
+        if place.above is Above.SEA:
+            return east_m, north_m, place.height_m - self.home_amsl_m
+        ground_m = self.ground.elevation_m(self.position_of((east_m, north_m, 0.0)))
+        return east_m, north_m, place.height_m + (ground_m - self.home_amsl_m if math.isfinite(ground_m) else 0.0)
+
+    def fly_through(self, vias: list[Via], gates: dict[int, Gate] | None = None) -> None:
+        """From here through these points to a stand at the last."""
+        self.guidance.follow(course(self.here, vias, self.guidance.pace), self.velocity, gates)
+
+    def fly_to(self, place: Vector) -> None:
+        self.fly_through([Via(place, self.speed_mps)])
+
+    def stand(self) -> None:
+        """Where the UAV comes to a stand when it brakes now."""
+        east, north, up = self.velocity
+        speed_mps = math.sqrt(east * east + north * north + up * up)
+        if speed_mps < 0.5:
+            self.guidance.hold(self.here)
+            return
+        way = speed_mps / (2.0 * self.airframe.acceleration_mps2)
+        x, y, z = self.here
+        self.fly_through([Via((x + east * way, y + north * way, z + up * way), speed_mps)])
+
+    def is_there(self, within_m: float) -> bool:
+        """It stands where the course ended."""
+        return self.guidance.is_at_end and math.dist(self.guidance.goal, self.here) < within_m

@@ -1,0 +1,84 @@
+"""What happened in a flight, in the order it happened; times are simulated seconds since the start."""
+
+from dataclasses import dataclass
+
+from inspection.geodesy import LonLat
+from simulation.flight.states import Mode, Severity
+
+
+@dataclass(frozen=True, slots=True)
+class ItemReached:
+    """A mission item is done; `index` is its place in the list as it was loaded."""
+
+    at_s: float
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class MissionEnded:
+    """The last item is done."""
+
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class ModeChanged:
+    """`is_own`: by the UAV itself, not by an order."""
+
+    at_s: float
+    mode: Mode
+    is_own: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PhotoTaken:
+    """Photo number `number` since the start, counted from 1, with where the camera looked."""
+
+    at_s: float
+    number: int
+    position: LonLat
+    altitude_amsl_m: float
+    heading_deg: float
+    item: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """A text for the operator."""
+
+    at_s: float
+    text: str
+    severity: Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Armed:
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Disarmed:
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class TookOff:
+    at_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class LandedAt:
+    """Where the legs touched the ground for good."""
+
+    at_s: float
+    position: LonLat
+
+
+@dataclass(frozen=True, slots=True)
+class Crashed:
+    at_s: float
+    position: LonLat
+    reason: str
+
+
+Event = ItemReached | MissionEnded | ModeChanged | PhotoTaken | Said | Armed | Disarmed | TookOff | LandedAt | Crashed

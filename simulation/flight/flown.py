@@ -1,0 +1,91 @@
+"""A flight from arming to its end, as fast as the processor can."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+from inspection.geodesy import LonLat
+from simulation.flight.events import Crashed, Event
+from simulation.flight.states import MissionState, Mode, Refused, UavState
+from simulation.flight.uav import SimulatedUav
+
+LONGEST_S = 4 * 3_600.0  # no battery of ours lasts so long
+SETTLES_S = 2.0  # after the last item, until it hovers there
+
+
+class Ending(StrEnum):
+    LANDED = "landed"
+    HOVERING = "hovering"
+    CRASHED = "crashed"
+    FLYING = "flying"  # its time was up
+    REFUSED = "refused"  # it did not take off
+
+
+class Sample(NamedTuple):
+    """Where it truly was. Heights above the take-off and above the ground below; the battery in percent."""
+
+    at_s: float
+    lon: float
+    lat: float
+    altitude_relative_m: float
+    altitude_agl_m: float
+    battery_percent: float
+
+
+@dataclass(frozen=True)
+class Flown:
+    """`samples` begin with the arming. `end` is the state at the end; `refusal` why it did not take off."""
+
+    ending: Ending
+    samples: tuple[Sample, ...]
+    events: tuple[Event, ...]
+    end: UavState
+    refusal: Refused | None = None
+
+    @property
+    def crash(self) -> Crashed | None:
+        return next((event for event in self.events if isinstance(event, Crashed)), None)
+
+    @property
+    def touched_down_at(self) -> LonLat | None:
+        return self.end.true_position if self.ending is Ending.LANDED else None
+
+
+def fly_mission(uav: SimulatedUav, *, longest_s: float = LONGEST_S, sample_steps: int = 1) -> Flown:
+    """Arm, fly the mission that was loaded, until it stands on the ground, hovers after its last item, or has crashed.
+
+    A sample each `sample_steps` steps of 0.04 s. It ends for each mission: one that never comes to an end empties the battery.
+    """
+    outcome = uav.set_mode(Mode.MISSION)
+    if outcome.is_done:
+        outcome = uav.arm()
+    if isinstance(outcome, Refused):
+        return Flown(Ending.REFUSED, (), tuple(uav.take_events()), uav.state, outcome)
+    samples, events, began_s = [_sample(uav)], uav.take_events(), uav.now_s
+    hovers_since_s: float | None = None
+    ending = Ending.FLYING
+    steps = 0
+    while uav.now_s - began_s < longest_s:
+        uav.step()
+        steps += 1
+        if steps % sample_steps == 0:
+            samples.append(_sample(uav))
+        events += uav.take_events()
+        if uav.is_crashed:
+            ending = Ending.CRASHED
+            break
+        if not uav.is_armed:
+            ending = Ending.LANDED
+            break
+        if uav.mission_state is MissionState.COMPLETE:
+            hovers_since_s = uav.now_s if hovers_since_s is None else hovers_since_s
+            if uav.now_s - hovers_since_s >= SETTLES_S:
+                ending = Ending.HOVERING
+                break
+    if steps % sample_steps:
+        samples.append(_sample(uav))
+    return Flown(ending, tuple(samples), tuple(events), uav.state)
+
+
+def _sample(uav: SimulatedUav) -> Sample:
+    return Sample(*uav.true_place, uav.battery_percent)

@@ -1,0 +1,150 @@
+"""What the UAV is doing: holding, taking off, flying somewhere, returning, landing. A mission is one more, made of these."""
+
+import math
+from typing import Protocol
+
+from simulation.flight.cockpit import Cockpit
+from simulation.flight.course import Vector
+from simulation.flight.states import Mode
+
+AT_HEIGHT_M = 0.5
+OVER_PLACE_M = 0.5
+
+
+class Manoeuvre(Protocol):
+    """`begin` once, then `step` before each step of guidance; `is_done` when there is nothing more to do.
+
+    `is_landing`: the ground is to be touched. `lifts_off`: it can begin on the ground.
+    """
+
+    mode: Mode
+    lifts_off: bool
+    is_done: bool
+
+    @property
+    def is_landing(self) -> bool: ...
+
+    def begin(self, cockpit: Cockpit) -> None: ...
+
+    def step(self, cockpit: Cockpit) -> None: ...
+
+
+class Hold:
+    """Stands where it comes to a stand."""
+
+    mode = Mode.HOLD
+    lifts_off = False
+    is_landing = False
+    is_done = False
+
+    def begin(self, cockpit: Cockpit) -> None:
+        cockpit.stand()
+
+    def step(self, cockpit: Cockpit) -> None:
+        pass
+
+
+class TakeOff:
+    """Straight up to a height above home; done there."""
+
+    mode = Mode.TAKE_OFF
+    lifts_off = True
+    is_landing = False
+
+    def __init__(self, height_m: float) -> None:
+        self._height_m = height_m
+        self.is_done = False
+
+    def begin(self, cockpit: Cockpit) -> None:
+        east_m, north_m, up_m = cockpit.here
+        self.is_done = cockpit.is_in_air and up_m >= self._height_m - AT_HEIGHT_M
+        if self.is_done:
+            cockpit.stand()
+        else:
+            cockpit.fly_to((east_m, north_m, self._height_m))
+
+    def step(self, cockpit: Cockpit) -> None:
+        self.is_done = self.is_done or cockpit.is_there(AT_HEIGHT_M)
+
+
+class GoTo:
+    """To a place, and stays there."""
+
+    mode = Mode.GO_TO
+    lifts_off = False
+    is_landing = False
+    is_done = False
+
+    def __init__(self, place: Vector) -> None:
+        self._place = place
+
+    def begin(self, cockpit: Cockpit) -> None:
+        cockpit.fly_to(self._place)
+
+    def step(self, cockpit: Cockpit) -> None:
+        pass
+
+
+class Land:
+    """Flies over the place at the height it has, or stays over where it is, and descends to the ground. Touching it ends the manoeuvre."""
+
+    mode = Mode.LAND
+    lifts_off = False
+
+    def __init__(self, place: Vector | None = None) -> None:
+        self._place = place
+        self.is_landing = False
+        self.is_done = False
+
+    def begin(self, cockpit: Cockpit) -> None:
+        if self._place is None or math.dist(self._place[:2], cockpit.here[:2]) < OVER_PLACE_M:
+            cockpit.stand()
+        else:
+            cockpit.fly_to((self._place[0], self._place[1], cockpit.here[2]))
+
+    def step(self, cockpit: Cockpit) -> None:
+        if not cockpit.is_in_air:
+            self.is_done = True
+        elif not self.is_landing and cockpit.is_there(OVER_PLACE_M):
+            self.is_landing = True
+            cockpit.guidance.descend(self._place or cockpit.guidance.goal)
+
+
+class Return:
+    """Up to the height of returns, home at that height, and down. Near home it does not climb."""
+
+    mode = Mode.RETURN
+    lifts_off = False
+
+    def __init__(self) -> None:
+        self._land: Land | None = None
+        self._is_climbing = False
+        self._level_m = 0.0
+        self.is_done = False
+
+    @property
+    def is_landing(self) -> bool:
+        return self._land is not None and self._land.is_landing
+
+    def begin(self, cockpit: Cockpit) -> None:
+        east_m, north_m, up_m = cockpit.here
+        is_near = math.hypot(east_m, north_m) <= cockpit.settings.return_near_m
+        self._level_m = up_m if is_near else max(up_m, cockpit.settings.return_height_m)
+        self._is_climbing = self._level_m > up_m + AT_HEIGHT_M
+        if self._is_climbing:
+            cockpit.fly_to((east_m, north_m, self._level_m))
+        else:
+            self._go_home(cockpit)
+
+    def _go_home(self, cockpit: Cockpit) -> None:
+        self._is_climbing = False
+        self._land = Land((0.0, 0.0, 0.0))
+        self._land.begin(cockpit)
+
+    def step(self, cockpit: Cockpit) -> None:
+        if self._is_climbing:
+            if cockpit.is_there(AT_HEIGHT_M):
+                self._go_home(cockpit)
+        elif self._land is not None:
+            self._land.step(cockpit)
+            self.is_done = self._land.is_done

@@ -1,0 +1,239 @@
+"""Mission items as orders that can be flown: read once, when a list is loaded."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from pymavlink.dialects.v20 import common as mavlink
+
+from inspection.geodesy import LonLat
+from missions.mavlink.content import MissionItem
+
+E7 = 1e7
+MOST_ITEMS = 10_000
+HIGHEST_M, MOST_SPEED_MPS, LONGEST_S = 10_000.0, 100.0, 86_400.0
+_AMSL = {mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT}
+_RELATIVE = {mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT}
+_TERRAIN = {mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT}
+
+
+class Above(StrEnum):
+    """What a height counts from."""
+
+    SEA = "sea"
+    HOME = "home"
+    GROUND = "ground"
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """`position` None: where the UAV is; `height_m` None: as high as it is."""
+
+    position: LonLat | None
+    height_m: float | None
+    above: Above
+
+
+@dataclass(frozen=True, slots=True)
+class TakeOff:
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class FlyTo:
+    """`hold_s` is stood there, inf: for good; `radius_m` 0: as the settings have it; `heading_deg` None: along the course."""
+
+    place: Place
+    hold_s: float
+    radius_m: float = 0.0
+    heading_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LandAt:
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class ReturnHome:
+    pass
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class SetSpeed:
+    speed_mps: float
+
+
+@dataclass(frozen=True, slots=True)
+class LookAt:
+    """None: along the course again."""
+
+    place: Place | None
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """To a heading, or by an angle."""
+
+    angle_deg: float
+    is_relative: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TakePhotos:
+    """`count` 0: until told to stop; by time if `interval_s` is above 0, by way if `distance_m` is."""
+
+    count: int
+    interval_s: float = 0.0
+    distance_m: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class StopPhotos:
+    pass
+
+
+@dataclass(frozen=True, slots=True)
+class Jump:
+    """To the item with this index, so many times; -1: for ever."""
+
+    index: int
+    times: int
+
+
+@dataclass(frozen=True, slots=True)
+class Nothing:
+    """An item that this UAV takes and has nothing to do for: servos, gimbals, markers."""
+
+
+Order = TakeOff | FlyTo | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
+NOTHING = Nothing()
+
+
+class CannotFly(ValueError):
+    """An item that cannot be flown; `index` is its place in the list, `parameter` 1 to 7 which of its fields, 0: its command."""
+
+    def __init__(self, index: int, code: str, words: str, parameter: int = 0) -> None:
+        super().__init__(f"Item {index}: {words}")
+        self.index, self.code, self.parameter = index, code, parameter
+
+
+_IGNORED = frozenset(
+    {
+        mavlink.MAV_CMD_DO_SET_HOME,
+        mavlink.MAV_CMD_DO_SET_SERVO,
+        mavlink.MAV_CMD_DO_SET_RELAY,
+        mavlink.MAV_CMD_DO_REPEAT_SERVO,
+        mavlink.MAV_CMD_DO_LAND_START,
+        mavlink.MAV_CMD_DO_GRIPPER,
+        mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
+        mavlink.MAV_CMD_DO_MOUNT_CONTROL,
+        mavlink.MAV_CMD_DO_DIGICAM_CONFIGURE,
+        mavlink.MAV_CMD_DO_FENCE_ENABLE,
+        mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
+        mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE,
+        mavlink.MAV_CMD_SET_CAMERA_MODE,
+        mavlink.MAV_CMD_SET_CAMERA_ZOOM,
+        mavlink.MAV_CMD_SET_CAMERA_FOCUS,
+        mavlink.MAV_CMD_VIDEO_START_CAPTURE,
+        mavlink.MAV_CMD_VIDEO_STOP_CAPTURE,
+        mavlink.MAV_CMD_CONDITION_DELAY,
+        mavlink.MAV_CMD_CONDITION_DISTANCE,
+        mavlink.MAV_CMD_DO_SET_CAM_TRIGG_INTERVAL,
+        mavlink.MAV_CMD_DO_AUTOTUNE_ENABLE,
+        mavlink.MAV_CMD_DO_ENGINE_CONTROL,
+    }
+)
+
+
+def orders(items: Sequence[MissionItem], *, is_home_first: bool) -> tuple[Order, ...]:
+    """One for each item. `is_home_first`: item 0 is home, as ArduPilot has it, and nothing to fly. Raises CannotFly."""
+    if len(items) > MOST_ITEMS:
+        raise CannotFly(MOST_ITEMS, "too-many", f"{len(items)} items; at most {MOST_ITEMS} are kept.")
+    read = tuple(NOTHING if is_home_first and index == 0 else _order(index, item) for index, item in enumerate(items))
+    for index, order in enumerate(read):
+        if isinstance(order, Jump) and not 0 <= order.index < len(read):
+            raise CannotFly(index, "invalid", f"jumps to item {order.index}, which there is not.", 1)
+    return read
+
+
+def _order(index: int, item: MissionItem) -> Order:
+    command = item.command
+    one, two, three, four = item.parameters
+    if command == mavlink.MAV_CMD_NAV_TAKEOFF:
+        return TakeOff(_place(index, item))
+    if command in (mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT):
+        return FlyTo(_place(index, item), _seconds(index, one, 1), _positive(index, two, 2), _heading(index, four))
+    if command == mavlink.MAV_CMD_NAV_LOITER_TIME:
+        return FlyTo(_place(index, item), _seconds(index, one, 1))
+    if command in (mavlink.MAV_CMD_NAV_LOITER_UNLIM, mavlink.MAV_CMD_NAV_LOITER_TURNS, mavlink.MAV_CMD_NAV_LOITER_TO_ALT):
+        return FlyTo(_place(index, item), math.inf if command == mavlink.MAV_CMD_NAV_LOITER_UNLIM else 0.0)
+    if command == mavlink.MAV_CMD_NAV_LAND:
+        return LandAt(_place(index, item))
+    if command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
+        return ReturnHome()
+    if command == mavlink.MAV_CMD_NAV_DELAY:
+        return Wait(_seconds(index, one, 1))
+    if command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
+        return NOTHING if math.isnan(two) or two < 0.0 else SetSpeed(_within(index, two, 0.1, MOST_SPEED_MPS, 2))
+    if command in (mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI):
+        return LookAt(_place(index, item))
+    if command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
+        return LookAt(None)
+    if command == mavlink.MAV_CMD_CONDITION_YAW:
+        angle_deg = _within(index, one, -360.0, 360.0, 1)
+        return Turn(angle_deg * (-1.0 if four > 0.0 and three < 0.0 else 1.0), is_relative=four > 0.0)
+    if command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
+        count = 1 if math.isnan(three) else int(_within(index, three, 0.0, 1e6, 3))
+        return TakePhotos(count, interval_s=_seconds(index, two, 2))
+    if command == mavlink.MAV_CMD_IMAGE_STOP_CAPTURE:
+        return StopPhotos()
+    if command == mavlink.MAV_CMD_DO_DIGICAM_CONTROL:
+        return TakePhotos(1)
+    if command == mavlink.MAV_CMD_DO_SET_CAM_TRIGG_DIST:
+        distance_m = _positive(index, one, 1)
+        return TakePhotos(0, distance_m=distance_m) if distance_m > 0.0 else StopPhotos()
+    if command == mavlink.MAV_CMD_DO_JUMP:
+        return Jump(int(_within(index, one, 0.0, 65_535.0, 1)), int(_within(index, two, -1.0, 65_535.0, 2)))
+    if command in _IGNORED:
+        return NOTHING
+    raise CannotFly(index, "unsupported", f"command {command} is not known to this UAV.")
+
+
+def _place(index: int, item: MissionItem) -> Place:
+    lon, lat, height_m = item.longitude_e7 / E7, item.latitude_e7 / E7, item.altitude_m
+    if item.frame not in _AMSL | _RELATIVE | _TERRAIN:
+        raise CannotFly(index, "frame", f"a place in frame {item.frame} is not known to this UAV.")
+    if not abs(lat) <= 90.0:
+        raise CannotFly(index, "invalid", f"latitude {lat:g} is beyond the pole.", 5)
+    if not abs(lon) <= 180.0:
+        raise CannotFly(index, "invalid", f"longitude {lon:g} is beyond 180 degrees.", 6)
+    if math.isinf(height_m) or abs(height_m) > HIGHEST_M:
+        raise CannotFly(index, "invalid", f"a height of {height_m:g} m is beyond what is flown.", 7)
+    above = Above.SEA if item.frame in _AMSL else Above.HOME if item.frame in _RELATIVE else Above.GROUND
+    is_here = item.longitude_e7 == 0 and item.latitude_e7 == 0
+    return Place(None if is_here else LonLat(lon, lat), None if math.isnan(height_m) else height_m, above)
+
+
+def _seconds(index: int, value: float, parameter: int) -> float:
+    return 0.0 if math.isnan(value) else max(_within(index, value, -1.0, LONGEST_S, parameter), 0.0)
+
+
+def _positive(index: int, value: float, parameter: int) -> float:
+    return 0.0 if math.isnan(value) or value < 0.0 else _within(index, value, 0.0, 1e6, parameter)
+
+
+def _heading(index: int, value: float) -> float | None:
+    return None if math.isnan(value) else _within(index, value, -720.0, 720.0, 4) % 360.0
+
+
+def _within(index: int, value: float, least: float, most: float, parameter: int) -> float:
+    if not least <= value <= most:
+        raise CannotFly(index, "invalid", f"parameter {parameter} is {value:g}, which is not within {least:g} to {most:g}.", parameter)
+    return value

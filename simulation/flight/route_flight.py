@@ -1,0 +1,121 @@
+"""A route file flown alone: its track, how far beside the route, what it took, and whether it can be flown."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from inspection.geodesy import LonLat, path_length_m
+from simulation.flight.airframe import Airframe
+from simulation.flight.cross_track import cross_track_m
+from simulation.flight.events import ItemReached, ModeChanged, Said
+from simulation.flight.flown import Ending, Flown, fly_mission
+from simulation.flight.orders import FlyTo, orders
+from simulation.flight.route_file import RouteFile, items_of
+from simulation.flight.states import Mode, Severity
+from simulation.flight.uav import SimulatedUav
+from simulation.flight.weather import Weather
+
+TRACK_STEPS = 5  # a line of the track each 0.2 s
+MOST_BESIDE_M = 5.0
+MOST_LANDING_M = 2.0
+LEAST_RESERVE_PERCENT = 20.0  # as plans keep it by default
+
+
+@dataclass(frozen=True)
+class RouteFlight:
+    """`cross_track_m` (n,) of each step between the first and the last waypoint."""
+
+    flown: Flown
+    cross_track_m: np.ndarray[Any, np.dtype[np.float64]]
+    reasons: tuple[str, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        beside, end = self.cross_track_m, self.flown.end
+        began_s = self.flown.samples[0].at_s if self.flown.samples else 0.0
+        return {
+            "track": [
+                [round(sample.at_s - began_s, 2), sample.lon, sample.lat, sample.altitude_relative_m]
+                for sample in self.flown.samples[::TRACK_STEPS]
+            ],
+            "cross_track_rms_m": float(np.sqrt(np.mean(beside**2))) if len(beside) else None,
+            "cross_track_max_m": float(beside.max()) if len(beside) else None,
+            "energy_wh": end.battery_used_wh,
+            "duration_s": round(end.at_s - began_s, 2),
+            "verdict": {"result": "fail" if self.reasons else "pass", "reasons": list(self.reasons)},
+        }
+
+
+def fly_route(
+    route: RouteFile, airframe: Airframe, *, weather: Weather, seed: int, battery_percent: float = 100.0, physics_hz: int = 250
+) -> RouteFlight:
+    """Over flat ground, from a take-off under the first waypoint to a landing under the last."""
+    items = items_of(route)
+    uav = SimulatedUav(airframe, route.positions[0], weather=weather, seed=seed, battery_percent=battery_percent, physics_hz=physics_hz)
+    refused = uav.load(items)
+    if not refused.is_done:
+        raise ValueError(str(refused))
+    flown = fly_mission(uav)
+    places = [index for index, order in enumerate(orders(items, is_home_first=False)) if isinstance(order, FlyTo)]
+    passed_s = {event.index: event.at_s for event in flown.events if isinstance(event, ItemReached)}
+    beside = _beside(flown, route, [passed_s[place] for place in places if place in passed_s])
+    missed = [number for number, place in enumerate(places) if place not in passed_s]
+    return RouteFlight(flown, beside, tuple(_reasons(flown, route, weather, airframe, beside, missed)))
+
+
+def _beside(flown: Flown, route: RouteFile, passed_s: list[float]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """From when the first waypoint was passed to when the last was, or to the end of a flight that did not come so far."""
+    if not passed_s:
+        return np.zeros(0)
+    times = np.array([sample.at_s for sample in flown.samples])
+    own = [event.at_s for event in flown.events if isinstance(event, ModeChanged) and event.is_own]
+    until_s = passed_s[-1] if len(passed_s) == len(route.positions) else min([*own, flown.end.at_s])
+    inside = (times >= passed_s[0]) & (times <= max(until_s, passed_s[0]))
+    track = np.array([(sample.lon, sample.lat) for sample in flown.samples])[inside]
+    legs = np.clip(np.searchsorted(np.array(passed_s), times[inside], side="right"), 1, max(len(route.positions) - 1, 1))
+    return cross_track_m(track, legs, route.positions)
+
+
+def _reasons(
+    flown: Flown, route: RouteFile, weather: Weather, airframe: Airframe, beside: np.ndarray[Any, np.dtype[np.float64]], missed: list[int]
+) -> list[str]:
+    reasons = []
+    if flown.refusal is not None:
+        reasons.append(f"The UAV did not take off: {flown.refusal.words}")
+    if flown.crash is not None:
+        reasons.append(f"The UAV crashed after {flown.crash.at_s:.0f} s: {flown.crash.reason}")
+    wind_mps, height_m = _strongest_wind(weather, route)
+    if wind_mps > airframe.max_airspeed_mps:
+        reasons.append(
+            f"The wind of {wind_mps:.1f} m/s at {height_m:.0f} m is more than the {airframe.max_airspeed_mps:g} m/s that the UAV flies."
+        )
+    if missed:
+        words = f"waypoint {missed[0] + 1}" if len(missed) == 1 else f"{len(missed)} waypoints, waypoint {missed[0] + 1} the first,"
+        reasons.append(f"Not reached: {words} of {len(route.positions)}.")
+    own = next((event for event in flown.events if isinstance(event, ModeChanged) and event.is_own and event.mode is not Mode.HOLD), None)
+    if own is not None:
+        why = [
+            said.text for said in flown.events if isinstance(said, Said) and said.severity is not Severity.INFO and said.at_s <= own.at_s
+        ]
+        reasons.append(f"The UAV gave the mission up after {own.at_s:.0f} s. {why[-1] if why else ''}".strip())
+    if flown.ending is Ending.FLYING:
+        reasons.append("The flight did not come to an end.")
+    if len(beside) and beside.max() > MOST_BESIDE_M:
+        reasons.append(f"Up to {beside.max():.1f} m beside the route, limit {MOST_BESIDE_M:g} m.")
+    if flown.touched_down_at is not None:
+        off_m = _distance_m(flown.touched_down_at, route.positions[-1])
+        if off_m > MOST_LANDING_M:
+            reasons.append(f"Landed {off_m:.1f} m from the last waypoint, limit {MOST_LANDING_M:g} m.")
+    if flown.end.battery_percent < LEAST_RESERVE_PERCENT:
+        reasons.append(f"{flown.end.battery_percent:.0f} % battery at the end, limit {LEAST_RESERVE_PERCENT:g} %.")
+    return reasons
+
+
+def _strongest_wind(weather: Weather, route: RouteFile) -> tuple[float, float]:
+    """The strongest steady wind at the heights of the waypoints [m/s], and the height above ground [m]."""
+    winds = [(float(np.hypot(*weather.conditions.wind_at(height_m))), height_m) for height_m in set(route.altitudes_relative_m)]
+    return max(winds)
+
+
+def _distance_m(one: LonLat, other: LonLat) -> float:
+    return path_length_m(np.array([one, other]))

@@ -1,0 +1,109 @@
+"""What a simulated UAV says of itself, and how it answers an order."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from inspection.geodesy import LonLat
+
+
+class Mode(StrEnum):
+    """Our own names; what the wire calls them is the endpoint's matter."""
+
+    HOLD = "hold"
+    TAKE_OFF = "take-off"
+    MISSION = "mission"
+    GO_TO = "go-to"
+    RETURN = "return"
+    LAND = "land"
+
+
+class Landed(StrEnum):
+    ON_GROUND = "on-ground"
+    TAKING_OFF = "taking-off"
+    IN_AIR = "in-air"
+    LANDING = "landing"
+
+
+class MissionState(StrEnum):
+    NONE = "none"
+    NOT_STARTED = "not-started"
+    ACTIVE = "active"
+    PAUSED = "paused"
+    COMPLETE = "complete"
+
+
+class Severity(StrEnum):
+    INFO = "info"
+    WARNING = "warning"
+    CRITICAL = "critical"
+
+
+@dataclass(frozen=True, slots=True)
+class Gps:
+    """`fix` as MAVLink counts: 0 none, 3 in three dimensions."""
+
+    fix: int
+    satellites: int
+    hdop: float
+
+
+@dataclass(frozen=True, slots=True)
+class UavState:
+    """At `at_s` seconds after the start.
+
+    `position` is where the UAV takes itself to be, which is what it reports and flies by; `true_position` where it is. They differ only
+    while it is without GPS, and shortly after. Heights are true: AMSL, above the home's ground, and above the ground below.
+    Velocity, wind felt (the air's velocity) and rates in m/s and degrees a second, to north, east and down.
+    """
+
+    at_s: float
+    position: LonLat
+    true_position: LonLat
+    altitude_amsl_m: float
+    altitude_relative_m: float
+    altitude_agl_m: float
+    velocity_ned_mps: tuple[float, float, float]
+    roll_deg: float
+    pitch_deg: float
+    heading_deg: float
+    roll_rate_dps: float
+    pitch_rate_dps: float
+    yaw_rate_dps: float
+    airspeed_mps: float
+    ground_speed_mps: float
+    wind_ned_mps: tuple[float, float, float]
+    battery_percent: float
+    battery_used_wh: float
+    battery_v: float
+    battery_a: float
+    is_armed: bool
+    is_in_air: bool
+    landed: Landed
+    mode: Mode
+    is_crashed: bool
+    gps: Gps
+    current_item: int
+    mission_state: MissionState
+    home: LonLat
+    home_amsl_m: float
+    target_speed_mps: float
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """The order is being carried out."""
+
+    is_done: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """The order is not carried out: `code` for programs, `words` for people."""
+
+    code: str
+    words: str
+    is_done: bool = False
+
+
+Outcome = Done | Refused
+DONE = Done()
