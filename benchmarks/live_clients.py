@@ -17,8 +17,7 @@ from typing import Any
 import orjson
 
 TEXT, CLOSE, PING, PONG = 1, 8, 9, 10
-FIRST_DEG = 10.0  # longitude of what was sent at the start; a millisecond later is a ten-millionth degree further east
-PER_DEGREE = 10_000_000
+PER_DEGREE = 10_000_000  # a millisecond later is a ten-millionth degree further east
 
 
 class Closed(Exception):
@@ -77,6 +76,7 @@ class Socket:
 class Page:
     """What one page saw: how long each report of a UAV took to it [ms], and which it saw of each."""
 
+    first: dict[int, int]  # longitude by UAV of what was sent at the start, in ten-millionth degrees
     waits_ms: list[int] = field(default_factory=list)
     seen: dict[int, set[int]] = field(default_factory=dict)
     gaps: int = 0
@@ -107,7 +107,7 @@ class Page:
         for uav in word["live"]["uavs"] if word["type"] == "snapshot" else word["uavs"]:
             if (measured := uav["measured"]) is None:
                 continue
-            sent_ms = round((measured["position"][0] - FIRST_DEG) * PER_DEGREE)
+            sent_ms = round(measured["position"][0] * PER_DEGREE) - self.first[uav["id"]]
             own = self.seen.setdefault(uav["id"], set())
             if sent_ms not in own:
                 own.add(sent_ms)
@@ -115,8 +115,8 @@ class Page:
                     self.waits_ms.append(round(now_ms - sent_ms))
 
 
-async def open_pages(options: argparse.Namespace, cookies: list[str]) -> list[Page]:
-    pages = [Page() for _ in cookies]
+async def open_pages(options: argparse.Namespace, first: dict[int, int], cookies: list[str]) -> list[Page]:
+    pages = [Page(first) for _ in cookies]
     listening = [
         asyncio.create_task(page.listen(options.port, options.path, cookie, options.began))
         for page, cookie in zip(pages, cookies, strict=True)
@@ -134,7 +134,8 @@ def main() -> None:
     parser.add_argument("--path", default="/ws/live")
     parser.add_argument("--began", type=float, required=True, help="CLOCK_MONOTONIC at which sending began [s]")
     options = parser.parse_args()
-    pages = asyncio.run(open_pages(options, sys.stdin.readline().split()))
+    first = {int(uav): first for uav, first in orjson.loads(sys.stdin.readline()).items()}
+    pages = asyncio.run(open_pages(options, first, sys.stdin.readline().split()))
     told = [
         {
             "waits_ms": page.waits_ms,

@@ -2,10 +2,11 @@
 
     python -m benchmarks.live_pages [--uavs 200] [--pages 50] [--seconds 180] [--curve] [--write]
 
-With real programs, each a process of its own: UAVs that send MAVLink by UDP once a second, the gateway, the database of the settings, a
-Redis, the websocket program, nginx, and pages that do with each word what the browser's do. With --curve smaller and larger loads are
-tried as well, for a third of a minute each. With --write the table goes to docs/performance.md. The UAVs and their records are removed
-afterwards. Exits with 1 where a report was lost, or one of twenty took half a second or longer.
+With real programs, each a process of its own: UAVs that send MAVLink by UDP once a second, the gateway, the estimator, a Redis, the
+websocket program, nginx, and pages that do with each word what the browser's do. Ten UAVs each fly an approved mission, so that there is
+something to estimate and to be alerted of. All is in a database of its own on the server of the settings, which is removed afterwards.
+With --curve smaller and larger loads are tried as well, for a third of a minute each. With --write the table goes to
+docs/performance.md. Exits with 1 where a report was lost, or one of twenty took half a second or longer.
 """
 
 import argparse
@@ -25,38 +26,36 @@ from pathlib import Path
 from typing import Any
 
 import django
+import numpy as np
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 django.setup()
 
 from django.conf import settings  # noqa: E402
 from django.contrib.auth import BACKEND_SESSION_KEY, HASH_SESSION_KEY, SESSION_KEY  # noqa: E402
-from django.contrib.gis.geos import Point  # noqa: E402
 from django.contrib.sessions.backends.db import SessionStore  # noqa: E402
-from django.db import connection  # noqa: E402
 from pymavlink.dialects.v20 import ardupilotmega as mavlink  # noqa: E402
 
 from benchmarks.gateway_rate import free_port, gateway  # noqa: E402
-from benchmarks.live_clients import FIRST_DEG, PER_DEGREE  # noqa: E402
+from benchmarks.live_clients import PER_DEGREE  # noqa: E402
+from benchmarks.live_fleet import GROUND_M, SPEED_MPS, UAVS_A_MISSION, Line, make_site, own_database, put_under_way  # noqa: E402
 from benchmarks.report import machine, table, write_section  # noqa: E402
 from missions.mavlink.signing import FrameWriter  # noqa: E402
-from missions.models import Uav  # noqa: E402
 from scripts.places import Places  # noqa: E402
 from scripts.programs import web_programs  # noqa: E402
 from scripts.proxy import configuration  # noqa: E402
 from scripts.system_packages import find_program  # noqa: E402
-from telemetry.models import TelemetryRecord  # noqa: E402
-from workspace.models import Organisation, User  # noqa: E402
+from telemetry.models import Alert, TelemetryRecord, UavWatch  # noqa: E402
+from workspace.models import User  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
 BAR_P95_MS = 500.0
-FIRST_SYSTEM = 2
-MOST_SYSTEMS = 253
 WARM_UP_S = 3.0
 SETTLES_S = 6.0
 CURVE = ((20, 10), (50, 50), (100, 50), (200, 10), (200, 100), (250, 50))
 CURVE_S = 20.0
-NAME = "live pages' benchmark"
+IN_MISSION, BY_HAND = 4 << 16 | 4 << 24, 3 << 16  # PX4's custom modes: automatic, mission; position
+EACH_BY_HAND = 20  # an alert each
 
 
 @dataclass(frozen=True)
@@ -71,6 +70,8 @@ class Run:
     waits_ms: list[int]
     cores: dict[str, float]
     kilobytes_s: float  # to one page
+    estimated: int  # UAVs
+    alerts: int
 
     def wait_ms(self, percent: float) -> float:
         waits = sorted(self.waits_ms)
@@ -78,7 +79,7 @@ class Run:
 
     @property
     def is_passed(self) -> bool:
-        whole = self.stored == self.sent and not self.gaps and not self.errors and self.seen_share == 1.0
+        whole = self.stored == self.sent and not self.gaps and not self.errors and self.seen_share == 1.0 and self.estimated == self.uavs
         return whole and self.wait_ms(95) < BAR_P95_MS
 
 
@@ -122,26 +123,33 @@ def front_door() -> Iterator[tuple[int, dict[str, int]]]:
         shutil.rmtree(folder)
 
 
-def play(port: int, systems: list[int], seconds: float, began_s: float, told: Any) -> None:
-    """Each UAV sends a heartbeat, its attitude and where it is once a second, all of them evenly spread; tells what it sent."""
+def play(port: int, lines: list[Line], seconds: float, began_s: float, told: Any) -> None:
+    """Each UAV sends a heartbeat, its attitude and where it is once a second, all of them evenly spread; tells what it sent.
+
+    A millisecond later is a ten-millionth degree further east, which is how a page knows when a report was sent.
+    """
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sender.connect(("127.0.0.1", port))
-    writers = {system: FrameWriter(system, 1) for system in systems}
-    sent: dict[int, list[int]] = {system: [] for system in systems}
-    every_s = 1.0 / len(systems)
+    writers = {line.system: FrameWriter(line.system, 1) for line in lines}
+    sent: dict[int, list[int]] = {line.uav_id: [] for line in lines}
+    every_s = 1.0 / len(lines)
     first_s = time.monotonic()
-    for number in range(int(seconds * len(systems))):
+    for number in range(int(seconds * len(lines))):
         time.sleep(max(first_s + number * every_s - time.monotonic(), 0.0))
-        system = systems[number % len(systems)]
+        line = lines[number % len(lines)]
+        mode = IN_MISSION if line.system % EACH_BY_HAND else BY_HAND
         ms = int((time.monotonic() - began_s) * 1000)
-        place = round(FIRST_DEG * PER_DEGREE) + ms
+        lat, lon = round(line.lat * PER_DEGREE), round(line.lon * PER_DEGREE) + ms
+        height_mm = round(1_000 * float(np.interp(lon / PER_DEGREE, *line.heights_m)))
         for message in (
-            mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 209, 0, 4, 3),
+            mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4, 209, mode, 4, 3),
             mavlink.MAVLink_attitude_message(ms, 0.1, 0.2, 0.3, 0.0, 0.0, 0.0),
-            mavlink.MAVLink_global_position_int_message(ms, 550_000_000, place, 30_000, 20_000, 100, 0, 0, 9_000),
+            mavlink.MAVLink_global_position_int_message(
+                ms, lat, lon, round(GROUND_M * 1_000) + height_mm, height_mm, 0, round(SPEED_MPS * 100), 0, 9_000
+            ),
         ):
-            sender.send(writers[system].frame_of(message, 0.0))
-        sent[system].append(ms)
+            sender.send(writers[line.system].frame_of(message, 0.0))
+        sent[line.uav_id].append(ms)
     told.put(sent)
 
 
@@ -160,35 +168,18 @@ def cookie_of(user: User) -> str:
     return f"{settings.SESSION_COOKIE_NAME}={session.session_key}"
 
 
-@contextmanager
-def fleet(number: int) -> Iterator[tuple[list[Uav], User]]:
-    organisation = Organisation.objects.create(name=f"{NAME} {time.time():.0f}")
-    user = User.objects.create_user(f"benchmark-{time.time():.0f}", organisation=organisation)
-    taken = set(Uav.objects.filter(mavlink_system_id__isnull=False).values_list("mavlink_system_id", flat=True))
-    systems = [system for system in range(FIRST_SYSTEM, FIRST_SYSTEM + MOST_SYSTEMS) if system not in taken][:number]
-    facts: dict[str, Any] = {"organisation": organisation, "location": Point(10, 55, srid=4326), "allows_unsigned": True}
-    uavs = [Uav.objects.create(name=f"benchmark {system}", mavlink_system_id=system, **facts) for system in systems]
-    try:
-        yield uavs, user
-    finally:
-        keys = [uav.pk for uav in uavs]
-        with connection.cursor() as cursor:
-            cursor.execute("DELETE FROM telemetry_telemetryrecord WHERE uav_id = ANY(%s)", [keys])
-        Uav.objects.filter(pk__in=keys).delete()
-        user.delete()
-        organisation.delete()
-
-
-def run(number: int, pages: int, seconds: float) -> Run:
+def run(user: User, lines: list[Line], pages: int, seconds: float) -> Run:
+    put_under_way(lines)
     udp = free_port()
-    with fleet(number) as (uavs, user), front_door() as (port, programs), gateway(udp) as program:
-        programs["gateway"] = program.pid
+    with front_door() as (port, programs), gateway(udp) as program, running([sys.executable, "manage.py", "run_estimator"]) as estimator:
+        programs |= {"gateway": program.pid, "estimator": estimator.pid}
         time.sleep(WARM_UP_S)
         began_s = time.monotonic()
         command = [sys.executable, "-m", "benchmarks.live_clients", "--port", str(port), "--began", str(began_s)]
         clients = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         if clients.stdin is None or clients.stdout is None:
             raise SystemExit("the pages do not open")
+        clients.stdin.write(json.dumps({line.uav_id: round(line.lon * PER_DEGREE) for line in lines}) + "\n")
         clients.stdin.write(" ".join(cookie_of(user) for _ in range(pages)) + "\n")
         clients.stdin.flush()
         clients.stdout.readline()
@@ -197,29 +188,22 @@ def run(number: int, pages: int, seconds: float) -> Run:
         before_s = {name: cpu_s(pid) for name, pid in programs.items()}
         context = multiprocessing.get_context("spawn")
         told: Any = context.Queue()
-        systems = [uav.mavlink_system_id for uav in uavs]
-        player = context.Process(target=play, args=(udp, systems, seconds, began_s, told))
+        player = context.Process(target=play, args=(udp, lines, seconds, began_s, told))
         player.start()
         sent = told.get()
         cores = {name: (cpu_s(pid) - before_s[name]) / seconds for name, pid in programs.items()}
         player.join()
+        estimated, alerts = UavWatch.objects.filter(estimated__isnull=False).count(), Alert.objects.count()
         time.sleep(SETTLES_S)
         clients.stdin.write("\n")
         clients.stdin.flush()
         saw = json.loads(clients.stdout.readline())
         clients.wait(30)
-        stored = TelemetryRecord.objects.filter(uav__in=uavs).count()
-    by_uav = {str(uav.pk): set(sent[uav.mavlink_system_id]) for uav in uavs}
-    return _summed(number, pages, by_uav, stored, saw, cores, seconds)
-
-
-def _summed(
-    number: int, pages: int, sent: dict[str, set[int]], stored: int, saw: list[dict[str, Any]], cores: dict[str, float], seconds: float
-) -> Run:
+        stored = TelemetryRecord.objects.count()
     all_sent = sum(len(reports) for reports in sent.values())
-    shares = [sum(len(reports & set(page["seen"].get(uav, []))) for uav, reports in sent.items()) / all_sent for page in saw]
+    shares = [sum(len(set(reports) & set(page["seen"].get(str(uav), []))) for uav, reports in sent.items()) / all_sent for page in saw]
     return Run(
-        uavs=number,
+        uavs=len(lines),
         pages=pages,
         sent=all_sent,
         stored=stored,
@@ -229,6 +213,8 @@ def _summed(
         waits_ms=[wait for page in saw for wait in page["waits_ms"]],
         cores=cores,
         kilobytes_s=sum(page["bytes"] for page in saw) / pages / seconds / 1000,
+        estimated=estimated,
+        alerts=alerts,
     )
 
 
@@ -242,15 +228,17 @@ HEAD = [
     "p95 ms",
     "p99 ms",
     "kB/s a page",
-    "cores: gateway, live, nginx, pages",
+    "alerts",
+    "cores: gateway, estimator, live, nginx, pages",
 ]
 
 
 def cells(done: Run) -> list[str]:
-    cores = ", ".join(f"{done.cores[name]:.2f}" for name in ("gateway", "live", "nginx", "pages"))
+    cores = ", ".join(f"{done.cores[name]:.2f}" for name in ("gateway", "estimator", "live", "nginx", "pages"))
     waits = [f"{done.wait_ms(percent):.0f}" for percent in (50, 95, 99)]
     lost = f"{done.sent - done.stored}"
-    return [str(done.uavs), str(done.pages), f"{done.sent:,}", lost, f"{done.seen_share:.2%}", *waits, f"{done.kilobytes_s:.0f}", cores]
+    told = f"{done.kilobytes_s:.0f}"
+    return [str(done.uavs), str(done.pages), f"{done.sent:,}", lost, f"{done.seen_share:.2%}", *waits, told, str(done.alerts), cores]
 
 
 def main() -> None:
@@ -261,19 +249,20 @@ def main() -> None:
     parser.add_argument("--curve", action="store_true", help="smaller and larger loads as well")
     parser.add_argument("--write", action="store_true", help="into docs/performance.md")
     options = parser.parse_args()
+    loads = [(options.uavs, options.pages, options.seconds), *([(*load, CURVE_S) for load in CURVE] if options.curve else [])]
     runs = []
-    for uavs, pages, seconds in [
-        (options.uavs, options.pages, options.seconds),
-        *([(*load, CURVE_S) for load in CURVE] if options.curve else []),
-    ]:
-        runs.append(run(uavs, pages, seconds))
-        print(" | ".join(cells(runs[-1])), runs[-1].errors[:3] or "", flush=True)
+    with own_database():
+        user, lines = make_site(max(uavs for uavs, _, _ in loads))
+        for uavs, pages, seconds in loads:
+            runs.append(run(user, lines[:uavs], pages, seconds))
+            print(" | ".join(cells(runs[-1])), runs[-1].errors[:3] or "", flush=True)
     asked = runs[0]
     text = (
-        f"`python -m benchmarks.live_pages`: {asked.uavs} UAVs that report once a second and {asked.pages} open pages for "
-        f"{options.seconds:.0f} s; of a datagram's way to the browser 95 of 100 took at most {asked.wait_ms(95):.0f} ms, "
-        f"{asked.sent - asked.stored} were lost. Everything ran on this machine: UAVs, gateway, PostgreSQL, Redis, the websocket program, "
-        f"nginx, and the pages. {machine('granian', 'channels', 'redis', 'pymavlink', 'psycopg', 'django')}"
+        f"`python -m benchmarks.live_pages`: {asked.uavs} UAVs on approved missions of {UAVS_A_MISSION}, which report once a second, and "
+        f"{asked.pages} open pages for {options.seconds:.0f} s; of a datagram's way to the browser 95 of 100 took at most "
+        f"{asked.wait_ms(95):.0f} ms, {asked.sent - asked.stored} were lost. Everything ran on this machine: UAVs, gateway, estimator, "
+        "PostgreSQL, Redis, the websocket program, nginx, and the pages. "
+        f"{machine('granian', 'channels', 'redis', 'pymavlink', 'psycopg', 'django')}"
     )
     text += "\n\n" + table(HEAD, [cells(done) for done in sorted(runs, key=lambda done: (done.uavs, done.pages))])
     print(text)

@@ -1,4 +1,4 @@
-"""The Celery application: queues `data` (imports, graph) and `planning` (large plans)."""
+"""The Celery application: queues `data` (imports, graph), `planning` (large plans) and `simulation` (rehearsals)."""
 
 import os
 

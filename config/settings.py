@@ -254,6 +254,8 @@ SPECTACULAR_SETTINGS = {
         "GapState": "inspection.models.GapState",
         "MissionState": "missions.models.MissionState",
         "OfferState": "missions.models.OfferState",
+        "VerdictLevel": "simulation.models.VerdictLevel",
+        "AlertLevel": "telemetry.models.AlertLevel",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
         "UavFigure": "missions.fleet_selectors.FIGURES",
@@ -300,6 +302,7 @@ CELERY_TASK_ROUTES = {
     "missions.tasks.expire_commands": {"queue": "data"},
     "missions.tasks.look_after_offers": {"queue": "data"},
     "missions.tasks.*": {"queue": "planning"},
+    "simulation.tasks.*": {"queue": "simulation"},
 }
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
@@ -377,6 +380,7 @@ GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
 GATEWAY_MOST_COMMANDS = int(_float("SPANWISE_GATEWAY_MOST_COMMANDS", 200))  # carried at once, above which speeds wait
+GATEWAY_ALONE_S = _float("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
 GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
 LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
@@ -399,6 +403,7 @@ VEHICLE_COMMAND_RULES = VehicleCommandRules(
 )
 TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
+MOST_OPEN_REHEARSALS = int(_float("SPANWISE_MOST_OPEN_REHEARSALS", 4))  # of one user, waiting and running
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 

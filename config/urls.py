@@ -6,6 +6,7 @@ from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerSplitVie
 
 from config.health import healthz, readyz
 
+admin.autodiscover()
 urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("missions.urls")),  # first, with what is asked for most: addresses are tried one after the other
     path("healthz", healthz),
@@ -15,6 +16,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),
     path("api/v1/", include("telemetry.urls")),
+    path("api/v1/", include("simulation.urls")),
     path("", include("workspace.page_urls")),
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),

@@ -15,4 +15,3 @@ warm_up()  # before the first request comes in
 # What is there by now stays: the collector need not walk through graphs and models again for each few plans.
 gc.collect()
 gc.freeze()
-gc.set_threshold(50_000, 20, 50)

@@ -4,7 +4,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from uuid import UUID
 
-from missions.models import Approval, CommandKind, CommandState, LinkKind, MissionState, UavCommand
+from django.db.models import Q
+
+from missions.models import Approval, CommandKind, CommandState, LinkKind, MissionState, Route, UavCommand
 from workspace.prepared import prepared_rows
 
 FLOWN_IN = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
@@ -68,3 +70,9 @@ def number_of_flights(uav_id: int, approval: Approval) -> int:
     """Of this UAV's route, as approved."""
     (route,) = [route for route in approval.document["routes"] if route["uav"] == uav_id]
     return len(route["flights"])
+
+
+def is_end_known(uav_id: int, approval: Approval, flight: int) -> bool:
+    """Whether this flight of the UAV's route, from 1 on, has been told to be over before."""
+    routes = Route.objects.filter(mission=approval.mission_id, mission_uav__uav=uav_id)
+    return routes.filter(Q(has_failed=True) | Q(flights_flown__gte=flight)).exists()

@@ -146,6 +146,7 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
         ),
         _worker(places, "data", 1),
         _worker(places, "planning", max(1, min(4, (os.cpu_count() or 2) - 1))),
+        _worker(places, "simulation", 1),
         _gateway(places),
         _estimator(places),
         _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from inspection.graph.detours import detours, gaps
 from inspection.graph.edges import NO_ASSET, Edges, component_labels, joined
-from inspection.graph.flown_heights import FlownHeights, FlownNodes
+from inspection.graph.flown_heights import FlownHeights
+from inspection.graph.flown_nodes import FlownNodes
 from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.graph.links import bridge_to_tower_links, railway_to_tower_links
 from inspection.graph.network import Network, Nodes, put_together

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.graph.edges import NO_ASSET, Edges, component_labels
-from inspection.graph.flown_heights import FlownHeights, FlownNodes
+from inspection.graph.flown_heights import FlownHeights
+from inspection.graph.flown_nodes import FlownNodes
 from inspection.graph.inspection_graph import EdgeKind
 from inspection.graph.nearness import on_unit_sphere
 from inspection.graph.round_zones import Errand, WayRound, ways_round

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from inspection.graph.detours import Gap
 from inspection.graph.edges import Edges, component_labels, edges_of
-from inspection.graph.flown_heights import FlownNodes
+from inspection.graph.flown_nodes import FlownNodes
 from inspection.graph.ground_data import Ways
 from inspection.graph.inspection_graph import EdgeKind
 from inspection.graph.nearness import nearest_within, pairs_within

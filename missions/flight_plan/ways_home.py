@@ -19,7 +19,7 @@ from missions.flight_plan.waypoints import FloatArray, IntArray
 
 LOOKED_AT_EVERY_M = 50.0  # along the flight
 ROUNDING_M = 0.5  # heights are stored in tenths, and kept in centimetres
-Level = Callable[[float, float, float, bool], float]  # of the height at a place, the way's length, the haven's height, is it a rally point
+Level = Callable[[float, float, float], float]  # of the height at a place, the way's length, the haven's height
 
 
 class InTheWay(StrEnum):
@@ -137,7 +137,7 @@ class WaysHome:
 
     def levels_m(self, level: Level) -> FloatArray:
         rows = zip(self.places.height_m.tolist(), self.away_m.tolist(), strict=True)
-        return np.array([level(height_m, away_m, self.haven.height_m, self.haven.is_rally) for height_m, away_m in rows])
+        return np.array([level(height_m, away_m, self.haven.height_m) for height_m, away_m in rows])
 
     def most_agl_m(self, levels_m: FloatArray) -> float:
         """How high above the ground it would come anywhere."""

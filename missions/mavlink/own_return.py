@@ -1,52 +1,56 @@
-"""How high an autopilot flies home by itself, as its parameters say.
+"""Where and how high an autopilot flies home by itself, as its parameters say. Heights count from where it took off.
 
-Read in ArduCopter's mode_rtl.cpp and PX4's rtl.cpp. Heights count from where it took off.
+Sources. ArduPilot/ardupilot: ArduCopter/mode_rtl.cpp (compute_return_target), libraries/AP_Rally/AP_Rally.cpp,
+libraries/AC_Avoidance/AP_OAPathPlanner.cpp; in January 2026 metres took the place of centimetres (convert_params there). Its RTL_OPTIONS
+concern the pilot's yaw alone. PX4/PX4-Autopilot: src/modules/navigator/rtl.cpp (computeReturnAltitude, findRtlDestination),
+rtl_params.yaml, geofence_avoidance_params.yaml.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 PX4, ARDUPILOT = "px4", "ardupilot"
-# Of each group a vehicle has one; ArduPilot has changed from centimetres to metres, and the names with it.
+# Of each group a vehicle has one; the first sets the height, the second says whether it flies straight at that height.
 PARAMETERS = {
-    PX4: (("RTL_RETURN_ALT",), ("RTL_MIN_DIST",), ("RTL_TYPE",)),
-    ARDUPILOT: (("RTL_ALT_M", "RTL_ALT"), ("RTL_CLIMB_MIN_M", "RTL_CLIMB_MIN"), ("RTL_CONE_SLOPE",), ("RTL_ALT_TYPE",)),
-}
+    PX4: (("RTL_RETURN_ALT",), ("RTL_TYPE",), ("RTL_MIN_DIST",), ("RTL_CONE_ANG",), ("NAV_ACC_RAD",), ("GF_AVOID_NODES",)),
+    ARDUPILOT: (
+        ("RTL_ALT_M", "RTL_ALT"), ("RTL_ALT_TYPE",), ("RTL_CLIMB_MIN_M", "RTL_CLIMB_MIN"), ("RTL_CONE_SLOPE",), ("OA_TYPE",),
+        ("RALLY_INCL_HOME",), ("RALLY_TOTAL",),
+        ("FENCE_ENABLE",), ("FENCE_AUTOENABLE",), ("FENCE_TYPE",), ("FENCE_ALT_MAX",), ("FENCE_MARGIN",),
+    ),
+}  # fmt: skip
 NAMES = {autopilot: frozenset(name for group in groups for name in group) for autopilot, groups in PARAMETERS.items()}
+BENDING = {PX4: ("RTL_TYPE", "GF_AVOID_NODES"), ARDUPILOT: ("RTL_ALT_TYPE", "OA_TYPE")}  # unless 0: over terrain, round fences, …
 IN_CENTIMETRES = frozenset({"RTL_ALT", "RTL_CLIMB_MIN"})
-USUAL_CONE_SLOPE, LEAST_CONE_SLOPE = 3.0, 0.5  # ArduPilot: below that there is no cone
-USUAL_MIN_DISTANCE_M = 10.0  # PX4
+LEAST_CONE_SLOPE = 0.5  # ArduPilot: below that there is no cone
+FENCES_HEIGHT = 1  # the bit of FENCE_TYPE
+# where it is not told
+USUAL = {"RTL_CONE_SLOPE": 3.0, "FENCE_MARGIN": 2.0, "RTL_MIN_DIST": 10.0, "RTL_CONE_ANG": 45.0, "NAV_ACC_RAD": 10.0}
 
 
 @dataclass(frozen=True)
 class OwnReturn:
-    """`parameter` sets `height_m`. `is_straight`: it flies straight at one level, and not over terrain or along a landing pattern.
+    """`parameter` sets `height_m`.
 
-    `climb_m` it climbs at least. Near home it does not climb so far: `cone_slope` metres for each metre away, or not at all within
-    `near_m`.
+    `bends_by` is the parameter by which it does not fly straight at one height, `untold` one that would say whether it does; empty: none.
+    `shuns_home`: it goes to a rally point although home is nearer. `rally_points` are those that it holds; None: it does not tell.
     """
 
-    autopilot: str
     parameter: str
     height_m: float
-    is_straight: bool = True
-    climb_m: float = 0.0
-    cone_slope: float | None = None
-    near_m: float = 0.0
+    bends_by: str = ""
+    untold: str = ""
+    shuns_home: bool = False
+    rally_points: int | None = None
 
-    def level_m(self, current_m: float, away_m: float, haven_m: float, *, is_rally: bool) -> float:
+    def level_m(self, current_m: float, away_m: float, haven_m: float) -> float:
         """From a place at `current_m`, so far away from where it goes, which is home (0) or a rally point at `haven_m`."""
-        least_m = current_m + self.climb_m
-        if self.autopilot == ARDUPILOT:
-            wanted_m = max(haven_m if is_rally else self.height_m, least_m)
-            if self.cone_slope is not None:
-                wanted_m = min(wanted_m, max(away_m * self.cone_slope, least_m))
-            return wanted_m
-        return least_m if away_m <= self.near_m else max(haven_m + self.height_m, least_m)
+        raise NotImplementedError
 
-    def at_height(self, height_m: float) -> "OwnReturn":
-        return OwnReturn(self.autopilot, self.parameter, height_m, self.is_straight, self.climb_m, self.cone_slope, self.near_m)
+    def at_height(self, height_m: float) -> Self:
+        return replace(self, height_m=height_m)
 
     def value_for(self, height_m: float) -> str:
         """As the parameter is to be set, rounded up: "4600 (46 m)" where it counts centimetres."""
@@ -54,23 +58,82 @@ class OwnReturn:
         return f"{metres * 100} ({metres} m)" if self.parameter in IN_CENTIMETRES else f"{metres} m"
 
 
+@dataclass(frozen=True)
+class CopterReturn(OwnReturn):
+    """ArduPilot's. `climb_m` it climbs at least; `cone_slope` is the metres that it climbs at most for each metre away.
+
+    Its fence lowers it to `ceiling_m`, but never takes it down from where it is.
+    """
+
+    climb_m: float = 0.0
+    cone_slope: float | None = None
+    ceiling_m: float | None = None
+
+    def level_m(self, current_m: float, away_m: float, haven_m: float) -> float:
+        least_m = current_m + self.climb_m
+        wanted_m = max(haven_m, self.height_m, least_m)
+        if self.cone_slope is not None:
+            wanted_m = min(wanted_m, max(away_m * self.cone_slope, least_m))
+        if self.ceiling_m is not None:
+            wanted_m = min(wanted_m, self.ceiling_m)
+        return max(wanted_m, current_m)
+
+
+@dataclass(frozen=True)
+class Px4Return(OwnReturn):
+    """Within `near_m` of where it goes it stays in a cone of so many degrees beside the plumb line (0: no cone); within `accepted_m` it is
+    as good as there.
+    """
+
+    near_m: float = USUAL["RTL_MIN_DIST"]
+    cone_deg: float = USUAL["RTL_CONE_ANG"]
+    accepted_m: float = USUAL["NAV_ACC_RAD"]
+
+    def level_m(self, current_m: float, away_m: float, haven_m: float) -> float:
+        return max(current_m, haven_m + min(self.height_m, self._above_haven_m(away_m)))
+
+    def _above_haven_m(self, away_m: float) -> float:
+        if self.cone_deg <= 0.0:
+            return math.inf
+        if away_m <= self.accepted_m:
+            return 2.0 * away_m
+        if away_m > self.near_m:
+            return math.inf
+        return max(away_m / math.tan(math.radians(min(max(self.cone_deg, 1.0), 89.0))), 2.0 * self.accepted_m)
+
+
 def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | None:
     """Of the parameters as the vehicle told them; None where it has not told its height."""
     groups = PARAMETERS.get(autopilot)
     if groups is None:
         return None
-    told = [next(((name, _metres(name, parameters[name])) for name in group if name in parameters), None) for group in groups]
-    if told[0] is None:
+    height, straight, *_ = groups
+    parameter = next((name for name in height if name in parameters), None)
+    if parameter is None:
         return None
-    parameter, height_m = told[0]
-    values = [None if one is None else one[1] for one in told[1:]]
+    values = USUAL | {name: value / 100.0 if name in IN_CENTIMETRES else value for name, value in parameters.items()}
+    bends_by = next((f"{name} {values[name]:g}" for name in BENDING[autopilot] if values.get(name)), "")
+    untold = "" if straight[0] in parameters else straight[0]
     if autopilot == PX4:
-        near_m, kind = values
-        return OwnReturn(PX4, parameter, height_m, not kind, near_m=USUAL_MIN_DISTANCE_M if near_m is None else max(near_m, 0.0))
-    climb_m, slope, kind = values
-    slope = USUAL_CONE_SLOPE if slope is None else slope
-    return OwnReturn(ARDUPILOT, parameter, height_m, not kind, max(climb_m or 0.0, 0.0), slope if slope >= LEAST_CONE_SLOPE else None)
+        return Px4Return(
+            parameter, values[parameter], bends_by, untold,
+            near_m=values["RTL_MIN_DIST"], cone_deg=values["RTL_CONE_ANG"], accepted_m=values["NAV_ACC_RAD"],
+        )  # fmt: skip
+    slope = values["RTL_CONE_SLOPE"]
+    return CopterReturn(
+        parameter,
+        values[parameter],
+        bends_by,
+        untold,
+        shuns_home=values.get("RALLY_INCL_HOME") == 0.0,
+        rally_points=int(values["RALLY_TOTAL"]) if "RALLY_TOTAL" in values else None,
+        climb_m=max(values.get("RTL_CLIMB_MIN_M", values.get("RTL_CLIMB_MIN", 0.0)), 0.0),
+        cone_slope=slope if slope >= LEAST_CONE_SLOPE else None,
+        ceiling_m=_ceiling_m(values),
+    )
 
 
-def _metres(name: str, value: float) -> float:
-    return value / 100.0 if name in IN_CENTIMETRES else value
+def _ceiling_m(values: Mapping[str, float]) -> float | None:
+    """Of a fence that is on, or put on at the take-off."""
+    is_on = bool(values.get("FENCE_ENABLE") or values.get("FENCE_AUTOENABLE")) and int(values.get("FENCE_TYPE", 0)) & FENCES_HEIGHT
+    return values["FENCE_ALT_MAX"] - values["FENCE_MARGIN"] if is_on and "FENCE_ALT_MAX" in values else None

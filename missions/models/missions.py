@@ -171,6 +171,7 @@ class InspectionTarget(models.Model):
     state_reason = models.CharField(max_length=300, blank=True, default="", db_default="", help_text="why it was skipped or failed")
     unassigned_reason = models.CharField(max_length=40, blank=True)
     unassigned_message = models.CharField(max_length=500, blank=True)
+    unassigned_missing = models.JSONField(default=dict, db_default={}, blank=True, help_text="what the message tells to be missing")
 
     class Meta:
         ordering = ["sequence"]

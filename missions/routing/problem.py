@@ -362,12 +362,16 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True)
 class Unassigned:
-    """missing: metres or Wh that the UAV which comes nearest to it lacks, 0 where it is in reach alone; None for other reasons."""
+    """missing: metres or Wh that the UAV which comes nearest to it lacks, 0 where it is in reach alone; None for other reasons.
+
+    `uav` is the one that lacks them, by its number in the problem with a row for each UAV.
+    """
 
     target: int
     reason: Reason
     message: str
     missing: float | None = None
+    uav: int | None = None
 
 
 @dataclass(frozen=True)

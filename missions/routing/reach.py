@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,10 +11,19 @@ from missions.routing.least_route import LeastRoutes
 from missions.routing.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
 from missions.routing.quantities import NO_WAY_M, Kind, classes_of, quantities_of
 
-_Told = tuple[Reason, str, float | None]  # with what is missing
+
+class Told(NamedTuple):
+    """A reason with its sentence; what is missing, and which row of the problem comes so near."""
+
+    reason: Reason
+    message: str
+    missing: float | None = None
+    uav: int | None = None
+
+
 _THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
-RANGE_ALONE: _Told = (Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0)
-NOT_ON_ONE_ROUTE: _Told = (Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.", None)
+RANGE_ALONE = Told(Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0)
+NOT_ON_ONE_ROUTE = Told(Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.")
 
 
 def needed_range_m(problem: Problem) -> FloatArray:
@@ -139,7 +149,9 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
             able = able & _within_battery(problem, used_wh[:, visits])
             if not able.any():
                 told = _beyond_battery(problem, used_wh, within_range, visits)
-        found.append(Unassigned(target, *(told or _beyond_rest(problem, able, done, visits))))
+        told = told or _beyond_rest(problem, able, done, visits)
+        nearest = None if told.uav is None else list(dict.fromkeys(owner)).index(owner[told.uav])
+        found.append(Unassigned(target, told.reason, told.message, told.missing, nearest))
     return tuple(found)
 
 
@@ -155,15 +167,15 @@ def _on_one_route(problem: Problem, kind: Kind, needed: FloatArray, visits: Sequ
     return exact
 
 
-def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> _Told | None:
+def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Told | None:
     """Why no UAV gets there at all; None if one does, if its battery lasts."""
     needed_m, within = needed_m[:, visits], within_range[:, visits]
     if not len(problem.uavs):
-        return Reason.NO_PATH, "There is no UAV that can take off.", None
+        return Told(Reason.NO_PATH, "There is no UAV that can take off.")
     if visits and problem.allowed is not None and not problem.allowed[:, visits].any():
-        return Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to.", None
+        return Told(Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to.")
     if not np.isfinite(needed_m).any():
-        return Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone.", None
+        return Told(Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone.")
     if within.any():
         return None
     limit_m = np.array([uav.limit_m for uav in problem.uavs])
@@ -172,10 +184,10 @@ def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArra
     there = _THERE[problem.uavs[uav].end]
     needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
     message = f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
-    return Reason.BEYOND_RANGE, message, float(missing_m[uav, visit])
+    return Told(Reason.BEYOND_RANGE, message, float(missing_m[uav, visit]), int(uav))
 
 
-def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> _Told:
+def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Told:
     """Of the UAVs that have the range, the one that lacks least."""
     limit_wh = np.array([uav.limit_wh for uav in problem.uavs])
     within = within_range[:, visits]
@@ -184,18 +196,18 @@ def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArr
     needed, missing = used_wh[uav, visits[int(visit)]], float(missing_wh[uav, visit])
     there = _THERE[problem.uavs[uav].end]
     said = f"It takes {needed:,.1f} Wh {there}, {missing:,.1f} Wh more than the battery of the UAV that comes nearest to it may give."
-    return Reason.BEYOND_ENERGY, said, missing
+    return Told(Reason.BEYOND_ENERGY, said, missing, int(uav))
 
 
-def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> _Told:
+def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> Told:
     """Why it is left out though some UAV could do it alone."""
     able_uavs = np.flatnonzero(able.any(axis=1)).tolist()
     if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able_uavs):
-        return Reason.MOST_TARGETS, "Each UAV that can do it has as many targets as it may have.", None
+        return Told(Reason.MOST_TARGETS, "Each UAV that can do it has as many targets as it may have.")
     has_range = any(problem.uavs[uav].max_range_m is not None for uav in able_uavs)
     if any(problem.uavs[uav].limit_wh < math.inf for uav in able_uavs):
         alone = "within range and battery" if has_range else "within what the battery may give"
-        return Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets.", 0.0
+        return Told(Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets.", 0.0)
     if has_range:
         return RANGE_ALONE
     return NOT_ON_ONE_ROUTE

@@ -1,17 +1,22 @@
 """Missions from rows to the shapes of the API."""
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from inspection.selectors import asset_detail, asset_label
 from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
 from missions.flight_plan.performance import performance_from_json, performance_to_json
+from missions.flight_plan.waypoints import KINDS, NONE
 from missions.list_selectors import sketch
-from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, WaypointKind
+from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
 from missions.selectors import approval_in_force, open_plan_of_mission
 from missions.serializers.commands import approval_json
-from missions.services import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
+from missions.services import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
 from missions.services.missions import EDITABLE
 from missions.services.requests import lost_link_from_json, lost_link_to_json
+from missions.services.straight_line import straight_json
 from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
 from missions.uav_change_selectors import uav_change_json, uav_changes
 
@@ -45,7 +50,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
         "targets": [_target(row) for row in mission.targets.all()],
         "plan": _plan(mission),
-        "last_plan": mission.last_plan,
+        "last_plan": mission.last_plan and {name: value for name, value in mission.last_plan.items() if name != "by_hand"},
         "planning_job": open_plan_of_mission(mission),
         "approval": _approval(mission),
     }
@@ -162,11 +167,23 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "warnings": mission.plan_warnings,
         "routes": [_route(route, mission, sequence_of) for route in mission.routes.all()],
         "unassigned": [
-            {"target": target.sequence, "reason": target.unassigned_reason, "message": target.unassigned_message}
+            {
+                "target": target.sequence,
+                "reason": target.unassigned_reason,
+                "message": target.unassigned_message,
+                **(NO_SHORTFALL | target.unassigned_missing),
+            }
             for target in mission.targets.all()
             if target.unassigned_reason
         ],
     }
+
+
+def _straight(waypoints: Sequence[Waypoint], length_m: float) -> dict[str, float]:
+    position = np.array([waypoint.position.coords[:2] for waypoint in waypoints], dtype=np.float64)
+    kind = np.array([KINDS.index(WaypointKind(waypoint.kind).value) for waypoint in waypoints], dtype=np.int64)
+    target = np.array([NONE if waypoint.target_id is None else waypoint.target_id for waypoint in waypoints], dtype=np.int64)
+    return straight_json(position, kind, target, length_m)
 
 
 def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[str, Any]:
@@ -196,6 +213,7 @@ def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[
         "hand_steps": len(route.before_hand),
         "targets": targets,
         "locked": locked_targets(targets, (lock["targets"] for lock in mission.locks if lock["uav"] == uav.name)),
+        "explanation": _straight(waypoints, route.length_m) if waypoints else None,
         "geometry": {"type": "LineString", "coordinates": [list(at) for at in route.geometry.coords]} if route.geometry else None,
         "waypoints": [
             {

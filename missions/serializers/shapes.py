@@ -44,6 +44,13 @@ class HandSpeedSerializer(serializers.Serializer):
     speed_mps = serializers.FloatField(help_text="over ground")
 
 
+class StraightSerializer(serializers.Serializer):
+    """The short of a route's explanation; the long is asked for: `GET /missions/{id}/explanation`, `POST /plans/why-route`."""
+
+    straight_m = serializers.FloatField(help_text="from target to target as the crow flies, stretches along the line")
+    more_m = serializers.FloatField(help_text="what is flown beyond that: along the lines, round zones and what stands tall")
+
+
 class RouteSerializer(serializers.Serializer):
     """One UAV's part, in the order of the request's UAVs."""
 
@@ -72,6 +79,7 @@ class RouteSerializer(serializers.Serializer):
     hand_steps = serializers.IntegerField(help_text="how many changes by hand can be taken back, the last one first")
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order of the visits")
     locked = serializers.ListField(child=serializers.IntegerField(), help_text="those of them that were locked to this UAV")
+    explanation = StraightSerializer(allow_null=True, help_text="null when the UAV is not used")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
     waypoints = WaypointSerializer(many=True)
 
@@ -84,11 +92,18 @@ class UnassignedSerializer(serializers.Serializer):
             "beyond_energy", "wind", "most_targets",
         ]
     )  # fmt: skip
-    message = serializers.CharField()
+    message = serializers.CharField(help_text="with what is missing, where that has a number, and the minutes of flight that it is")
+    missing_m = serializers.FloatField(allow_null=True, help_text="of range, for the UAV that comes nearest to it")
+    missing_wh = serializers.FloatField(allow_null=True, help_text="of the battery, for the UAV that comes nearest to it")
+    missing_s = serializers.FloatField(
+        allow_null=True, help_text="these as seconds of level flight of that UAV at its speed, in calm air of 1.225 kg/m3"
+    )
 
 
 class WarningSerializer(serializers.Serializer):
-    code = serializers.ChoiceField(choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated", "shortest_ways"])
+    code = serializers.ChoiceField(
+        choices=["uav_inside_zone", "uav_out_of_service", "airspeed_not_stated", "shortest_ways", "by_hand_not_kept"]
+    )
     uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV; null: of the whole plan")
     message = serializers.CharField()
 
@@ -120,6 +135,12 @@ class QualitySerializer(serializers.Serializer):
     lower_bound_wh = serializers.FloatField(allow_null=True, help_text="of the energy of all; null where it does not count")
     gap = serializers.FloatField(allow_null=True, help_text="the share of the plan's value above the bound, 0 to 1; null: not known")
     is_proven = serializers.BooleanField(help_text="no plan is better")
+    gap_of = serializers.ChoiceField(
+        choices=["all_plans", "without_timed_zones"],
+        required=False,
+        help_text="the plans of which bound and gap speak; without_timed_zones: those that keep clear only of zones in force all the time "
+        "of the longest flight, along the ways preferred there; not there in plans of before",
+    )
     method = serializers.CharField(help_text="how it was found; empty: not known")
     wish = WishSerializer(allow_null=True, help_text="null where nothing is locked")
 

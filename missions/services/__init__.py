@@ -30,7 +30,7 @@ from missions.services.missions import (
     restore_mission,
 )
 from missions.services.places import places_of
-from missions.services.plan_json import FLAT_GROUND, NO_QUALITY, TERRAIN_MODEL, locked_targets
+from missions.services.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
 from missions.services.planning import GraphOutdated, make_plan
 from missions.services.requests import (
     CALM,
@@ -55,6 +55,7 @@ __all__ = [
     "CALM",
     "FLAT_GROUND",
     "NO_QUALITY",
+    "NO_SHORTFALL",
     "TERRAIN_MODEL",
     "BaseRequest",
     "Charging",

@@ -27,7 +27,7 @@ from missions.models import (
     UavCommand,
 )
 from missions.selectors import approval_in_force, mission_of_organisation
-from missions.services.approval_checks import reasons_against
+from missions.services.approval_checks import further_reasons, reasons_against
 from missions.services.approval_document import approval_document, content_sha256
 from missions.services.missions import MissionChanged, note
 from missions.services.outbox import end_commands, queue_command
@@ -39,8 +39,17 @@ REVOKED = "revoked"
 OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 
 
-def approve_mission(*, mission: Mission, actor: User, expected_revision: int | None = None, longest_leg_m: float | None = None) -> Approval:
+def approve_mission(
+    *,
+    mission: Mission,
+    actor: User,
+    expected_revision: int | None = None,
+    longest_leg_m: float | None = None,
+    is_under_way: bool = False,
+) -> Approval:
     """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so.
+
+    What later apps ask for is not asked of one that takes over while UAVs are in the air: they cannot wait for a rehearsal.
 
     With `longest_leg_m` autopilots are given points on each leg that is longer; they fly the same lines.
     """
@@ -52,7 +61,7 @@ def approve_mission(*, mission: Mission, actor: User, expected_revision: int | N
             raise refuse("not_planned", _("Only a planned mission can be approved."))
         checked_revision = held_ground_revision()
         loaded = mission_of_organisation(held.organisation, held.pk)
-        refuse_for(reasons_against(loaded, now=timezone.now()))
+        refuse_for([*reasons_against(loaded, now=timezone.now()), *([] if is_under_way else further_reasons(loaded))])
         document = approval_document(loaded, longest_leg_m=longest_leg_m)
         if document["ground"]["revision"] != checked_revision:
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))

@@ -17,6 +17,7 @@ from missions.routing.solver import PROVEN_GAP, Stop, solve
 from missions.routing.sorties import merit_of
 from missions.routing.terminals import Ways
 from missions.services.places import Place
+from missions.services.plan_json import ALL_PLANS, WITHOUT_TIMED_ZONES
 from missions.services.refusals import Grounding
 from missions.services.requests import LockRequest, PlanRequest, UavRequest
 from missions.services.wishes import may_do
@@ -224,17 +225,17 @@ def quality_of(
     search does not count (climbs over hills and tall assets, where no battery or wind makes it count them) makes routes longer than it
     thought, and the gap wider: a plan is proven only if its finished routes are.
 
-    Where zones are in force for a part of the flight, `solution` is that on the fewest zones, and share_of_freest what it is worth
-    beside this plan: as far as it is better, this plan is not proven. None: it leaves out other targets, and tells nothing.
+    Where zones are in force for a part of the flight, `solution` is that on those alone that are so all the time, and share_of_freest
+    what it is worth beside this plan. As far as it is better, this plan is not proven, and bound and gap are of plans that keep clear of
+    those zones alone, along the ways that are preferred there. None: it leaves out other targets, and tells nothing.
     """
     bound: float | None = min(solution.lower_bound, value)
     gap: float | None = solution.gap
-    is_proven = solution.is_proven
+    is_proven, gap_of = solution.is_proven, ALL_PLANS
     if share_of_freest is None:
         bound, gap, is_proven = None, None, False
     elif share_of_freest < 1.0 - PROVEN_GAP:
-        bound = value * share_of_freest * (1.0 - solution.gap)
-        gap, is_proven = 1.0 - share_of_freest * (1.0 - solution.gap), False
+        gap, is_proven, gap_of = (value - bound) / value, False, WITHOUT_TIMED_ZONES
     elif value - _own_value(solution, objective) > UNCOUNTED[objective]:
         gap, is_proven = (value - bound) / value, False
     in_seconds = objective in (Objective.MAKESPAN, Objective.TIME)
@@ -244,6 +245,7 @@ def quality_of(
         "lower_bound_wh": math.floor(bound * 100) / 100 if bound is not None and objective is Objective.ENERGY else None,
         "gap": None if gap is None else round(gap, 6),
         "is_proven": is_proven,
+        "gap_of": gap_of,
         "method": solution.method,
         "wish": None if cost is None else {name: value if value is None else round(value, 3) for name, value in vars(cost).items()},
     }

@@ -7,21 +7,24 @@ from uuid import UUID
 
 from django.db import transaction
 
+from missions.command_rules import HAND_OVER
 from missions.models import CommandKind, Mission, UavCommand
 from missions.services import outbox
 from missions.services.approval import finish_revocation
 from missions.services.flying import mark_started
-from missions.services.handover import HAND_OVER, go_on_after
+from missions.services.handover import go_on_after
 from missions.services.outbox import (
     CHANNEL,
     claim_commands,
     expire_overdue,
+    is_wanted,
     note_acknowledged,
     note_failed,
     note_progress,
     note_read_back,
     note_released,
     note_sent,
+    note_sent_unheard,
     queue_command,
     release_claims_of_others,
     renew_claims,
@@ -31,6 +34,7 @@ __all__ = [
     "CHANNEL",
     "claim_commands",
     "expire_overdue",
+    "is_wanted",
     "note_acknowledged",
     "note_applied",
     "note_failed",
@@ -38,6 +42,7 @@ __all__ = [
     "note_read_back",
     "note_released",
     "note_sent",
+    "note_sent_unheard",
     "queue_command",
     "release_claims_of_others",
     "renew_claims",

@@ -53,8 +53,12 @@ class NotDeleted(Exception):
 
 
 def locked(row: Row, expected_revision: int | None) -> Row:
-    """The row as it is now, held until the caller's transaction ends. Raises FleetChanged."""
-    held = type(row)._default_manager.select_for_update(no_key=True).filter(pk=row.pk).first()
+    """The row as it is now, held until the caller's transaction ends. Raises FleetChanged.
+
+    Also against rows that come to point at it, as a UAV's records do all the time: a name or a system id is a key, and who changes one
+    while he holds less than that, and a report of the UAV is being stored, is in its way, and it in his.
+    """
+    held = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
     if held is None or (expected_revision is not None and held.revision != expected_revision):
         raise FleetChanged(SUBJECTS[type(row)], row.pk)
     return held

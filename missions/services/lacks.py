@@ -13,6 +13,7 @@ from missions.services.least_lacks import IsClear, Lack, LeastLacks
 from missions.services.over_wires import NO_PATH, barred_text
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, UavRequest
+from missions.services.shortfall import of_battery, with_minutes
 from missions.services.unreached import LOCKED
 
 OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
@@ -76,15 +77,16 @@ def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
         if item.message == KEPT_BACK:
             return replace(told, missing=0.0)
         return _alone(item.target, request.uavs[least.uav])
-    return replace(told, message=_message(least, request), missing=least.missing)
+    shortfall = of_battery(request.uavs[least.uav], least.missing)
+    return replace(told, message=with_minutes(_message(least, request), shortfall), missing=least.missing, shortfall=shortfall)
 
 
 def _alone(target: int, uav: UavRequest) -> LeftOut:
     """What keeps it from the route of a UAV that could do it alone."""
     if uav.performance.usable_wh is not None:
         return LeftOut(target, Reason.BEYOND_ENERGY.value, ALONE, 0.0)
-    reason, message, _missing = NOT_ON_ONE_ROUTE if uav.max_range_m is None else RANGE_ALONE
-    return LeftOut(target, reason.value, message, 0.0)
+    told = NOT_ON_ONE_ROUTE if uav.max_range_m is None else RANGE_ALONE
+    return LeftOut(target, told.reason.value, told.message, 0.0)
 
 
 def _message(lack: Lack, request: PlanRequest) -> str:

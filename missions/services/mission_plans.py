@@ -12,7 +12,9 @@ from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.routing.solver import Stop
 from missions.services.best_so_far import OnPlanProgress
+from missions.services.kept_by_hand import keep_by_hand
 from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission
+from missions.services.plan_json import NO_SHORTFALL
 from missions.services.planning import make_plan
 from missions.services.requests import GO_ON, PlanRequest, request_from_json
 from missions.services.wishes import has_sensor, with_bases
@@ -26,6 +28,7 @@ QUALITY = (
     "lower_bound_wh",
     "gap",
     "is_proven",
+    "gap_of",
     "method",
     "wish",
 )  # of a plan's JSON, kept with its mission
@@ -126,6 +129,8 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
         locked.save()
         _store_routes(locked, plan)
         _store_left_out(locked, plan)
+        kept_by_hand = keep_by_hand(locked)
+        locked.save()
         record_change(
             organisation=locked.organisation,
             actor=actor,
@@ -138,6 +143,7 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
                 "total_length_m": locked.total_length_m,
                 "graph_version": locked.graph_version,
                 "unassigned": len(plan["unassigned"]),
+                "by_hand": kept_by_hand,
             },
         )
     return locked
@@ -202,4 +208,5 @@ def _store_left_out(mission: Mission, plan: dict[str, Any]) -> None:
     for row in rows:
         row.unassigned_reason = left_out[row.sequence]["reason"]
         row.unassigned_message = left_out[row.sequence]["message"][:500]
-    mission.targets.bulk_update(rows, ["unassigned_reason", "unassigned_message"])
+        row.unassigned_missing = {name: left_out[row.sequence].get(name) for name in NO_SHORTFALL}
+    mission.targets.bulk_update(rows, ["unassigned_reason", "unassigned_message", "unassigned_missing"])

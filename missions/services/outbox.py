@@ -16,12 +16,13 @@ from django.db.models import F, Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
 
-from missions.command_rules import axes_overtaken_by, axis_of, may_overtake, priority_of
+from missions.command_rules import HAND_OVER, axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
     CommandAxis,
     CommandKind,
+    CommandPriority,
     CommandState,
     LinkKind,
     Mission,
@@ -35,7 +36,7 @@ from workspace.models import User
 from workspace.services import record_change
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
-SUPERSEDED, NOT_DELIVERED, UNCONFIRMED = "superseded", "not-delivered", "unconfirmed"
+SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNHEARD = "superseded", "not-delivered", "unconfirmed", "unheard"
 
 _CLAIM = """
     WITH wanted AS (
@@ -44,6 +45,7 @@ _CLAIM = """
             AND (%s::text IS NULL OR (link = %s::text
                 AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = uav_id AND uav.link = %s::text)))
             AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
+            AND (NOT %s OR (priority = %s AND NOT parameters ? %s))
             AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
             AND (expires_at IS NULL OR expires_at > statement_timestamp())
         ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
@@ -118,17 +120,21 @@ def claim_commands(
     limit: int,
     link: LinkKind | None = None,
     axes: Collection[CommandAxis] | None = None,
+    to_unheard: bool = False,
 ) -> list[UavCommand]:
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
 
-    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these.
+    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these; `to_unheard` only
+    those that are right for a UAV of which nothing is heard: what makes it safe, and is no step that others are to follow.
 
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
     about = None if axes is None else [str(axis) for axis in axes]
     with transaction.atomic():
-        found = list(UavCommand.objects.raw(_CLAIM, [list(uav_ids), link, link, link, about, about, limit, holder, lease_s]))
+        unheard = [to_unheard, CommandPriority.SAFETY, HAND_OVER]
+        values = [list(uav_ids), link, link, link, about, about, *unheard, limit, holder, lease_s]
+        found = list(UavCommand.objects.raw(_CLAIM, values))
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
 
 
@@ -155,8 +161,20 @@ def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
 
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
-    still_wanted = Q(expires_at=None) | Q(expires_at__gt=Now())
-    return _note(command_id, attempt, holder, CommandState.SENT, {"sent_at": Coalesce("sent_at", Now())}, only=still_wanted)
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": "", "outcome": ""}
+    return _note(command_id, attempt, holder, CommandState.SENT, now, only=_wanted())
+
+
+def note_sent_unheard(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """It goes out now and again, to a UAV of which nothing is heard. False also once nobody wants it any more."""
+    words = "Sent; nothing is heard from the UAV."
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNHEARD, "outcome": words}
+    return _note(command_id, attempt, holder, CommandState.SENT, now, words, only=_wanted())
+
+
+def is_wanted(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """Whether it is still held, and its time not over."""
+    return _held(command_id, attempt, holder).filter(_wanted()).exists()
 
 
 def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
@@ -232,6 +250,10 @@ def _refuse_to_overtake(uav: Uav, kind: CommandKind, commands: QuerySet[UavComma
     if not all(may_overtake(kind, other) for other in unfinished):
         words = _("A safer command to %(uav)s is not done yet: this one cannot take its place.")
         raise refuse("safety_first", words % {"uav": uav.name})
+
+
+def _wanted() -> Q:
+    return Q(expires_at=None) | Q(expires_at__gt=Now())
 
 
 def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:

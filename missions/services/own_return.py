@@ -30,8 +30,8 @@ STEP_M = 5.0  # by which a height is looked for that is clear
 class ReturnState(StrEnum):
     CLEAR = "clear"
     IN_THE_WAY = "in_the_way"
-    UNKNOWN = "unknown"  # what it would do was not read from it
-    NOT_CHECKED = "not_checked"  # it is known, and nothing that can be looked at here
+    UNKNOWN = "unknown"  # where it would fly: not read from it, or not straight
+    NOT_CHECKED = "not_checked"  # nothing that can be looked at here
 
 
 @dataclass(frozen=True)
@@ -85,14 +85,14 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
         )
         return ReturnCheck(place, name, key, ReturnState.UNKNOWN, (words % {**values, "parameter": _height_names()},))
     facts = {"parameter": own.parameter, "height_m": own.height_m, "read_at": uav.autopilot_return_read_at}
-    if not own.is_straight:
-        words = _("By its parameters %(uav)s does not return straight at one height: the way of Return and Abort is not checked.")
-        return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (words % values,), **facts)
+    unknown = _why_unknown(own, name, has_rally=bool(rally_points(mission, place)))
+    if unknown:
+        return ReturnCheck(place, name, key, ReturnState.UNKNOWN, (unknown,), **facts)
     try:
         flights = frozen_route(route, mission).flights
     except NotARoute:
         return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (), **facts)
-    table, ways = _ways(mission, route, flights)
+    table, ways = _ways(mission, route, flights, shuns_home=own.shuns_home)
     found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
     if not found:
         return ReturnCheck(place, name, key, ReturnState.CLEAR, **facts)
@@ -101,12 +101,26 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
     return ReturnCheck(place, name, key, ReturnState.IN_THE_WAY, tuple(warnings), **facts, safe_height_m=safe_m)
 
 
+def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
+    """Why nobody can say here where it flies on its way home; empty where that is known."""
+    if own.untold:
+        words = _("%(parameter)s was not read from %(uav)s: its way home on Return and Abort is not known, and not checked.")
+        return words % {"uav": name, "parameter": own.untold}
+    if own.bends_by:
+        words = _("By %(parameter)s %(uav)s does not return straight at one height: its way home is not known, and not checked.")
+        return words % {"uav": name, "parameter": own.bends_by}
+    if own.rally_points and not has_rally:
+        words = _("%(uav)s holds rally points that are not this mission's: its way home is not known, and not checked.")
+        return words % {"uav": name}
+    return ""
+
+
 def _height_names() -> str:
     return " / ".join(dict.fromkeys(name for groups in PARAMETERS.values() for name in groups[0]))
 
 
-def _ways(mission: Mission, route: Route, flights: Sequence[Flight]) -> tuple[ZoneTable, list[WaysHome]]:
-    """Of each flight: home from everywhere, and to the nearest rally point from where that is nearer."""
+def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_home: bool) -> tuple[ZoneTable, list[WaysHome]]:
+    """Of each flight: home from everywhere, and to the nearest rally point from where that is nearer, or from everywhere."""
     ground, margins = planning_read().ground(), zone_margins()
     rally = rally_points(mission, route.mission_uav.sequence)
     positions = [waypoint.position for flight in flights for waypoint in flight.waypoints]
@@ -121,7 +135,7 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight]) -> tuple[Zo
     ways = []
     for flight in flights:
         havens = [Haven(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
-        for haven, places in _places_by_haven(flight, Haven(flight.take_off.position), havens):
+        for haven, places in _places_by_haven(flight, Haven(flight.take_off.position), havens, shuns_home=shuns_home):
             ways.append(
                 WaysHome(
                     places, haven, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
@@ -131,7 +145,7 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight]) -> tuple[Zo
     return near, ways
 
 
-def _places_by_haven(flight: Flight, home: Haven, rally: Sequence[Haven]) -> Iterable[tuple[Haven, Places]]:
+def _places_by_haven(flight: Flight, home: Haven, rally: Sequence[Haven], *, shuns_home: bool) -> Iterable[tuple[Haven, Places]]:
     waypoints = flight.waypoints
     places = Places.along(
         np.array([waypoint.position for waypoint in waypoints], dtype=np.float64),
@@ -141,15 +155,18 @@ def _places_by_haven(flight: Flight, home: Haven, rally: Sequence[Haven]) -> Ite
     yield home, places
     if not rally:
         return
-    nearest = places.nearest_of([home.position, *(haven.position for haven in rally)])
-    for number, haven in enumerate(rally, start=1):
+    goals = rally if shuns_home else [home, *rally]
+    nearest = places.nearest_of([haven.position for haven in goals])
+    for number, haven in enumerate(goals):
+        if haven is home:
+            continue
         own = places.only(nearest == number)
         if len(own):
             yield haven, own
 
 
 def _levels(way: WaysHome, own: OwnReturn) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    return way.levels_m(lambda height_m, away_m, haven_m, is_rally: own.level_m(height_m, away_m, haven_m, is_rally=is_rally))
+    return way.levels_m(own.level_m)
 
 
 def _safe_height_m(ways: Sequence[WaysHome], own: OwnReturn) -> float | None:

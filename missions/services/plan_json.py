@@ -15,14 +15,20 @@ from missions.flight_plan.waypoints import KINDS, NONE, IntArray, Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, lock_to_json, moment_to_json, task_to_json
+from missions.services.shortfall import Shortfall
+from missions.services.straight_line import straight_json
 from missions.services.waypoint_text import column_text, line_text, waypoints_text
 
+ALL_PLANS, WITHOUT_TIMED_ZONES = "all_plans", "without_timed_zones"  # of which plans bound and gap speak
 FLAT_GROUND = "flat ground assumed"
 TERRAIN_MODEL = "terrain model"
 _KIND_NAMES = [kind.value for kind in KINDS]
 NO_QUALITY: dict[str, Any] = {
-    "lower_bound_m": None, "lower_bound_s": None, "lower_bound_wh": None, "gap": None, "is_proven": False, "method": "", "wish": None,
+    "lower_bound_m": None, "lower_bound_s": None, "lower_bound_wh": None, "gap": None, "is_proven": False,
+    "gap_of": ALL_PLANS, "method": "", "wish": None,
 }  # fmt: skip
+
+NO_SHORTFALL: dict[str, float | None] = {"missing_m": None, "missing_wh": None, "missing_s": None}
 
 
 @dataclass(frozen=True)
@@ -96,15 +102,33 @@ def plan_to_json(
                 "charging": [charging_to_json(stop) for stop in route.charging],
                 "targets": list(route.targets),
                 "locked": locked_targets(route.targets, (lock.targets for lock in request.locks if lock.uav == uav.name)),
+                "explanation": explanation_json(route),
                 "geometry": None if route.line is None else {"type": "LineString", "coordinates": coordinates(route.line)},
                 "waypoints": [] if route.waypoints is None else waypoints(route.waypoints),
             }
             for uav, route, length_m in zip(request.uavs, routes, lengths_m, strict=True)
         ],
         "unassigned": [
-            {"target": item.target, "reason": item.reason, "message": item.message}
+            {"target": item.target, "reason": item.reason, "message": item.message, **shortfall_to_json(item.shortfall)}
             for item in sorted(left_out, key=lambda item: item.target)
         ],
+    }
+
+
+def explanation_json(route: PlannedRoute) -> dict[str, float] | None:
+    if route.waypoints is None:
+        return None
+    points = route.waypoints.points
+    return straight_json(points.position, points.kind, points.target, route.length_m)
+
+
+def shortfall_to_json(shortfall: Shortfall | None) -> dict[str, float | None]:
+    if shortfall is None:
+        return dict(NO_SHORTFALL)
+    return {
+        "missing_m": None if shortfall.metres is None else round(shortfall.metres, 3),
+        "missing_wh": None if shortfall.wh is None else round(shortfall.wh, 2),
+        "missing_s": round(shortfall.seconds, 1),
     }
 
 

@@ -19,6 +19,7 @@ from missions.models import UavState
 from missions.routing.terminals import AccessRules, tallest_support_m
 from missions.services.places import Place
 from missions.services.requests import UavRequest
+from missions.services.shortfall import Shortfall
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,15 @@ class Scene:
 class LeftOut:
     """A target that no route visits; `target` is its place in the request.
 
-    missing: metres or Wh without which no UAV can do it even alone, 0 where one could; None where that has no number.
+    missing: metres or Wh without which no UAV can do it even alone, 0 where one could; None where that has no number. `shortfall` is
+    what the message tells.
     """
 
     target: int
     reason: str
     message: str
     missing: float | None = None
+    shortfall: Shortfall | None = None
 
 
 def asset_gone(target: int) -> LeftOut:

@@ -12,6 +12,7 @@ from missions.services.assignment import Assignment
 from missions.services.places import Place
 from missions.services.refusals import LeftOut, Scene, groundings
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest
+from missions.services.shortfall import Shortfall, of_battery, of_range, with_minutes
 from missions.services.wishes import has_sensor, may_do
 
 LOCKED = " It is locked to others: the run is left out as a whole."
@@ -23,6 +24,7 @@ MOST_NAMED = 3  # UAVs that a reason names
 def unreached_places(
     unassigned: Sequence[Unassigned],
     request: PlanRequest,
+    uavs: Sequence[int],
     asked: Assignment,
     places: Sequence[Place],
     ways: Ways,
@@ -30,7 +32,7 @@ def unreached_places(
     no_landing: Mapping[int, str],
     kept_from: Mapping[int, Collection[int]],
 ) -> list[LeftOut]:
-    """The solver's reasons in full; ways and visits as it had them. no_landing: zones in which UAVs would land at places, by number;
+    """The solver's reasons in full; uavs, ways and visits as it had them. no_landing: zones in which UAVs would land at places, by number;
     kept_from: of UAVs the targets for which they cannot charge in time."""
     visits_of = asked.problem.visits_of_target()
     crew: _Crew | None = None
@@ -58,8 +60,14 @@ def unreached_places(
                 place, item, asked.problem, visits, ways, scene
             )
         missing = item.missing if reason == item.reason.value else None
-        found.append(LeftOut(place.target, reason, message + (LOCKED if item.target in in_runs else ""), missing))
+        shortfall = None if not missing or item.uav is None else _shortfall(request.uavs[uavs[item.uav]], item.reason, missing)
+        told = message if shortfall is None else with_minutes(message, shortfall)
+        found.append(LeftOut(place.target, reason, told + (LOCKED if item.target in in_runs else ""), missing, shortfall))
     return found
+
+
+def _shortfall(uav: UavRequest, reason: Reason, missing: float) -> Shortfall:
+    return of_range(uav, missing) if reason is Reason.BEYOND_RANGE else of_battery(uav, missing)
 
 
 def _why(

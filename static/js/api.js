@@ -106,8 +106,9 @@ export async function request(method, path, { body, bytes, headers = {}, signal,
 export const get = (path, options) => request("GET", path, options);
 export const post = (path, body, options) => request("POST", path, { ...options, body });
 export const patch = (path, body, options) => request("PATCH", path, { ...options, body });
+export const put = (path, body, options) => request("PUT", path, { ...options, body });
 /** Raw bytes: a Blob. */
-export const put = (path, bytes, options) => request("PUT", path, { ...options, bytes });
+export const putBytes = (path, bytes, options) => request("PUT", path, { ...options, bytes });
 export const remove = (path, options) => request("DELETE", path, options);
 
 const pause = (ms, signal) =>

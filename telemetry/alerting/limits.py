@@ -1,6 +1,6 @@
 """Where alerts begin: usual limits, and those of a UAV type or a mission that differ."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -92,3 +92,13 @@ def limits_of(*stated: Any) -> Limits:
     for value in stated:
         read |= checked_limits(value or {})
     return Limits(**read)
+
+
+def sound_limits(stated: Sequence[Mapping[str, float]]) -> Limits:
+    """Of a UAV's type and of its mission, in this order. A mission's that do not fit the type's are passed over."""
+    for believed in (stated, stated[:1]):
+        try:
+            return limits_of(*believed)
+        except InvalidLimits:
+            continue
+    return Limits()

@@ -43,10 +43,16 @@ class Situation:
         return max(told) if told else None
 
     @property
+    def report_interval_s(self) -> float:
+        """Between its reports, as the last few came."""
+        estimate = self.uav.estimate
+        return self.memory.usual_interval_s if estimate is None or estimate.report_interval_s is None else estimate.report_interval_s
+
+    @property
     def fresh(self) -> Report | None:
         """The newest report, unless others should have come since."""
         newest = self.uav.newest
-        if newest is None or self.now_s - newest.received_s > max(FRESH_S, FRESH_INTERVALS * self.memory.usual_interval_s):
+        if newest is None or self.now_s - newest.received_s > max(FRESH_S, FRESH_INTERVALS * self.report_interval_s):
             return None
         return newest
 
@@ -71,7 +77,9 @@ class Situation:
 
     @property
     def is_in_flight(self) -> bool:
-        """As far as is known."""
+        """As far as is known. A flight that was told to be over is, though no report has said so."""
+        if self.link.is_in_air is False:
+            return False
         told = None if self.uav.newest is None else self.uav.newest.measurement
         is_in_air = self.link.is_in_air if told is None or told.is_in_air is None else told.is_in_air
         if is_in_air is not None:

@@ -32,6 +32,7 @@ def estimate_to_json(estimate: Estimate) -> dict[str, Any]:
         "arrivals": [_arrival(arrival) for arrival in estimate.arrivals],
         "ends_at": _time(estimate.ends_at_s),
         "contact_expected_at": _time(estimate.contact_expected_s),
+        "report_interval_s": _rounded(estimate.report_interval_s),
     }
 
 

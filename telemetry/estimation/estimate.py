@@ -30,7 +30,8 @@ class Estimate:
     """A UAV at `at_s`. `is_measured`: a report speaks of this moment; `is_lost`: past what the estimator vouches for.
 
     `report_s` is when the last report was measured, None before the first. Heights are None where their reference is not known.
-    `along_route_m` and `to_go_m` are lengths of the approved route flown and still to fly; None off a route.
+    `along_route_m` and `to_go_m` are lengths of the approved route flown and still to fly; None off a route. `report_interval_s` is how far
+    apart its reports come, as the last few did; None before there were two.
     """
 
     at_s: float
@@ -51,3 +52,4 @@ class Estimate:
     arrivals: tuple[Arrival, ...] = ()
     ends_at_s: float | None = None
     contact_expected_s: float | None = None
+    report_interval_s: float | None = None

@@ -2,6 +2,7 @@
 
 import math
 from bisect import bisect_right
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -28,6 +29,8 @@ VOUCHED_M = 400.0  # a bound that is wider says nothing any more
 VOUCHED_S = 900.0
 VOUCHED_AWAY_S = 30.0  # of one that would leave its route without a link
 MEASURED_WITHIN_S = 1.0
+ARRIVALS_KEPT = 6
+TOGETHER_S = 0.2  # what comes within so long comes in one parcel
 
 
 @dataclass
@@ -44,7 +47,7 @@ class Tracker:
     _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
     _outlook: tuple[float, tuple[Arrival, ...], Arrival | None] | None = None
     _hearing: Hearing | None = None
-    _received_s: float = -math.inf
+    _arrivals_s: deque[float] = field(default_factory=lambda: deque(maxlen=ARRIVALS_KEPT))
 
     @property
     def newest(self) -> Report | None:
@@ -53,8 +56,14 @@ class Tracker:
 
     def is_silent(self, at_s: float) -> bool:
         """Nothing has come for longer than usual, though something had."""
-        quiet_s = at_s - self._received_s
-        return bool(self._reports) and quiet_s > SILENT_S and quiet_s > SILENT_INTERVALS * self._usual_interval_s()
+        quiet_s = at_s - self._arrivals_s[-1] if self._arrivals_s else 0.0
+        return bool(self._reports) and quiet_s > SILENT_S and quiet_s > SILENT_INTERVALS * (self.report_interval_s or 1.0)
+
+    @property
+    def report_interval_s(self) -> float | None:
+        """Between arrivals, as the last few came: how often it is heard, whatever it stores up. None before there were two."""
+        gaps_s = [later - earlier for earlier, later in pairwise(self._arrivals_s)]
+        return median(gaps_s) if gaps_s else None
 
     def learn(self, places: Sequence[LonLat]) -> None:
         """Where on earlier flights something was heard promptly."""
@@ -63,8 +72,8 @@ class Tracker:
 
     def take(self, report: Report) -> None:
         read = sound(report)
-        if read is not None:
-            self._received_s = max(self._received_s, read.received_s)
+        if read is not None and (not self._arrivals_s or read.received_s > self._arrivals_s[-1] + TOGETHER_S):
+            self._arrivals_s.append(read.received_s)
         if read is None or (self._reports and read.measured_s < self._reports[-1].measured_s - KEPT_S):
             return
         place = bisect_right(self._reports, read.measured_s, key=lambda known: known.measured_s)
@@ -115,10 +124,6 @@ class Tracker:
         if report.received_s - report.measured_s < PROMPT_S:
             self._hearing.learn(self._frame.to_metres(np.array([[told.longitude_deg, told.latitude_deg]])))
 
-    def _usual_interval_s(self) -> float:
-        last = [report.measured_s for report in self._reports[-10:]]
-        return median(later - earlier for earlier, later in pairwise(last)) if len(last) > 1 else 1.0
-
     def _forget(self) -> None:
         oldest_s = self._reports[-1].measured_s - KEPT_S
         gone = max(bisect_right(self._reports, oldest_s, key=lambda known: known.measured_s), len(self._reports) - KEPT)
@@ -147,6 +152,7 @@ class Tracker:
             is_measured=since_s < MEASURED_WITHIN_S,
             is_lost=since_s > vouched_s or bound.along_m > VOUCHED_M,
             waypoint_sequence=state.sequence,
+            report_interval_s=self.report_interval_s,
         )
         return estimate if belief.nominal_s is None else self._with_route(estimate, state, belief.nominal_s)
 

@@ -15,18 +15,30 @@ from django.conf import settings
 
 from missions.mavlink.content import FlightLoad, MissionType
 from missions.models import CommandKind, UavCommand
-from missions.services.commands import note_acknowledged, note_applied, note_failed, note_progress, note_read_back, note_released, note_sent
+from missions.services.commands import (
+    is_wanted,
+    note_acknowledged,
+    note_applied,
+    note_failed,
+    note_progress,
+    note_read_back,
+    note_released,
+    note_sent,
+    note_sent_unheard,
+)
+from telemetry.gateway.blind import send_blind
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, task_of
 from telemetry.gateway.reading import ask_for_the_present, read_aboard
-from telemetry.gateway.session import Session
+from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
 from telemetry.ground_station.command import CommandEnd, CommandOutcome
 from telemetry.ground_station.command_keeper import CommandKeeper
 from telemetry.ground_station.ends import Ends
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
 from telemetry.ground_station.mission_keeper import MissionKeeper
+from telemetry.ground_station.orders import Order
 from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 from telemetry.services.mission_alerts import tell_of_mission
 
@@ -44,12 +56,13 @@ DATABASE_RETRY_S = 0.5
 
 @dataclass
 class Carriage:
-    """`is_dropped`: the row is not ours any more, or is to be given back; `is_closing`: the latter."""
+    """`is_dropped`: the row is not ours any more, or is to be given back; `is_closing`: the latter. `is_blind`: nothing is heard."""
 
     command: UavCommand
     session: Session
     database: DatabaseThread
     held_until_s: float = 0.0  # monotonic: past it another gateway may carry the command
+    is_blind: bool = False
     is_dropped: bool = False
     is_closing: bool = False
     has_begun: bool = False
@@ -67,6 +80,9 @@ class Carriage:
 
     async def run(self) -> None:
         try:
+            if self.is_blind:
+                await self._send_blind()
+                return
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
                 if task.take_off is not None:
@@ -85,6 +101,17 @@ class Carriage:
             await self._end(note_failed, "internal", "The gateway failed; the error is in its log.")
         finally:
             await asyncio.gather(*self._notes, return_exceptions=True)
+
+    async def _send_blind(self) -> None:
+        """Given back once it is heard: what it does then is seen, and told, as of any command."""
+        if await self._surely(note_sent_unheard, self.command.pk, **self._fence):
+            await send_blind(
+                Order(self.command.kind),
+                self.session,
+                may_send=lambda: self.is_ours and not self.session.is_served(time.time(), HEARD_WITHIN_S),
+                is_wanted=lambda: self._surely(is_wanted, self.command.pk, **self._fence),
+            )
+        await self._end(note_released)
 
     async def _refuse(self, reason: CannotCarry) -> None:
         if reason.is_for_good or self.command.attempts >= MOST_ATTEMPTS:
@@ -206,6 +233,7 @@ class Carriage:
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
             wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
             self.session.forget_flown()
+            self.session.questions.own_return.ask_anew(time.monotonic())  # also of the rally points that it holds now
             await self._end_with(end_loading, wanted, note=outcome.words, warnings=told)
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)

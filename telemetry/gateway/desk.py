@@ -1,7 +1,7 @@
 """Commands of the outbox, carried to the vehicles that this gateway serves.
 
 Of one vehicle at most one command about the same thing is carried at a time. Uploads are long, so only so many go on at once, the most
-urgent first; what stops a UAV or brings it back waits for nothing.
+urgent first; what stops a UAV or brings it back waits for nothing, not even for a word of the UAV.
 """
 
 import asyncio
@@ -20,12 +20,11 @@ from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.leases import held_until_s
 from telemetry.gateway.preparation import LOADING
-from telemetry.gateway.session import Session
+from telemetry.gateway.session import HEARD_WITHIN_S, Session
 
 logger = logging.getLogger(__name__)
 
 LOOK_EVERY_S = 1.0
-HEARD_WITHIN_S = 5.0  # else its commands wait for it, or for another gateway
 MOST_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
@@ -71,24 +70,36 @@ class Desk:
                     carriage.held_until_s = held_until_s(asked_s, self.lease_s)
         now_s = time.time()
         served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, HEARD_WITHIN_S)}
+        unheard = {session.uav.uav_id: session for session in self.sessions() if session.may_hear(now_s)}
+        unheard = {uav_id: session for uav_id, session in unheard.items() if uav_id not in served}
         await self.database.run(expire_overdue)
         if served:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
             await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
             await self._claim(served, CommandAxis.SPEED, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
+        if unheard:
+            await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), is_blind=True)
         self._begin()
 
-    async def _claim(self, served: dict[int, Session], axis: CommandAxis, room: int) -> None:
+    async def _claim(
+        self,
+        sessions: dict[int, Session],
+        axis: CommandAxis,
+        room: int,
+        *,
+        is_blind: bool = False,
+    ) -> None:
         """Uploads no more than may begin; what stops a UAV never waits for room."""
         if room <= 0:
             return
         asked_s = time.monotonic()
         claimed = await self.database.run(
-            claim_commands, uav_ids=list(served), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK, axes=[axis]
-        )
+            claim_commands, uav_ids=list(sessions), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK,
+            axes=[axis], to_unheard=is_blind,
+        )  # fmt: skip
         for command in claimed:
-            session = served[command.uav_id]
-            self._carriages[command.pk] = Carriage(command, session, self.notes, held_until_s(asked_s, self.lease_s))
+            session, until_s = sessions[command.uav_id], held_until_s(asked_s, self.lease_s)
+            self._carriages[command.pk] = Carriage(command, session, self.notes, until_s, is_blind=is_blind)
 
     async def close(self) -> None:
         """Ends what goes on, and gives back what has not ended by then."""

@@ -33,6 +33,7 @@ class Leasing:
     receive: Callable[[Session, Frame, Peer, float], None]
     end_flight: Callable[[Session, float], None]
     wanted: asyncio.Event = field(default_factory=asyncio.Event)
+    answered_s: float = field(default_factory=time.monotonic)  # when the database was known to be there, monotonic
 
     async def run(self) -> None:
         while True:
@@ -52,6 +53,7 @@ class Leasing:
         now_s, asked_s = time.time(), time.monotonic()
         held = {session.uav.uav_id: session for session in self.sessions() if session.lease is not None}
         still = await self.database.run(renew_leases, uav_ids=list(held), holder=self.options.holder, lease_s=self.options.lease_s)
+        self.answered_s = time.monotonic()
         for uav_id in held.keys() - still:
             logger.warning("another gateway serves %s now", held[uav_id].uav.name)
             self.end_flight(held[uav_id], now_s)

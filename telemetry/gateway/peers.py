@@ -19,7 +19,7 @@ LARGEST_DATAGRAM = 65_535
 DRAINED_FOR_S = 0.02  # before other work has its turn
 PIECE = 16_384  # bytes of a connection that are looked at together
 RECEIVE_BUFFER = 8 * 1024 * 1024  # bytes, as far as the system grants them
-MOST_CONNECTIONS = 256
+MOST_CONNECTIONS = 256  # beyond them the one goes that has brought no frame for longest
 MOST_UNSENT = 256 * 1024  # bytes of a connection that takes nothing
 SILENT_CONNECTION_S = 60.0
 
@@ -69,7 +69,7 @@ class Listeners:
     damages: Counter[Damage] = field(default_factory=Counter)
     _sockets: list[socket.socket] = field(default_factory=list)
     _servers: list[asyncio.Server] = field(default_factory=list)
-    _connections: set[asyncio.StreamWriter] = field(default_factory=set)
+    _connections: dict[asyncio.StreamWriter, float] = field(default_factory=dict)  # when each brought a frame last, monotonic
 
     async def open(self, udp: list[Address], tcp: list[Address]) -> list[str]:
         """Where it listens, with the ports that the system chose for 0. Raises OSError."""
@@ -119,22 +119,26 @@ class Listeners:
                 self.receive(frames, UdpPeer(listener, address), time.time())
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._connections) >= MOST_CONNECTIONS:
-            writer.close()
-            return
-        self._connections.add(writer)
+        while len(self._connections) >= MOST_CONNECTIONS:
+            self._drop(min(self._connections, key=lambda other: self._connections[other]))
+        self._connections[writer] = time.monotonic()
         host, port = writer.get_extra_info("peername")[:2]
         peer, parser = TcpPeer(writer, f"tcp:{host}:{port}"), StreamParser(self.damages)
         try:
             while piece := await asyncio.wait_for(reader.read(PIECE), SILENT_CONNECTION_S):
                 frames = parser.receive(piece)
                 if frames:
+                    self._connections[writer] = time.monotonic()
                     self.receive(frames, peer, time.time())
         except (OSError, TimeoutError):
             pass
         finally:
-            self._connections.discard(writer)
-            writer.close()
+            self._drop(writer)
+
+    def _drop(self, writer: asyncio.StreamWriter) -> None:
+        """At once: one that takes nothing would never be done with what waits for it."""
+        self._connections.pop(writer, None)
+        writer.transport.abort()
 
 
 def _enlarge(listener: socket.socket) -> None:

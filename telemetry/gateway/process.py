@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
+from django.conf import settings
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, message_of
@@ -51,6 +52,7 @@ class Gateway:
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)
     _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
+    _is_manned: bool = True
     _early: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=20_000))
 
     def __post_init__(self) -> None:
@@ -234,9 +236,14 @@ class Gateway:
             session.is_unsaved |= session.uav.uav_id in uav_ids
 
     async def _tick(self) -> None:
-        now_s = time.time()
+        """Nobody can command a UAV through a gateway without its database: it then no longer says that a ground station is there."""
+        now_s, is_manned = time.time(), time.monotonic() - self.leasing.answered_s <= settings.GATEWAY_ALONE_S
+        if is_manned != self._is_manned:
+            self._is_manned = is_manned
+            told = "is back: UAVs get heartbeats" if is_manned else "is away for too long: UAVs get no heartbeats any more"
+            logger.warning("the database %s", told)
         for session in self.sessions.values():
-            session.tick(now_s)
+            session.tick(now_s, is_manned=is_manned)
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())

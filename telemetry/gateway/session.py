@@ -11,20 +11,21 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, Message, message_of
-from missions.mavlink.signing import FrameWriter, Refusal, SignatureCheck
+from missions.mavlink.signing import FrameWriter, Refusal
 from missions.models import LinkKind
 from telemetry.decoding.boots import Stamp, VehicleTime
 from telemetry.decoding.link_quality import LinkQuality
 from telemetry.decoding.report import Flown, Reporter, is_place, is_vehicle
 from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
+from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions
 from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.flavour import MISSION_MODES, Flavour
+from telemetry.ground_station.flavour import COMMANDED, MISSION_MODES, Flavour
 from telemetry.ground_station.flown import FlightWatch
 from telemetry.ground_station.flown import Flown as FlownItem
 from telemetry.ground_station.limits import PARAMETERS
@@ -35,12 +36,12 @@ from telemetry.services.links import Lease, LinkState
 logger = logging.getLogger(__name__)
 
 MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
-SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
+HEARD_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
 GREET_AGAIN_S = 1.0
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
-SECOND_SENDER = "second-sender"
+ADDRESS_GOOD_S = 3_600.0  # no flight lasts longer: whoever has an address for longer without a word may not be the UAV any more
 Listener = Callable[[Message, float], None]
 
 
@@ -53,23 +54,19 @@ class Session:
     link_id: int
     lease: Lease | None = None
     held_until_s: float = 0.0  # monotonic: past it another gateway may have the vehicle, and nothing is sent
-    peer: Peer | None = None
-    heard_s: float = 0.0
     losses: Counter[str] = field(default_factory=Counter)
     texts: list[StatusText] = field(default_factory=list)
     flown: list[FlownItem] = field(default_factory=list)
+    belief: Belief = field(init=False)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
     listeners: list[Listener] = field(default_factory=list)  # hear every message of the autopilot
     log: Callable[[bytes, int, float], None] | None = None
-    second_sender: tuple[str, float] | None = None  # who, and when last
     is_unsaved: bool = False
-    has_signed: bool = False  # since somebody asked last
     questions: Questions = field(default_factory=Questions)
     lists: ListWatch = field(default_factory=ListWatch)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
-    _check: SignatureCheck | None = field(default=None, repr=False)
     _writer: FrameWriter = field(init=False, repr=False)
     _reporter: Reporter = field(default_factory=Reporter)
     _collector: TextCollector = field(default_factory=TextCollector)
@@ -80,7 +77,7 @@ class Session:
 
     def __post_init__(self) -> None:
         self.state = VehicleState(self.uav.system)
-        self._check = SignatureCheck(self.uav.key) if self.uav.key else None
+        self.belief = Belief(self.uav)
         self._writer = FrameWriter(OWN_SYSTEM, OWN_COMPONENT, self.link_id, self.uav.key)
 
     # Frames in
@@ -88,14 +85,16 @@ class Session:
     def receive(self, frame: Frame, peer: Peer, now_s: float) -> None:
         """now_s: seconds since 1970, as all times here but those of the vehicle's state and the listener, which are monotonic."""
         if self.lease is None:
-            if self._could_be_believed(frame, now_s):
+            if self.belief.could_be(frame, now_s):
                 self.waiting.append((frame, peer, now_s))
             return
-        refusal = self._refusal(frame, peer, now_s)
+        refusal = self.belief.refusal(frame, peer, now_s)
         if refusal is not None:
             self.losses[refusal] += 1
+            if refusal is Refusal.TOO_OLD:
+                self._greet_late_clock(peer, now_s)
             return
-        self.peer, self.heard_s, self.is_unsaved = peer, now_s, True
+        self.is_unsaved = True
         self._quality.count(frame.component, frame.sequence)
         if self.log is not None:
             self.log(frame.raw, frame.message_id, now_s)
@@ -120,15 +119,14 @@ class Session:
         self._flight.has_flown_list |= lease.mode_in_air in MISSION_MODES  # and may be down by now
         if not self.time.boots:
             self.time = VehicleTime.from_json(lease.boots)
-        if self._check is not None and lease.signing.get("credential") == self.uav.credential_id:
-            self._check.last = dict(lease.signing.get("received", {}))
+        if self.uav.key is not None and lease.signing.get("credential") == self.uav.credential_id:
+            self.belief.take_up(lease.signing.get("received", {}))
             self._writer.last_timestamp = max(self._writer.last_timestamp, lease.signing.get("sent", 0))
 
     def change(self, uav: KnownUav) -> None:
         """The UAV's row or key was changed."""
-        if uav.credential_id != self.uav.credential_id:
-            self._check = SignatureCheck(uav.key) if uav.key else None
-            self._writer.key = uav.key
+        self.belief.change(uav)
+        self._writer.key = uav.key
         self.uav = uav
 
     def lose(self) -> None:
@@ -136,13 +134,28 @@ class Session:
         self.waiting.clear()
 
     @property
+    def peer(self) -> Peer | None:
+        return self.belief.peer
+
+    @property
+    def heard_s(self) -> float:
+        return self.belief.heard_s
+
+    @property
     def is_held(self) -> bool:
         return self.lease is not None and time.monotonic() < self.held_until_s
 
     def is_served(self, now_s: float, within_s: float) -> bool:
         """Whether it is ours and there, and says how it is: after an outage it may have been armed, or be another one."""
-        is_here = _is_within(self.heard_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
+        is_here = is_within(self.heard_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
         return self.is_held and is_here and self.state.flavour is not None
+
+    def may_hear(self, now_s: float) -> bool:
+        """Whether it is ours and can be spoken to, though perhaps nothing is heard of it: it was believed from an address not long ago."""
+        return self.is_held and self._has_address(now_s) and self.state.flavour in COMMANDED
+
+    def _has_address(self, now_s: float) -> bool:
+        return self.peer is not None and is_within(self.heard_s, now_s, ADDRESS_GOOD_S)
 
     def unsettled_until_s(self, settling_s: float) -> float | None:
         """Until when what was sent before may still arrive; monotonic."""
@@ -156,23 +169,25 @@ class Session:
             self._send(messages, time.time() if now_s is None else now_s)
 
     def _send(self, messages: list[Message], now_s: float) -> None:
+        if self.peer is None:
+            return
         for message in messages:
             raw = self._writer.frame_of(message, now_s)
             if self.log is not None:
                 self.log(raw, message.get_msgId(), now_s)
-            if self.peer is not None:
-                self.peer.send(raw)
+            self.peer.send(raw)
             self.lists.note_sent(message, time.monotonic())
         self.is_unsaved |= bool(messages)
 
-    def tick(self, now_s: float) -> None:
-        """Once a second."""
+    def tick(self, now_s: float, *, is_manned: bool = True) -> None:
+        """Once a second. Without a heartbeat a vehicle thinks that it is left alone, and so it is unless `is_manned`."""
         self.texts += self._collector.tick(now_s)
-        if self.lease is None or self.peer is None:
+        if self.lease is None or not self._has_address(now_s):
             return
-        self._send([greeting.heartbeat()], now_s)  # tells it to do nothing, and without it a vehicle may think that it is left alone
-        if _is_within(self.heard_s, now_s, SENDER_SILENT_S):
-            has_position = _is_within(self._position_s, now_s, POSITIONS_MISSING_S)
+        if is_manned:
+            self._send([greeting.heartbeat()], now_s)
+        if is_within(self.heard_s, now_s, SENDER_SILENT_S):
+            has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
             self.send(self.questions.due(self.state, time.monotonic(), has_position=has_position), now_s)
 
     # What is known
@@ -207,38 +222,16 @@ class Session:
         )
 
     def _signing(self) -> dict[str, Any]:
-        if self._check is None:
+        received = self.belief.received
+        if received is None:
             return {}
-        return {"credential": self.uav.credential_id, "received": dict(self._check.last), "sent": self._writer.last_timestamp}
-
-    def _refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
-        if self._check is not None and frame.is_signed:
-            refusal = self._check.refusal(frame, now_s)
-            self.has_signed |= refusal is None
-            if refusal is Refusal.TOO_OLD:
-                self._greet_late_clock(peer, now_s)
-            return refusal
-        if not self.uav.allows_unsigned:
-            return Refusal.NO_KEY if frame.is_signed else Refusal.UNSIGNED
-        return self._second_sender(peer, now_s)
-
-    def _second_sender(self, peer: Peer, now_s: float) -> str | None:
-        """Without signatures a system id is whose who had it first, until that one is silent."""
-        if self.peer is None or peer == self.peer or not _is_within(self.heard_s, now_s, SENDER_SILENT_S):
-            return None
-        self.second_sender = (peer.name, now_s)
-        return SECOND_SENDER
+        return {"credential": self.uav.credential_id, "received": received, "sent": self._writer.last_timestamp}
 
     def _greet_late_clock(self, peer: Peer, now_s: float) -> None:
         """Whoever knows the key but not the time sets its clock by a signed frame of ours."""
-        if not _is_within(self._greeted_s, now_s, GREET_AGAIN_S):
+        if not is_within(self._greeted_s, now_s, GREET_AGAIN_S):
             self._greeted_s = now_s
             peer.send(self._writer.frame_of(greeting.heartbeat(), now_s))
-
-    def _could_be_believed(self, frame: Frame, now_s: float) -> bool:
-        if self.uav.key is not None and frame.is_signed:
-            return SignatureCheck(self.uav.key).refusal(frame, now_s) in (None, Refusal.TOO_OLD)
-        return self.uav.allows_unsigned
 
     def _take(self, message: Message, now_s: float) -> None:
         kind = message.get_type()
@@ -295,11 +288,6 @@ class Session:
     @property
     def flavour(self) -> Flavour | None:
         return self.state.flavour
-
-
-def _is_within(at_s: float, now_s: float, span_s: float) -> bool:
-    """Also where our clock of the day was set back since: what seems to lie ahead is no reason to wait for it."""
-    return abs(now_s - at_s) < span_s
 
 
 def _tells_no_place(message: Message) -> bool:

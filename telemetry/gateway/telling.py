@@ -43,13 +43,13 @@ class Telling:
         """Two who bear one system id, where nothing is signed: which of them is the UAV nobody can know."""
         now_s = time.time()
         for session in self.sessions():
-            if session.second_sender is None or session.peer is None:
+            if session.belief.second_sender is None or session.peer is None:
                 continue
-            other, last_s = session.second_sender
+            other, last_s = session.belief.second_sender
             if now_s - last_s < SECOND_SENDER_GONE_S:
                 await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other)
             else:
-                session.second_sender = None
+                session.belief.second_sender = None
                 await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id)
 
     async def flown(self) -> None:
@@ -78,9 +78,9 @@ class Telling:
                     session.lists.found.pop(0)
 
     async def keys(self) -> None:
-        signed = [session for session in self.sessions() if session.has_signed]
+        signed = [session for session in self.sessions() if session.belief.has_signed]
         for session in signed:
-            session.has_signed = False
+            session.belief.has_signed = False
         if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
             await self.database.run(note_mavlink_key_use, credential_ids=used)
 

@@ -11,6 +11,9 @@ class Flavour(StrEnum):
     OTHER = "other"
 
 
+COMMANDED = frozenset({Flavour.PX4, Flavour.ARDUPILOT})  # what another autopilot does is not known
+
+
 def flavour_of(autopilot: int) -> Flavour:
     """autopilot: MAV_AUTOPILOT, of a heartbeat."""
     if autopilot == mavlink.MAV_AUTOPILOT_PX4:

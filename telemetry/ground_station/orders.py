@@ -7,8 +7,8 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from telemetry.ground_station.command import CommandStep, Effect
-from telemetry.ground_station.flavour import COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
+from telemetry.ground_station.command import CommandStep, Effect, Seven
+from telemetry.ground_station.flavour import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
 from telemetry.ground_station.vehicle_state import VehicleState
 
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
@@ -59,7 +59,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at, `item` with which a list is begun in the air, from 0 without
     home.
     """
-    if state.flavour not in (Flavour.PX4, Flavour.ARDUPILOT):
+    if state.flavour not in COMMANDED:
         raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
     if order in (Order.PAUSE, Order.HOLD):
         return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
@@ -125,14 +125,15 @@ _LEAVE_GROUND = CommandStep("leave the ground", None, effect=_is_flying, is_slow
 _MISSION_START = CommandStep("start the mission", mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
 
 
+def mode_numbers(flavour: Flavour | None, mode: Mode) -> Seven:
+    """Of MAV_CMD_DO_SET_MODE. Source of PX4's numbers: main mode and sub mode are the second and third parameter."""
+    if flavour is Flavour.PX4:
+        return (OWN_MODE, float(PX4_AUTO), float(PX4_SUB_MODES[mode]), 0.0, 0.0, 0.0, 0.0)
+    return (OWN_MODE, float(COPTER_MODES[mode]), 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
 def _mode(state: VehicleState, mode: Mode) -> CommandStep:
-    """Source of PX4's numbers: main mode and sub mode are the second and third parameter."""
-    words = f"mode {mode.value}"
-    if state.flavour is Flavour.PX4:
-        numbers = (OWN_MODE, float(PX4_AUTO), float(PX4_SUB_MODES[mode]), 0.0, 0.0, 0.0, 0.0)
-    else:
-        numbers = (OWN_MODE, float(COPTER_MODES[mode]), 0.0, 0.0, 0.0, 0.0, 0.0)
-    return CommandStep(words, mavlink.MAV_CMD_DO_SET_MODE, numbers, _is_in(mode))
+    return CommandStep(f"mode {mode.value}", mavlink.MAV_CMD_DO_SET_MODE, mode_numbers(state.flavour, mode), _is_in(mode))
 
 
 def _armable(state: VehicleState) -> tuple[CommandStep, ...]:

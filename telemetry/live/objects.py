@@ -59,9 +59,11 @@ def _offers(ids: list[str]) -> list[dict[str, Any]]:
             "difference": difference_in_words(offer.difference),
             "continuation": offer.continuation_id,
             "created_at": offer.created_at,
+            "decided_by": None if offer.decided_by is None else offer.decided_by.username,
+            "decided_at": offer.decided_at,
             "outcome": in_words(offer.outcome),
         }
-        for offer in ReplanOffer.objects.filter(pk__in=ids)
+        for offer in ReplanOffer.objects.filter(pk__in=ids).select_related("decided_by")
     ]
 
 

@@ -1,11 +1,14 @@
 """UAVs as live pages show them: the link, what was measured, what is estimated."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from django.db.models import Case, F, IntegerField, Value, When
 
-from missions.models import MissionState, MissionUav, Uav
+from missions.models import LinkKind, MissionState, MissionUav, Uav
+from telemetry.alerting.detectors.link import late_after_s
+from telemetry.alerting.limits import sound_limits
+from telemetry.estimation.contact import SILENT_INTERVALS, SILENT_S
 from telemetry.models import UavLink
 
 FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)
@@ -14,11 +17,12 @@ MEASURED = (
     "mode", "is_armed", "is_in_air", "gps_fix", "satellites", "hdop", "link_quality_percent", "wind_speed_mps", "wind_from_deg",
     "waypoint_sequence",
 )  # fmt: skip
+INTERVALS_S = {LinkKind.MAVLINK: 1.0, LinkKind.HTTP: 10.0}  # between reports, until they are known
 GROUPS = ("position", "height", "speed", "attitude", "battery", "state", "link", "gps", "wind", "waypoint")
 
 
 def uavs_json(uav_ids: Iterable[int]) -> list[dict[str, Any]]:
-    uavs = Uav.objects.filter(pk__in=list(uav_ids)).select_related("connection", "watch")
+    uavs = Uav.objects.filter(pk__in=list(uav_ids)).select_related("connection", "watch", "uav_type")
     flown = _flown([uav.pk for uav in uavs])
     return [_uav_json(uav, flown.get(uav.pk)) for uav in uavs]
 
@@ -37,8 +41,18 @@ def measured_json(stored: Mapping[str, Mapping[str, Any]] | None) -> dict[str, A
     }
 
 
-def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int]]:
-    """The mission that each flies, and its place in it."""
+def rhythm_of(interval_s: float, stated: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """How far apart its reports come, from which age on the last one is late, as alerts have it, and from which on it is silent.
+
+    stated: limits of alerts, the earlier ones giving way to the later.
+    """
+    late_s = late_after_s(sound_limits(stated), interval_s)
+    silent_s = max(late_s, SILENT_S, SILENT_INTERVALS * interval_s)
+    return {"interval_s": round(interval_s, 1), "late_after_s": round(late_s, 1), "silent_after_s": round(silent_s, 1)}
+
+
+def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int, Mapping[str, float]]]:
+    """The mission that each flies, its place in it, and the limits of alerts that the mission states."""
     rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None)
     first = Case(
         When(route__continued_by__isnull=False, then=Value(2)),
@@ -47,12 +61,15 @@ def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int]]:
         output_field=IntegerField(),
     )
     newest = rows.order_by("uav", first, F("mission__updated_at").desc()).distinct("uav")
-    return {uav: (str(mission), place) for uav, mission, place in newest.values_list("uav", "mission", "sequence")}
+    found = newest.values_list("uav", "mission", "sequence", "mission__alert_limits")
+    return {uav: (str(mission), place, limits or {}) for uav, mission, place, limits in found}
 
 
-def _uav_json(uav: Uav, flown: tuple[str, int] | None) -> dict[str, Any]:
+def _uav_json(uav: Uav, flown: tuple[str, int, Mapping[str, float]] | None) -> dict[str, Any]:
     watch = getattr(uav, "watch", None)
-    mission, place = flown or (None, None)
+    mission, place, limits = flown or (None, None, {})
+    of_type = uav.uav_type.alert_limits if uav.uav_type is not None else {}
+    interval_s = ((watch.estimated or {}).get("report_interval_s") if watch else None) or INTERVALS_S[LinkKind(uav.link)]
     return {
         "id": uav.pk,
         "name": uav.name,
@@ -61,6 +78,7 @@ def _uav_json(uav: Uav, flown: tuple[str, int] | None) -> dict[str, Any]:
         "link": _link_json(uav.link, getattr(uav, "connection", None) or UavLink()),
         "measured": measured_json(watch.measured) if watch else None,
         "estimated": watch.estimated if watch else None,
+        "rhythm": rhythm_of(interval_s, [of_type or {}, limits]),
         "is_simulated": uav.is_simulated,
     }
 

@@ -65,6 +65,14 @@ class MeasuredSerializer(serializers.Serializer):
     measured_at_of = MeasuredAtSerializer(help_text="values that the newest report does not have are those of an earlier one")
 
 
+class RhythmSerializer(serializers.Serializer):
+    """How far apart its reports come, and how old the newest may be."""
+
+    interval_s = serializers.FloatField(help_text="as the last few came; until then as its link usually has it")
+    late_after_s = serializers.FloatField(help_text="as the alert link-lost has it, by the limits of its type and mission")
+    silent_after_s = serializers.FloatField(help_text="from which age on it counts as silent")
+
+
 class LiveUavSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     name = serializers.CharField()
@@ -73,6 +81,7 @@ class LiveUavSerializer(serializers.Serializer):
     link = LiveLinkSerializer()
     measured = MeasuredSerializer(allow_null=True)
     estimated = serializers.JSONField(allow_null=True, help_text="where it is by now, and how sure that is; null: it flies no mission")
+    rhythm = RhythmSerializer()
     is_simulated = serializers.BooleanField()
 
 
@@ -118,6 +127,8 @@ class LiveOfferSerializer(serializers.Serializer):
     difference = serializers.JSONField()
     continuation = serializers.UUIDField(allow_null=True)
     created_at = serializers.DateTimeField()
+    decided_by = serializers.CharField(allow_null=True)
+    decided_at = serializers.DateTimeField(allow_null=True)
     outcome = serializers.CharField(allow_blank=True)
 
 

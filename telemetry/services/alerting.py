@@ -7,7 +7,7 @@ from datetime import datetime
 
 from telemetry.alerting.book import Closed, Opened, changes
 from telemetry.alerting.finding import Finding
-from telemetry.alerting.limits import InvalidLimits, Limits, limits_of
+from telemetry.alerting.limits import Limits, sound_limits
 from telemetry.alerting.meetings import elsewhere, meetings, moving_of
 from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.order import CODES, DETECTORS
@@ -77,7 +77,7 @@ def _situations(
         memory.take(uav.newest, None if model is None else model.line)
         link, loaded = links.get(uav.uav_id, (LinkFacts(), Loaded()))
         order, is_changing = orders.get(uav.uav_id, (None, False))
-        limits = _sound(stated[uav.uav_id])
+        limits = sound_limits(stated[uav.uav_id])
         yield Situation(
             now_s=now_s,
             uav=uav,
@@ -129,13 +129,3 @@ def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> Held:
         items=None if content is None else content.items,
         first_item=1 if loaded.autopilot == Flavour.ARDUPILOT else 0,
     )
-
-
-def _sound(stated: Sequence[Mapping[str, float]]) -> Limits:
-    """A mission's that do not fit its UAV's type are passed over, and limits stored past their check do not blind the watch."""
-    for believed in (stated, stated[:1]):
-        try:
-            return limits_of(*believed)
-        except InvalidLimits:
-            continue
-    return Limits()

@@ -1,7 +1,7 @@
 """Reports that a companion computer sent over the HTTP link go into the log."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Any
 from uuid import UUID
@@ -9,8 +9,11 @@ from uuid import UUID
 from missions.models import LinkKind, MissionUav
 from telemetry.decoding.companion_reports import FaultyReport, Report, read_report
 from telemetry.decoding.measurement import Measurement
+from telemetry.models import TelemetryRecord
 from telemetry.services.heard import note_state_over_http
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
+
+USED_AGAIN = "Another record has this number in this stream: take a new stream when the numbers begin anew."
 
 
 @dataclass(frozen=True)
@@ -43,11 +46,22 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
     for index in [index for index, report in read.items() if report.mission and UUID(report.mission) not in own]:
         del read[index]
         refused.append(RefusedReport(index, {"mission": "The UAV has no mission of this id."}))
-    records = [_new_record(report, uav_id, stream, received_at) for report in read.values()]
-    counts = store_records(records) if records else StoredCount()
+    records = {index: _new_record(report, uav_id, stream, received_at) for index, report in read.items()}
+    counts = store_records(list(records.values())) if records else StoredCount()
+    if counts.duplicates:
+        reused = _numbers_used_again(uav_id, stream, records)
+        refused += [RefusedReport(index, {"sequence": USED_AGAIN}) for index in reused]
+        counts = replace(counts, duplicates=counts.duplicates - len(reused))
     if counts.stored:
         note_state_over_http(uav_id=uav_id, received_at=received_at)
     return TakenReports(counts, sorted(refused, key=lambda fault: fault.index))
+
+
+def _numbers_used_again(uav_id: int, stream: str, records: Mapping[int, NewRecord]) -> list[int]:
+    """Of records that were measured at another time than what is stored under their number: a counter that began anew, and no replay."""
+    run = TelemetryRecord.objects.filter(stream__uav_id=uav_id, stream__link=LinkKind.HTTP, stream__key=stream)
+    stored = dict(run.filter(sequence__in=[record.sequence for record in records.values()]).values_list("sequence", "measured_at"))
+    return [index for index, record in records.items() if stored.get(record.sequence, record.measured_at) != record.measured_at]
 
 
 def _own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:

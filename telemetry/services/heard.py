@@ -37,3 +37,8 @@ def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:
     )
     if newest.mission_id is not None and waypoint is not None and waypoint != before:
         mark_waypoint_reached(mission_id=newest.mission_id, uav_id=uav_id, waypoint=waypoint)
+
+
+def note_on_ground_over_http(*, uav_id: int) -> None:
+    """Its flight was told to be over, which not every companion computer says in a report, too. The next report says how it does again."""
+    UavLink.objects.filter(uav_id=uav_id).update(is_in_air=False)

@@ -9,11 +9,12 @@ from uuid import UUID
 from django.db import transaction
 from django.db.models.functions import Least
 
-from missions.given_selectors import approvals_given_to, number_of_flights, places_of_targets
+from missions.given_selectors import approvals_given_to, is_end_known, number_of_flights, places_of_targets
 from missions.models import Approval, InspectionTarget, LinkKind, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
+from telemetry.services.heard import note_on_ground_over_http
 from telemetry.services.replan_hooks import UAV_OUT
 
 
@@ -41,11 +42,12 @@ class EndedFlight:
 
 @dataclass(frozen=True)
 class TakenResults:
-    """Refused are those, by their place in what was given, that this UAV was never sent."""
+    """Refused are those, by their place in what was given, that this UAV was never sent; reused those under the number of another."""
 
     stored: int
     known: int
     refused_results: list[int]
+    reused_results: list[int]
     refused_flights: list[int]
 
 
@@ -59,21 +61,26 @@ def take_results(
     places = {key: places_of_targets(uav_id, approval) for key, approval in given.items()}
     own = [result for result in results if result.place in places.get(result.approval_id, ())]
     stored = _store(uav_id, stream, own, given, received_at) if own else 0
+    reused = _numbers_used_again(uav_id, stream, own) if stored < len(own) else set()
     numbers = {key: number_of_flights(uav_id, approval) for key, approval in given.items()}
     if not Uav.objects.filter(pk=uav_id, link=LinkKind.HTTP).exists():
         numbers = {}  # how its flights end is seen by the gateway
     for flight in flights:
         if flight.flight > numbers.get(flight.approval_id, 0):
             continue
-        if given[flight.approval_id].revoked_at is None:
-            mission_id = given[flight.approval_id].mission_id
+        approval = given[flight.approval_id]
+        if not is_end_known(uav_id, approval, flight.flight):
+            note_on_ground_over_http(uav_id=uav_id)
+        if approval.revoked_at is None:
+            mission_id = approval.mission_id
             mark_flight_ended(mission_id=mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
             if flight.end is FlightEnd.FAILED:
                 suggest(mission_id=mission_id, code=UAV_OUT, cause={"uav": uav_id, "flight": flight.flight})
     return TakenResults(
         stored=stored,
-        known=len(own) - stored,
+        known=len(own) - stored - len(reused),
         refused_results=[place for place, result in enumerate(results) if result.place not in places.get(result.approval_id, ())],
+        reused_results=[place for place, result in enumerate(results) if id(result) in reused],
         refused_flights=[place for place, flight in enumerate(flights) if flight.flight > numbers.get(flight.approval_id, 0)],
     )
 
@@ -108,6 +115,14 @@ def _store(uav_id: int, stream: str, results: Sequence[NewResult], given: dict[U
             for place in sorted({result.place for result in new.values() if result.approval_id == approval.pk}):
                 mark_target(mission_id=approval.mission_id, target=place, state=_newest_outcome(approval, place))
     return len(new)
+
+
+def _numbers_used_again(uav_id: int, stream: str, own: Sequence[NewResult]) -> set[int]:
+    """Of results that are another than what is stored under their number: a counter that began anew, and no replay. By identity."""
+    run = InspectionResult.objects.filter(stream__uav_id=uav_id, stream__link=LinkKind.HTTP, stream__key=stream)
+    rows = run.filter(sequence__in=[result.sequence for result in own]).values_list("sequence", "approval", "place", "measured_at")
+    stored = {sequence: what for sequence, *what in rows}
+    return {id(result) for result in own if stored[result.sequence] != [result.approval_id, result.place, result.measured_at]}
 
 
 def _targets(given: dict[UUID, Approval]) -> dict[tuple[UUID, int], int]:

@@ -26,7 +26,7 @@ from telemetry.serializers.uav_link import (
     StoredResultsSerializer,
     read_result,
 )
-from telemetry.services.companion_reports import take_reports
+from telemetry.services.companion_reports import USED_AGAIN, take_reports
 from telemetry.services.heard import note_heard_over_http
 from telemetry.services.results import EndedFlight, take_results
 from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
@@ -113,6 +113,7 @@ class UavResults(UavView):
             received_at=received_at,
         )
         refused |= {read[place][0]: {"place": "It is no target that this UAV was sent to."} for place in taken.refused_results}
+        refused |= {read[place][0]: {"sequence": USED_AGAIN} for place in taken.reused_results}
         told = [_refused(index, envelope["results"][index], faults) for index, faults in sorted(refused.items())]
         return Response({"stored": taken.stored, "known": taken.known, "refused": told, "refused_flights": taken.refused_flights})
 

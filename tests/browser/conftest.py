@@ -39,16 +39,17 @@ for name, role in {USERS!r}.items():
 class Site:
     """Where it is, and the cookies of those who have come in: only the first of their tests goes through the door.
 
-    `does(code)` runs Python in the installation, for what no page can bring about.
+    `does(code)` runs Python in the installation, for what no page can bring about. Vehicles speak to its gateway by UDP.
     """
 
     address: str
     does: Callable[[str], None]
+    gateway_port: int
     cookies: dict[str, list[Any]] = field(default_factory=dict)
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
+def _free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
+    with socket.socket(type=kind) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
@@ -59,8 +60,9 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
     osm_file = shared_data("osm/columbus-ohio.osm.pbf")
     state_dir = tmp_path_factory.mktemp("site")
     environment = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL", "DJANGO_SETTINGS_MODULE"}}
+    port, gateway_port = _free_port(), _free_port(socket.SOCK_DGRAM)
     environment |= {"SPANWISE_VAR": str(state_dir), "SPANWISE_BASE_MAP_TILES": ""}
-    port = _free_port()
+    environment |= {"SPANWISE_GATEWAY_UDP": f"127.0.0.1:{gateway_port}", "SPANWISE_GATEWAY_TCP": ""}
     zones_file = Path(__file__).with_name("zones.geojson")
 
     def run(*command: str) -> None:
@@ -71,7 +73,7 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
         run("./run", "--detach", "--port", str(port), "--osm", str(osm_file), "--zones", str(zones_file))
         does = partial(run, sys.executable, "manage.py", "shell", "-v", "0", "-c")
         does(NEW_USERS)
-        yield Site(address=f"http://127.0.0.1:{port}", does=does)
+        yield Site(address=f"http://127.0.0.1:{port}", does=does, gateway_port=gateway_port)
     finally:
         run("./run", "--stop")
         shutil.rmtree(Places(state_dir).data, ignore_errors=True)  # as root the database may stand outside the state folder

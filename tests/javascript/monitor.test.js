@@ -5,12 +5,15 @@ import { newAlerts } from "../../static/js/monitor/alarm.js";
 import { boardRows } from "../../static/js/monitor/board.js";
 import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/monitor/certainty.js";
 import { eventsOf } from "../../static/js/monitor/event_log.js";
+import { inAir } from "../../static/js/monitor/in_air.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
-import { sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
+import { overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
 import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
+import { placed } from "../../static/js/monitor/placed.js";
+import { unheardLines } from "../../static/js/monitor/unheard.js";
 import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { distance_m } from "../../static/js/mission/span_strip.js";
 
@@ -18,9 +21,12 @@ const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
 const ago = (seconds) => new Date(NOW_MS - seconds * 1000).toISOString();
 const plain = (text) => text.replace(/[\u00a0\u2009]/g, " ");
 
-function uav({ id = 1, age_s = 0.7, estimated = null, place = 0, ...measured } = {}) {
+const EACH_SECOND = { interval_s: 1, late_after_s: 5, silent_after_s: 10 };
+const EACH_TEN_SECONDS = { interval_s: 10, late_after_s: 25, silent_after_s: 30 };
+
+function uav({ id = 1, age_s = 0.7, estimated = null, place = 0, rhythm = EACH_SECOND, ...measured } = {}) {
   return {
-    id, name: `UAV ${id}`, mission: "m", place, link: { mode: "Mission", is_in_air: true, waypoint_sequence: null }, estimated,
+    id, name: `UAV ${id}`, mission: "m", place, link: { mode: "Mission", is_in_air: true, waypoint_sequence: null }, estimated, rhythm,
     measured: { measured_at: ago(age_s), received_at: ago(age_s), position: [10, 50], altitude_relative_m: 45, speed_mps: 9.8, heading_deg: 90, battery_percent: 71, mode: "Mission", is_in_air: true, ...measured },
   };
 }
@@ -48,6 +54,35 @@ test("an estimated UAV stands where the estimate says, a measured one where it w
   assert.deepEqual(standsAt(uav({ estimated: estimate({ is_measured: true }) }), MEASURED).position, [10, 50]);
 });
 
+test("a UAV that reports each ten seconds is late when alerts call it late, and no sooner", () => {
+  const late = (age_s) => ageWords(uav({ age_s, rhythm: EACH_TEN_SECONDS }), NOW_MS);
+  assert.deepEqual(late(9.6), { words: "9.6 s ago", isLate: false });
+  assert.deepEqual([late(24.9).isLate, late(25).isLate], [false, true]);
+  assert.deepEqual([plain(late(29).words), plain(late(31).words)], ["29 s ago", "no report for 31 s"]);
+  assert.equal(certaintyOf(uav({ age_s: 20, rhythm: EACH_TEN_SECONDS }), NOW_MS), MEASURED, "nobody estimates it, and it is in time");
+  const between = uav({ age_s: 8, rhythm: EACH_TEN_SECONDS, estimated: estimate({ report_at: ago(8) }) });
+  assert.equal(certaintyOf(between, NOW_MS), ESTIMATED);
+  assert.equal(estimateWords(between, ESTIMATED, NOW_MS), null, "nothing is said of a gap that is usual");
+});
+
+test("a flight that was told to be over is over, whatever the last report said", () => {
+  const down = { ...uav(), link: { mode: "Mission", is_in_air: false, waypoint_sequence: null } };
+  assert.equal(inAir(down), false);
+  assert.equal(stateOf(down).words, "On the ground");
+  assert.equal(inAir({ ...uav(), measured: null }), true);
+});
+
+test("a UAV keeps its letter after its mission, until it flies another that is on the page", () => {
+  const mission = (id, ended_at, place) => ({ id, ended_at, uavs: [{ place, uav: 1, name: "Kite" }] });
+  const over = { ...uav({ estimated: estimate() }), mission: null, place: null };
+  assert.deepEqual(placed([over], [mission("a", ago(900), 1), mission("b", ago(60), 2)]).map((one) => [one.mission, one.place]), [["b", 2]]);
+  const [elsewhere] = placed([{ ...over, mission: "other", place: 5 }], [mission("a", ago(900), 1)]);
+  assert.deepEqual([elsewhere.mission, elsewhere.place, elsewhere.estimated.along_route_m], ["a", 1, null]);
+  const flying = { ...over, mission: "a", place: 1 };
+  assert.equal(placed([flying], [mission("a", null, 1), mission("b", ago(60), 2)])[0], flying);
+  assert.equal(placed([over], [])[0], over);
+});
+
 test("the age of a report is said, late ones in amber", () => {
   assert.deepEqual(ageWords(uav(), NOW_MS), { words: "0.7 s ago", isLate: false });
   assert.deepEqual(ageWords(uav({ age_s: 6 }), NOW_MS), { words: "6.0 s ago", isLate: true });
@@ -63,10 +98,10 @@ test("estimated figures have a tilde and name what a height is above", () => {
 });
 
 test("the box says how far off an estimate may be", () => {
-  const { strong, rest } = estimateWords(uav({ age_s: 74, estimated: estimate() }), ESTIMATED);
+  const { strong, rest } = estimateWords(uav({ age_s: 74, estimated: estimate() }), ESTIMATED, NOW_MS);
   assert.equal(plain(strong), "Estimated, within 410 m");
   assert.match(rest, /95 of 100 times.*Contact expected by/);
-  assert.equal(estimateWords(uav(), MEASURED), null);
+  assert.equal(estimateWords(uav(), MEASURED, NOW_MS), null);
 });
 
 test("modes of autopilots are said in one word each", () => {
@@ -143,4 +178,20 @@ test("an offer is said in a sentence, and target by target", () => {
   const offer = { difference: { uavs: [{ change: "changed" }, { change: "out" }], targets: [{ label: "Tower 31", from: 1, to: 2, message: "" }, { label: "Tower 51", from: 1, to: null, message: "Its battery does not last for it." }], unreached: 1 } };
   assert.equal(sentenceOf(offer), "1 UAV gets another route, 1 target changes hands, 1 target stays undone");
   assert.deepEqual(targetLines(offer), ["Tower 31: B → C", "Tower 51: B → Its battery does not last for it."]);
+});
+
+test("of an offer that is over it is said what became of it, and by whom or why", () => {
+  const { strong, rest } = overWords({ state: "accepted", outcome: "", decided_by: "opal", decided_at: ago(0) });
+  assert.match(`${strong} ${rest}`, /^The other plan is flown\. Decided by opal, /);
+  assert.equal(overWords({ state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null }).rest, "Kite has no range left.");
+});
+
+test("of UAVs that are not heard it is said who is told all the same", () => {
+  const named = (name, kind, heard_s) => ({ name, link: { kind, heard_at: heard_s === null ? null : ago(heard_s) } });
+  const uavs = [named("Tern", "mavlink", 60), named("Kite", "http", 60), named("Gull", "mavlink", 7_200), named("Wren", "mavlink", null)];
+  const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
+  assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
+  assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
+  assert.match(unheardLines(uavs.slice(0, 1), "pause", NOW_MS)[0], /^There is no link to Tern now/);
+  assert.deepEqual(unheardLines([], "return", NOW_MS), []);
 });

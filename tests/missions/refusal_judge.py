@@ -17,7 +17,7 @@ from django.contrib.gis.geos import GEOSGeometry, Polygon
 from inspection.models import Asset
 from missions.routing.problem import Priority
 from missions.services import PlanRequest
-from tests.missions.air import CLIMB_MPS, density, speeds_mps, watts, wind_mps
+from tests.missions.air import CLIMB_MPS, density, limit_mps, speeds_mps, watts, wind_mps
 from tests.missions.ground_judge import TALLEST_M, TallThings
 from tests.missions.plane import apart_m
 from tests.missions.zone_judge import WIDER, ZoneJudge
@@ -32,6 +32,7 @@ REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit",
 OF_WAYS = {"no_path", "wind", "beyond_range", "beyond_energy", "too_far_from_network"}
 NO_NUMBER = ("alone",)  # beside others nothing is missing that has one number
 _MISSING = re.compile(r"([\d,.]+) (k?m|Wh) more than")
+_MINUTES = re.compile(r": ([\d,.]+) min of flight\.")
 
 
 class RefusalJudge:
@@ -67,6 +68,8 @@ class RefusalJudge:
         is_told = missing(item) is not None or any(words in message for words in NO_NUMBER)
         if reason in {"beyond_range", "beyond_energy"} and not is_told:
             yield f"it does not say what is missing: {message}"
+        if missing(item) is not None and not any(_is_so_long(item, uav) for uav in request.uavs):
+            yield f"that are not the minutes of any UAV: {message}"
 
     def _bars(self, course: Any, request: PlanRequest) -> bool:
         """Whether a zone that a flight could meet there lies within its clearance, at some time of the flight."""
@@ -163,6 +166,21 @@ def missing(item: dict[str, Any]) -> tuple[float, float] | None:
         return None
     amount = float(found[1].replace(",", ""))
     return (0.0, amount) if found[2] == "Wh" else (amount * (1_000.0 if found[2] == "km" else 1.0), 0.0)
+
+
+def _is_so_long(item: dict[str, Any], uav: Any) -> bool:
+    """Whether what is missing is what this UAV flies in so many seconds, and the message rounds them up to minutes."""
+    found = _MINUTES.search(item["message"])
+    if found is None or item["missing_s"] is None:
+        return False
+    if item["missing_wh"] is None:
+        seconds = item["missing_m"] / uav.cruise_speed_mps
+    elif uav.performance.battery_wh is None:
+        return False
+    else:
+        seconds = item["missing_wh"] * 3_600.0 / watts(uav.performance, min(uav.cruise_speed_mps, limit_mps(uav)), 0.0, 1.225)
+    is_rounded = -0.2 <= float(found[1].replace(",", "")) * 60.0 - item["missing_s"] <= 6.2
+    return is_rounded and abs(seconds - item["missing_s"]) <= 0.01 * seconds + 0.3
 
 
 def first_of_all(request: PlanRequest, target: int, more_m: float = 0.0, more_wh: float = 0.0) -> PlanRequest:

@@ -164,7 +164,7 @@ def test_what_cannot_be_charged_for_is_left_out_and_nothing_else() -> None:
     plan = make_plan(request=request(*there, *here.towers, uavs=(small,), charging_w=300.0))
     assert reasons(plan) == dict.fromkeys(range(6), "beyond_energy")
     assert all("However Tern charges" in item["message"] for item in plan["unassigned"])
-    assert all(" Wh more than the battery of Tern may give." in item["message"] for item in plan["unassigned"])
+    assert all(" Wh more than the battery of Tern may give: " in item["message"] for item in plan["unassigned"])
     assert sorted(plan["routes"][0]["targets"]) == [6, 7, 8, 9, 10, 11]
     assert plan["routes"][0]["charging"]
     assert plan["gap"] is None
@@ -239,7 +239,7 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN)
     plan = make_plan(request=request(here.towers[5], uavs=(small,)))
     assert reasons(plan) == {0: "beyond_energy"}
-    said = f"it takes {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the battery of Tern may give."
+    said = f"it takes {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the battery of Tern may give: 0.3 min of flight."
     assert plan["unassigned"][0]["message"] == f"Over the ground and what stands tall {said}"
 
 
@@ -250,7 +250,7 @@ def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path
     drawn_wh = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
     small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN, sorties=2)
     (item,) = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=300.0))["unassigned"]
-    assert item["message"].endswith("there and back, 0.7 Wh more than the battery of Tern may give.")
+    assert item["message"].endswith("there and back, 0.7 Wh more than the battery of Tern may give: 0.3 min of flight.")
 
 
 def test_what_is_missing_is_of_the_route_that_is_the_least_as_it_is_drawn() -> None:

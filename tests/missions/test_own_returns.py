@@ -83,11 +83,26 @@ def test_a_hill_is_looked_at_where_there_is_terrain(uav, tmp_path):
     assert told(mission)["state"] == "clear"
 
 
-@pytest.mark.parametrize(("facts", "words"), [({"RTL_ALT_TYPE": 1.0}, "does not return straight")])
-def test_what_cannot_be_checked_is_said(facts, words, mission, uav):
+@pytest.mark.parametrize(
+    ("facts", "words"),
+    [
+        ({"RTL_ALT_TYPE": 1.0}, "By RTL_ALT_TYPE 1 Tern does not return straight"),
+        ({"OA_TYPE": 2.0}, "By OA_TYPE 2 Tern does not return straight"),
+        ({"RALLY_TOTAL": 2.0}, "Tern holds rally points that are not this mission's"),
+    ],
+)
+def test_a_way_home_that_is_not_the_straight_one_is_not_known(facts, words, mission, uav):
     read(uav, **facts)
     found = told(mission)
-    assert found["state"] == "not_checked" and words in found["warnings"][0]
+    assert found["state"] == "unknown" and words in found["warnings"][0]
+
+
+def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
+    note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0})
+    found = told(mission)
+    assert found["state"] == "unknown" and "RTL_TYPE was not read from Tern" in found["warnings"][0]
+    note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0})
+    assert told(mission)["state"] == "clear"
 
 
 def test_a_companions_return_is_its_own(mission, uav):

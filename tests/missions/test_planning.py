@@ -16,7 +16,7 @@ from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import EndAction, Uav
 from missions.routing.problem import Objective, Task, TaskKind
-from missions.services import BaseRequest, InvalidRequest, TargetRequest, make_plan
+from missions.services import NO_SHORTFALL, BaseRequest, InvalidRequest, TargetRequest, make_plan
 from missions.services.best_so_far import PlanProgress
 from tests.exact_geometry import segment_meets_polygon
 from tests.inspection import ground
@@ -305,7 +305,7 @@ def test_when_no_uav_can_take_off_every_target_says_so() -> None:
     here = world()
     zone_around(UAV_AT)
     plan = make_plan(request=request(here.towers[0]))
-    assert plan["unassigned"] == [{"target": 0, "reason": "no_path", "message": "There is no UAV that can take off."}]
+    assert plan["unassigned"] == [{"target": 0, "reason": "no_path", "message": "There is no UAV that can take off.", **NO_SHORTFALL}]
 
 
 @pytest.mark.parametrize("action", list(EndAction))

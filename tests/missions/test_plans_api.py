@@ -12,6 +12,7 @@ from missions import tasks
 from missions.models import Mission
 from missions.routing import solver
 from missions.routing.progress import Progress
+from missions.services import NO_SHORTFALL
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.counters import forget_counts
@@ -63,7 +64,9 @@ def test_a_plan_has_the_promised_shape(here: World, client: Client) -> None:
         assert set(waypoint) == {
             "position", "kind", "asset", "target", "task", "altitude_agl_m", "altitude_amsl_m", "altitude_relative_m",
         }  # fmt: skip
-    assert plan["unassigned"] == [{"target": 1, "reason": "too_far_from_network", "message": "It is more than 10 km from the network."}]
+    assert plan["unassigned"] == [
+        {"target": 1, "reason": "too_far_from_network", "message": "It is more than 10 km from the network.", **NO_SHORTFALL}
+    ]
 
 
 def test_nothing_is_stored(here: World, client: Client) -> None:

@@ -18,9 +18,9 @@ MONDAY_NOON = datetime(2026, 11, 23, 12, 0, tzinfo=UTC)
 AT_THE_LINE = (10.010, 56.0)
 
 
-def timed_zone(begins: datetime, ends: datetime, **facts: Any) -> NoFlyZone:
+def timed_zone(begins: datetime, ends: datetime, half_deg: float = 0.0005, **facts: Any) -> NoFlyZone:
     """Across the line between the third and the fourth tower."""
-    zone = zone_around(AT_THE_LINE, 0.0005, name="Air show")
+    zone = zone_around(AT_THE_LINE, half_deg, name="Air show")
     period = {"startDateTime": f"{begins:%Y-%m-%dT%H:%M:%SZ}", "endDateTime": f"{ends:%Y-%m-%dT%H:%M:%SZ}", "schedule": []}
     NoFlyZone.objects.filter(pk=zone.pk).update(schedule=[period], **facts)
     zone_around((0.0, 0.0), 0.0001, name="elsewhere, so that the ground has changed")
@@ -92,12 +92,18 @@ def test_each_waypoint_has_its_arrival_and_the_battery_left() -> None:
     assert route["used_wh"] is None
 
 
-def test_a_plan_that_goes_round_a_zone_of_its_time_tells_how_far_it_is_from_the_plan_without_it() -> None:
+@pytest.mark.parametrize("half_deg", [0.0005, 0.008])
+def test_a_plan_that_goes_round_a_zone_of_its_time_tells_how_far_it_is_from_the_plan_without_it(half_deg: float) -> None:
+    """Round the small one it leaves the line, which counts double, and flies no more metres."""
     here = world()
-    timed_zone(MONDAY_NOON - timedelta(hours=1), MONDAY_NOON + timedelta(hours=1))
+    timed_zone(MONDAY_NOON - timedelta(hours=1), MONDAY_NOON + timedelta(hours=1), half_deg)
     round_it = make_plan(request=request(here.towers[5], departs_at=MONDAY_NOON))
-    assert not round_it["is_proven"]
-    assert round_it["gap"] is None or 0.0 < round_it["gap"] < 1.0
+    without = make_plan(request=request(here.towers[5], departs_at=MONDAY_NOON + timedelta(hours=3)))
+    assert (without["is_proven"], without["gap_of"]) == (True, "all_plans")
+    assert (round_it["is_proven"], round_it["gap_of"]) == (False, "without_timed_zones")
+    more_m = max(0.0, round_it["total_length_m"] - without["lower_bound_m"])
+    assert round_it["gap"] == pytest.approx(more_m / round_it["total_length_m"], abs=2e-6)
+    assert (more_m > 100.0) == (half_deg > 0.001)
 
 
 def test_two_uavs_from_one_place_are_kept_apart() -> None:

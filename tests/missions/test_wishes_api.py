@@ -14,7 +14,7 @@ from workspace.models import Job, JobState, Role
 
 pytestmark = pytest.mark.django_db
 
-QUALITY = {"lower_bound_m", "lower_bound_s", "lower_bound_wh", "gap", "is_proven", "method", "wish"}
+QUALITY = {"lower_bound_m", "lower_bound_s", "lower_bound_wh", "gap", "is_proven", "gap_of", "method", "wish"}
 
 
 @pytest.fixture

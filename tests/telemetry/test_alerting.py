@@ -68,6 +68,15 @@ def test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_
     assert (alert.opened_at, alert.closed_at, alert.close_reason) == (at(5), at(32), "cleared")
 
 
+def test_a_uav_whose_flight_was_told_to_be_over_is_not_missed_while_others_fly(uav, approval):
+    memories = watching(uav, approval)
+    look(watched=[seen(uav, approval)], now=at(10), memories=memories)
+    UavLink.objects.update(is_in_air=False)
+    look(watched=[seen(uav, approval)], now=at(30), memories=memories)
+    alert = Alert.objects.get()
+    assert (alert.code, alert.level, alert.close_reason) == ("link-lost", "warning", "landed")
+
+
 def test_a_watch_that_takes_over_opens_nothing_twice_and_closes_what_is_over(uav, approval):
     look(watched=[seen(uav, approval)], now=at(25), memories=watching(uav, approval))
     look(watched=[seen(uav, approval)], now=at(26), memories=Memories())

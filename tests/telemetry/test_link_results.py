@@ -8,6 +8,7 @@ from missions.models import Approval, CommandKind, LinkKind, Mission, MissionSta
 from missions.services.approval import revoke_approval
 from missions.services.outbox import queue_command
 from telemetry.models import InspectionResult, UavLink
+from telemetry.selectors.watched import watched_flights
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.worlds import World, world
 from tests.telemetry.uav_clients import UavClient, linked_uav, report, seconds_ago
@@ -61,10 +62,19 @@ def test_a_result_is_stored_and_moves_its_target(mission: Mission, kite: UavClie
 
 
 def test_a_result_that_is_sent_again_is_stored_once(mission: Mission, kite: UavClient) -> None:
-    tell(kite, result(1))
-    told = tell(kite, result(1, outcome="failed"), result(2, 1), result(2, 1))
-    assert (told["stored"], told["known"]) == (1, 2)
+    first, second = result(1), result(2, 1)
+    tell(kite, first)
+    told = tell(kite, first, second, second)
+    assert (told["stored"], told["known"], told["refused"]) == (1, 2, [])
     assert states() == [TargetState.COMPLETE, TargetState.COMPLETE]
+
+
+def test_another_result_under_a_number_that_is_taken_is_refused_and_not_called_known(mission: Mission, kite: UavClient) -> None:
+    tell(kite, result(1, 0, measured_at=seconds_ago(60)))
+    told = tell(kite, result(1, 0, "failed"), result(1, 1), result(2, 1, "skipped"))
+    assert (told["stored"], told["known"]) == (1, 0)
+    assert [(refused["index"], list(refused["faults"])) for refused in told["refused"]] == [(0, ["sequence"]), (1, ["sequence"])]
+    assert states() == [TargetState.COMPLETE, TargetState.SKIPPED]
 
 
 def test_the_newest_result_of_a_target_counts_in_whatever_order_they_come(mission: Mission, kite: UavClient) -> None:
@@ -89,6 +99,22 @@ def test_another_uavs_target_and_a_mission_that_was_not_sent_are_refused(here: W
     assert [(refused["index"], list(refused["faults"])) for refused in told["refused"]] == [(1, ["place"]), (2, ["place"]), (3, ["place"])]
     assert states()[other] == TargetState.PENDING
     assert [refused["index"] for refused in tell(linked_uav("Gull"), result(1, own["place"]))["refused"]] == [0]
+
+
+def test_a_target_is_of_the_mission_that_the_result_names(here: World, person: User, kite: UavClient) -> None:
+    """The same place in another mission of the same UAV is another target."""
+    first = dispatched(person, [kite.uav], [here.towers[1], here.bridge])
+    of_first = Approval.objects.get()
+    kite.get("route")
+    revoke_approval(mission=first, actor=person, reason="wind")
+    clear = kite.get("route").json()["commands"][0]["id"]
+    kite.post("acknowledgements", {"acknowledgements": [{"command": clear, "state": "applied"}]})
+    second = dispatched(person, [kite.uav], [here.towers[4]])
+    told = tell(kite, result(1, 0, approval=str(of_first.pk)), result(2, 1))
+    assert (told["stored"], [refused["index"] for refused in told["refused"]]) == (1, [1])
+    assert set(first.targets.values_list("state", flat=True)) == {TargetState.PENDING}
+    assert second.targets.get().state == TargetState.PENDING
+    assert InspectionResult.objects.get().mission == first
 
 
 def test_a_mission_that_was_approved_but_not_sent_takes_no_results(here: World, person: User, kite: UavClient) -> None:
@@ -133,6 +159,20 @@ def test_a_mission_is_complete_when_its_last_flight_is_flown(mission: Mission, k
     assert kite.get("route").status_code == 204
     tell(kite, flights=[flight])
     assert Mission.objects.get().state == MissionState.COMPLETED
+
+
+def test_a_uav_whose_flight_is_told_to_be_over_is_down_though_no_report_says_so(mission: Mission, kite: UavClient) -> None:
+    """Else it would be watched, and missed, long after its mission has ended."""
+    kite.get("route")
+    flight = {"approval": str(Approval.objects.get().pk), "flight": 1, "outcome": "flown"}
+    assert kite.report(report(1, mode="Mission", is_in_air=True)).status_code == 200
+    assert [flown.uav_id for flown in watched_flights()] == [kite.uav.pk]
+    tell(kite, flights=[flight])
+    assert Mission.objects.get().state == MissionState.COMPLETED
+    assert watched_flights() == []
+    kite.report(report(2, measured_at=seconds_ago(0), mode="Mission", is_in_air=True))
+    tell(kite, flights=[flight])
+    assert UavLink.objects.get(uav=kite.uav).is_in_air, "it has taken off again since, and the same word comes twice"
 
 
 def test_a_flight_that_was_never_approved_ends_no_mission(mission: Mission, kite: UavClient) -> None:

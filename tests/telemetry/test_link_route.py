@@ -245,6 +245,20 @@ def test_a_mission_that_is_revoked_is_taken_off_the_uav_first(here: World, perso
     assert kite.uav.connection.loaded_sha256 == ""
 
 
+def test_a_uav_that_knows_the_answer_before_is_told_that_its_approval_was_revoked(here: World, person: User, kite: UavClient) -> None:
+    mission = dispatched(person, [kite.uav], [here.towers[2]])
+    given = kite.get("route")
+    acknowledge(kite, given.json()["route"]["command"], "applied", content_sha256=given.json()["route"]["content_sha256"])
+    etag = kite.get("route")["ETag"]
+    assert kite.get("route", **{"If-None-Match": etag}).status_code == 304
+    revoke_approval(mission=mission, actor=person, reason="wind")
+    revoked = kite.get("route", **{"If-None-Match": etag})
+    assert (revoked.status_code, revoked.json()["route"]) == (200, None)
+    acknowledge(kite, revoked.json()["commands"][0]["id"], "applied")
+    for known in (etag, revoked["ETag"]):
+        assert kite.get("route", **{"If-None-Match": known}).status_code == 204, "neither answer is the present one"
+
+
 def test_what_is_changed_on_the_ground_afterwards_changes_nothing_of_what_was_approved(here: World, person: User, kite: UavClient) -> None:
     mission, _ = approved(person, [kite.uav], [here.bridge])
     outline = json.loads(here.bridge.geometry.json)

@@ -51,8 +51,19 @@ def test_a_replay_after_a_lost_link_is_stored_once_and_told(kite: UavClient) -> 
 
 
 def test_a_record_that_is_twice_in_one_batch_is_stored_once(kite: UavClient) -> None:
-    answer = kite.report(report(1), report(2), report(1)).json()
-    assert (answer["stored"], answer["known"]) == (2, 1)
+    twice = report(1)
+    answer = kite.report(twice, report(2), twice).json()
+    assert (answer["stored"], answer["known"], answer["refused"]) == (2, 1, [])
+
+
+def test_a_companion_that_was_started_anew_and_counts_from_0_in_the_old_stream_is_told(kite: UavClient) -> None:
+    """Silently dropped as known, its reports would be lost for as long as it takes to reach the old number."""
+    before = [report(number, measured_at=seconds_ago(100 - number)) for number in range(10)]
+    kite.report(*before)
+    answer = kite.report(report(0), before[3], report(4), report(10)).json()
+    assert (answer["stored"], answer["known"]) == (1, 1)
+    assert [(refused["index"], list(refused["faults"])) for refused in answer["refused"]] == [(0, ["sequence"]), (2, ["sequence"])]
+    assert kite.report(report(0), stream="boot-2").json()["stored"] == 1
 
 
 def test_sound_records_of_a_batch_are_stored_and_faulty_ones_named(kite: UavClient) -> None:

@@ -11,6 +11,7 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from missions.command_rules import HAND_OVER
 from missions.models import (
     CommandAxis,
     CommandKind,
@@ -26,7 +27,6 @@ from missions.models import (
 )
 from missions.services.approval import approve_mission, change_state, held_mission
 from missions.services.flying import end_if_over
-from missions.services.handover import HAND_OVER
 from missions.services.outbox import queue_command
 from missions.services.refused import refuse
 from missions.services.replanning.offers import end_offer, held_offer
@@ -51,7 +51,7 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
         mission, uavs = held_mission(held.mission_id, None), held.difference["uavs"]
         given_up = [uav["place"] for uav in uavs if uav["change"] in GIVEN_UP]
         mission.routes.filter(mission_uav__sequence__in=given_up).update(continued_by=held.continuation)
-        approval = approve_mission(mission=held.continuation, actor=actor)
+        approval = approve_mission(mission=held.continuation, actor=actor, is_under_way=True)
         continuation = held_mission(held.continuation_id, None)
         _hand_over_targets(mission, continuation, held.difference)
         why = f"Continues {mission.name}."

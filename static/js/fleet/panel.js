@@ -6,6 +6,7 @@ import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
 import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
+import { mountTypeLimits } from "./type_limits.js";
 import { MISSION_STATES, stateChip } from "./words.js";
 
 /** acts: { back, edit, put(state), remove, refresh, showUavs } */
@@ -49,6 +50,7 @@ export function mountPanel({ canPlan, acts }) {
     const connection = h("div", { class: "connection" });
     const credentials = h("ul", { class: "plain-list" });
     const missions = h("ul", { class: "plain-list" });
+    const limits = h("div", { class: "type-limits" });
     const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
     panel.hidden = false;
     panel.replaceChildren(
@@ -59,6 +61,8 @@ export function mountPanel({ canPlan, acts }) {
         canPlan && h("div", { class: "panel-acts" }, button("pencil", t("Edit"), acts.edit), isUav && stateButtons(row), h("button", { type: "button", class: "icon-button", "aria-label": t("Delete {name}", row), title: t("Delete"), onclick: acts.remove }, icon("trash-2"))),
         h("dl", { class: "facts" }, kind.facts(row)),
         !isUav && row.uav_count > 0 && h("p", {}, h("button", { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) }, tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"))),
+        kind.tab === "types" && h("h3", {}, t("Alerts")),
+        kind.tab === "types" && limits,
         isUav && h("h3", {}, t("Link")),
         isUav && connection,
         isUav && credentials,
@@ -72,6 +76,7 @@ export function mountPanel({ canPlan, acts }) {
       mountCredentials(credentials, row, { canPlan, onChange: acts.refresh }).catch(acts.failed);
       fillMissions(missions, none, `/uavs/${row.id}/missions`).catch(acts.failed);
     }
+    if (kind.tab === "types") mountTypeLimits(limits, row, { canPlan, failed: acts.failed }).catch(acts.failed);
     return title;
   }
 

@@ -1,6 +1,6 @@
 /** Sends a file part by part; a cut connection goes on where it was. */
 
-import { ApiError, get, post, put } from "../api.js";
+import { ApiError, get, post, putBytes } from "../api.js";
 
 const LONGEST_WAIT_S = 15;
 const WORTH_ANOTHER_TRY = new Set([0, 408, 429, 500, 502, 503, 504]);
@@ -21,7 +21,7 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
       if (upload.is_complete) return upload.id;
       const end = Math.min(upload.received_bytes + upload.part_bytes, file.size);
       const part = file.slice(upload.received_bytes, end);
-      ({ data: upload } = await put(`/uploads/${upload.id}/bytes/${upload.received_bytes}`, part, { signal }));
+      ({ data: upload } = await putBytes(`/uploads/${upload.id}/bytes/${upload.received_bytes}`, part, { signal }));
       wait_s = 1;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

@@ -47,11 +47,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     const view = addressed();
     if (view) map.jumpTo({ center: view.centre, zoom: view.zoom });
   });
-  map.on("error", ({ error, sourceId }) => {
-    // A base map that cannot be reached is no fault of ours: the map is complete without it.
-    if (sourceId === "base-map" || sourceId === "satellite") return;
-    if (error?.name !== "AbortError") console.warn(`map: ${error?.message ?? error}`);
-  });
+  tellFaults(map);
 
   let fitted = null; // the box that the map was brought to, until somebody moves it
   let isFitting = false;
@@ -109,6 +105,20 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
       fitTo(box, animate && !calm ? 350 : 0);
     },
   };
+}
+
+/**
+ * What goes wrong in a map is told in the console, once in our words: every map needs this, or MapLibre tells it there as it is.
+ *
+ * A base map that cannot be reached is no fault of ours, the map is complete without it. Nor are tiles that were asked for when the network
+ * went away, or the page: the page says so itself.
+ */
+export function tellFaults(map) {
+  map.on("error", ({ error, sourceId }) => {
+    if (sourceId === "base-map" || sourceId === "satellite") return;
+    const isCutOff = error?.status === 0;
+    if (error?.name !== "AbortError" && !isCutOff) console.warn(`map: ${error?.message ?? error}`);
+  });
 }
 
 const sizeOf = ({ clientWidth, clientHeight }) => `${clientWidth} x ${clientHeight}`;

@@ -2,6 +2,7 @@
 
 import { routeLetter } from "../map/palette.js";
 import { t } from "../text.js";
+import { inAir } from "./in_air.js";
 import { isHeld } from "./uav_words.js";
 
 export const STATES = {
@@ -50,7 +51,7 @@ function rowOf(mission, target, uav, numbers) {
   const arrival = arrivals.find((entry) => entry.target === target.place);
   const isToCome = ["pending", "in-progress"].includes(target.state);
   const isNext = arrivals.find((entry) => entry.target !== null)?.target === target.place;
-  const state = isToCome && isNext && isHeld(uav) ? "held" : target.state === "pending" && isNext && uav.measured?.is_in_air ? "in-progress" : target.state;
+  const state = isToCome && isNext && isHeld(uav) ? "held" : target.state === "pending" && isNext && inAir(uav) ? "in-progress" : target.state;
   return {
     key: `${mission.id} ${target.place}`,
     mission: mission.id,

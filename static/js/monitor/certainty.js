@@ -1,8 +1,7 @@
 /** How sure a live page is of where a UAV is: measured, estimated, or lost. Values in, values out; times in milliseconds since 1970. */
 
 export const FRESH_S = 3; // a report that is no older is shown as it is: one a second may well be two seconds on its way
-export const LATE_S = 5; // a report older than this is said in amber
-export const SILENT_S = 10; // and from here on it is said that there is none
+const RENEWED_S = 10; // an estimate that is older is of a watch that is gone
 
 export const MEASURED = "measured";
 export const ESTIMATED = "estimated";
@@ -13,15 +12,20 @@ export function reportAge_s({ measured }, now_ms) {
   return measured ? Math.max(0, (now_ms - Date.parse(measured.measured_at)) / 1000) : null;
 }
 
-/** An estimate that nobody renews is no estimate any more. */
-const isRenewed = ({ estimated }, now_ms) => estimated !== null && now_ms - Date.parse(estimated.at) < SILENT_S * 1000;
+/** Whether its next report should have come, by how often they come and by the limits that alerts keep to. */
+export const isLate = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
+
+/** Whether so many have not come that it counts as silent. */
+export const isSilent = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? Infinity) >= uav.rhythm.silent_after_s;
+
+const isRenewed = ({ estimated }, now_ms) => estimated !== null && now_ms - Date.parse(estimated.at) < RENEWED_S * 1000;
 
 /** MEASURED, ESTIMATED or LOST; null for a UAV that was never seen. */
 export function certaintyOf(uav, now_ms) {
   const { measured, estimated } = uav;
   if (!measured?.position && !estimated) return null;
   const age_s = reportAge_s(uav, now_ms);
-  const isFresh = age_s !== null && age_s < SILENT_S;
+  const isFresh = !isSilent(uav, now_ms);
   if (isRenewed(uav, now_ms)) {
     if (estimated.is_lost) return LOST;
     if (age_s !== null && age_s < FRESH_S && measured.position) return MEASURED;

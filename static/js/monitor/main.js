@@ -12,6 +12,7 @@ import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
 import { inOrder } from "./order.js";
+import { placed } from "./placed.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
@@ -35,7 +36,7 @@ const commanding = page.canFly ? createCommanding(store) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
-mountCards(store, { pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
+mountCards(store, { isOfOne: page.mission !== null, pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
 mountOffers(store, page);
 const alertKeys = mountAlerts(store, page, { pick, commanding });
 mountBoard(store, {
@@ -99,6 +100,7 @@ function take(touched) {
 
 function show() {
   const told = Object.fromEntries([...waiting].map((kind) => [kind, [...feed.shown[kind].values()]]));
+  if (told.uavs || told.missions) told.uavs = placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]);
   waiting = null;
   store.update({ ...told, now_ms: feed.now_ms() });
   store.update({ isWhole: true }); // from here on what comes is news

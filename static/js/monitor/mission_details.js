@@ -1,6 +1,7 @@
 /** What the feed does not tell: plans of missions, and the line flown so far. Read once, and again when a mission changes. */
 
 import { ApiError, get } from "../api.js";
+import { inAir } from "./in_air.js";
 
 const MOST_RECORDS = 900;
 const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what was flown
@@ -64,7 +65,7 @@ export function createMissionDetails(store) {
 
   store.listen(["missions"], ({ missions }) => missions.forEach((mission) => void read(mission)));
   store.listen(["uavs"], ({ uavs }) => {
-    const isNew = uavs.map(({ id, mission, measured }) => mission !== null && measured?.position && measured.is_in_air !== false && addReport(flown, id, measured.position, Date.parse(measured.measured_at)));
+    const isNew = uavs.map((uav) => uav.mission !== null && uav.measured?.position && inAir(uav) !== false && addReport(flown, uav.id, uav.measured.position, Date.parse(uav.measured.measured_at)));
     if (isNew.some(Boolean)) tell();
   });
 }

@@ -7,6 +7,14 @@ import { clockText, lengthText, percentText } from "../units.js";
 const CAUSES = { "uav-out": t("A UAV has dropped out"), "zone-active": t("A no-fly zone has come into force"), "battery-short": t("A battery will not do"), "asked-for": t("Asked for") };
 const CHANGES = { untouched: t("flies on as approved"), changed: t("gets another route"), recalled: t("is told to return"), out: t("has dropped out") };
 
+const OUTCOMES = { accepted: t("The other plan is flown."), declined: t("The other plan was declined: what was approved is flown."), outdated: t("The other plan is offered no more."), impossible: t("No other plan can be flown.") };
+
+/** Of an offer that is over: { strong, rest }. */
+export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
+  strong: OUTCOMES[state],
+  rest: decided_by ? t("Decided by {who}, {time}.", { who: decided_by, time: clockText(decided_at) }) : (outcome ?? ""),
+});
+
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
 export const causeWords = ({ code }) => CAUSES[code] ?? code;
 
@@ -23,12 +31,16 @@ export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 
 
 const figureWords = (figures) => [lengthText(figures.length_m), figures.ends_at && t("lands {time}", { time: clockText(figures.ends_at) }), typeof figures.battery_percent === "number" && t("with {figure}", { figure: percentText(figures.battery_percent) })].filter(Boolean).join(", ");
 
-/** Per UAV: [{ place, letter, name, what, before, after, why }] */
+/** Per UAV: [{ place, letter, name, what, before, after, why }]. Of one that is out its reason names it and says all. */
 export const uavLines = ({ difference: { uavs = [] } }) =>
-  uavs.map(({ place, name, change, before, after, why, gained, lost }) => ({
-    place, letter: routeLetter(place), name, what: [CHANGES[change] ?? change, gained.length > 0 && `+${gained.length}`, lost.length > 0 && `−${lost.length}`].filter(Boolean).join(" "),
-    before: change === "changed" && before ? figureWords(before) : "", after: after ? figureWords(after) : "", why,
-  }));
+  uavs.map(({ place, name, change, before, after, why, gained, lost }) => {
+    const saysAll = change === "out" && Boolean(why);
+    const counts = [gained.length > 0 && `+${gained.length}`, lost.length > 0 && `−${lost.length}`];
+    return {
+      place, letter: routeLetter(place), name: saysAll ? why : name, what: [!saysAll && (CHANGES[change] ?? change), ...counts].filter(Boolean).join(" "),
+      before: change === "changed" && before ? figureWords(before) : "", after: after ? figureWords(after) : "", why: saysAll ? "" : why,
+    };
+  });
 
 /** Per target that changes hands or is given up: ["Tower 31: B → C", …] */
 export const targetLines = ({ difference: { targets = [] } }) =>

@@ -2,7 +2,8 @@
 
 import { t } from "../text.js";
 import { clockText, durationText, exactClockText, heightText, lengthText, numberText, percentText, speedText } from "../units.js";
-import { ESTIMATED, LATE_S, LOST, MEASURED, reportAge_s, SILENT_S, withinOf_m } from "./certainty.js";
+import { ESTIMATED, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "./certainty.js";
+import { inAir } from "./in_air.js";
 
 const AMBER = "warning";
 const MODES = [
@@ -16,7 +17,7 @@ const MODES = [
 /** { words, level }: what it does, as far as it has told. */
 export function stateOf({ measured, link }) {
   const mode = (measured?.mode || link?.mode || "").trim();
-  const isInAir = measured?.is_in_air ?? link?.is_in_air ?? null;
+  const isInAir = inAir({ measured, link });
   if (!mode && isInAir === null) return { words: t("Not heard yet"), level: null };
   if (isInAir === false) return { words: measured?.is_armed ? t("Armed, on the ground") : t("On the ground"), level: null };
   const known = MODES.find(([pattern]) => pattern.test(mode.toUpperCase().replace(/^AUTO\./, "")));
@@ -29,7 +30,7 @@ export const isHeld = (uav) => stateOf(uav).words === t("Holding");
 export function ageWords(uav, now_ms) {
   const age_s = reportAge_s(uav, now_ms);
   if (age_s === null) return { words: t("no report yet"), isLate: false };
-  if (age_s < SILENT_S) return { words: t("{age} s ago", { age: numberText(age_s, 1) }), isLate: age_s >= LATE_S };
+  if (!isSilent(uav, now_ms)) return { words: t("{age} s ago", { age: numberText(age_s, age_s < 10 ? 1 : 0) }), isLate: isLate(uav, now_ms) };
   const age = age_s < 100 ? `${Math.floor(age_s)}\u00a0s` : durationText(age_s);
   return { words: t("no report for {age}", { age }), isLate: true };
 }
@@ -59,9 +60,10 @@ export function figuresOf({ measured, estimated }, certainty) {
   ];
 }
 
-/** The box under an estimated UAV: { strong, rest }; null for a measured one. */
-export function estimateWords({ estimated, measured }, certainty) {
-  if (certainty === null || certainty === MEASURED) return null;
+/** The box under an estimated UAV: { strong, rest }; null for a measured one, and for one whose next report is not due yet. */
+export function estimateWords(uav, certainty, now_ms) {
+  const { estimated, measured } = uav;
+  if (certainty === null || certainty === MEASURED || (certainty === ESTIMATED && !isLate(uav, now_ms))) return null;
   const seen = measured ? t("Last report {time}.", { time: exactClockText(measured.measured_at) }) : "";
   if (certainty === LOST) return { strong: t("Lost: nobody can say where it is now."), rest: seen };
   const contact = estimated.contact_expected_at ? t("Contact expected by {time}.", { time: exactClockText(estimated.contact_expected_at) }) : seen;

@@ -23,7 +23,7 @@ def detect(situation: Situation) -> list[Finding]:
     heard_s = situation.heard_s
     if heard_s is None:
         return []
-    silent_s, interval_s = situation.now_s - heard_s, situation.memory.usual_interval_s
+    silent_s, interval_s = situation.now_s - heard_s, situation.report_interval_s
     if silent_s < late_after_s(situation.limits, interval_s):
         return []
     is_lost = silent_s >= lost_after_s(situation.limits, interval_s)

@@ -15,6 +15,7 @@ ENDS_WITHIN_S = 9.5
 
 
 class Command(BaseCommand):
+    requires_system_checks = ()  # set-up has made them; it starts again at once when it has been killed
     help = (
         "Run a watch: it estimates where each UAV on a mission is, once a second. "
         "Any number can run at once; each UAV is estimated by one of them, and taken over when it is gone."

@@ -19,6 +19,7 @@ ENDS_WITHIN_S = 9.5
 
 
 class Command(BaseCommand):
+    requires_system_checks = ()  # set-up has made them; it starts again at once when it has been killed
     help = (
         "Run a MAVLink gateway: vehicles talk to it by UDP and TCP, it stores what they report and brings them their commands. "
         "Any number can run at once; each UAV is served by one of them."

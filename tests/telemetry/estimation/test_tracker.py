@@ -96,6 +96,14 @@ def test_nothing_is_estimated_before_the_first_position(knowledge):
     assert tracker.estimate(T0 + 1) is None
 
 
+def test_how_far_apart_reports_come_is_told_by_their_arrivals(knowledge):
+    """Ten reports in one parcel each ten seconds; one alone tells nothing."""
+    assert at(tracked(knowledge, eastwards(range(1))), 5.0).report_interval_s is None
+    assert at(tracked(knowledge, eastwards(range(10))), 10.0).report_interval_s == pytest.approx(1.0)
+    parcels = [replace(one, received_s=T0 + 10.0 * (number // 10 + 1)) for number, one in enumerate(eastwards(range(30)))]
+    assert at(tracked(knowledge, parcels), 30.0).report_interval_s == 10.0
+
+
 def test_between_reports_it_goes_on_along_its_route(knowledge):
     estimate = at(tracked(knowledge, eastwards(range(10))), 19.0)
     east_m, north_m = metres(estimate)

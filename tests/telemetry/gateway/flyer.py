@@ -27,6 +27,7 @@ class Flyer:
     seed: int = 1
     heard: list[Any] = field(default_factory=list)
     is_silent: bool = False
+    is_unheard: bool = False  # it hears, and nothing that it says arrives
     booted_s: float = field(default_factory=time.monotonic)
 
     def __enter__(self) -> "Flyer":
@@ -82,7 +83,7 @@ class Flyer:
 
     def _send(self, messages: list[Any]) -> None:
         for message in messages:
-            if self.is_silent or self._chance.random() < self.loss:
+            if self.is_silent or self.is_unheard or self._chance.random() < self.loss:
                 continue
             with self._lock:
                 try:

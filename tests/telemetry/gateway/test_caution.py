@@ -125,7 +125,7 @@ def test_nothing_is_set_in_motion_while_it_is_loaded(kind, loading):
 
 
 def test_an_abort_is_claimed_however_many_uploads_there_are():
-    session = SimpleNamespace(uav=SimpleNamespace(uav_id=1), is_served=lambda *_: True)
+    session = SimpleNamespace(uav=SimpleNamespace(uav_id=1), is_served=lambda *_: True, may_hear=lambda _: True)
     uploads = [a_command(CommandKind.UPLOAD_MISSION, number) for number in range(MOST_UPLOADS)]
     database = Database(renew_claims=lambda: {upload.pk: 1 for upload in uploads}, claim_commands=list)
     desk = a_desk(database, session)
@@ -221,7 +221,7 @@ def test_when_a_vehicle_was_heard_is_told_by_the_databases_clock(monkeypatch, tm
     session = Session(KnownUav(uav.pk, uav.organisation_id, uav.name, 7, True, None, None), deque(), link_id=1)
     (lease,) = take_leases(uav_ids=[uav.pk], holder="one/1", lease_s=10.0)
     session.serve(lease, time.monotonic() + 8.0)
-    session.heard_s = hour_ago_s - 1.0
+    session.belief.heard_s = hour_ago_s - 1.0
     save_links(states=[session.link_state()], holder="one/1")
     (ago_s,) = UavLink.objects.annotate(ago=Now() - F("heard_at")).values_list("ago", flat=True)
     assert 1.0 <= ago_s.total_seconds() < 4.0

@@ -220,3 +220,22 @@ def test_a_mission_is_taken_off_once_the_vehicle_may_be_written_to(uav, mission,
         vehicle.is_armed = vehicle.is_in_air = False
         assert ended(clear).state == CommandState.APPLIED, clear.outcome
     assert len(vehicle.lists[MissionType.MISSION]) == 1, "home alone"
+
+
+@pytest.mark.parametrize("flavour", [pytest.param(Flavour.PX4, marks=pytest.mark.long), Flavour.ARDUPILOT])
+def test_a_vehicle_that_goes_over_to_another_gateway_in_mid_upload_holds_what_was_approved(flavour, uav, mission, tmp_path):
+    vehicle = FLAVOURS[flavour]()
+    with (
+        gateway_at_work(tmp_path, name="one") as one,
+        gateway_at_work(tmp_path, name="two") as two,
+        flyer(vehicle, one, loss=0.2) as flying,
+    ):
+        wait_for(lambda: UavLink.objects.filter(uav=uav, holder__startswith="one/").exists())
+        upload = dispatch(mission)
+        wait_for(lambda: vehicle.heard_items >= 2, "some items")
+        flying.move_to(port_of(two))
+        assert UavCommand.objects.get(pk=upload.pk).state == CommandState.SENT, "in mid-upload"
+        assert ended(upload).state == CommandState.APPLIED, upload.outcome
+        assert upload.holder.startswith("two/") and upload.attempts == 2
+        assert holds(vehicle, load_of(upload).load, flavour)
+        wait_for(lambda: not Alert.objects.filter(closed_at=None, level="critical").exists(), "no alert")

@@ -14,7 +14,7 @@ from tests.workspace.people import somebody
 pytestmark = pytest.mark.django_db(transaction=True)
 TOLD = {
     Flavour.PX4: ({"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0, "RTL_MIN_DIST": 10.0}, {"RTL_RETURN_ALT": 85.0}, 85.0),
-    Flavour.ARDUPILOT: ({"RTL_ALT": 1_500.0, "RTL_CLIMB_MIN": 0.0}, {"RTL_ALT": 8_000.0}, 80.0),
+    Flavour.ARDUPILOT: ({"RTL_ALT": 1_500.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}, {"RTL_ALT": 8_000.0}, 80.0),
 }
 
 

@@ -9,6 +9,7 @@ from django.contrib.gis.geos import Point
 from missions.mavlink.signing import FrameWriter
 from missions.models import CredentialKind, Uav
 from missions.services.credentials import make_credential
+from telemetry.gateway import belief
 from telemetry.models import TelemetryRecord, UavLink
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for
 from tests.workspace.people import somebody
@@ -98,6 +99,25 @@ def test_a_new_key_counts_at_once(uav_and_key, tmp_path):
             vehicle.send(position(4_000))
             wait_for(lambda: losses(uav).get("wrong-signature"))
     assert not TelemetryRecord.objects.filter(sequence=4_000).exists()
+
+
+def test_who_speaks_without_the_key_that_was_shown_is_not_believed_though_unsigned_frames_are_allowed(uav_and_key, tmp_path, monkeypatch):
+    """Not even once the UAV is silent, nor by another gateway: its system id would be stolen."""
+    monkeypatch.setattr(belief, "SENDER_SILENT_S", 0.2)
+    uav, key = uav_and_key
+    Uav.objects.filter(pk=uav.pk).update(allows_unsigned=True)
+    for name in ("one", "two"):
+        with gateway_at_work(tmp_path, name=name) as gateway, Link(port_of(gateway), 3, key) as vehicle, Link(port_of(gateway), 3) as thief:
+            number = 1_000 if name == "one" else 2_000
+            vehicle.send(heartbeat(), position(number))
+            wait_for(lambda number=number: TelemetryRecord.objects.filter(sequence=number).exists())
+            time.sleep(0.5)
+            thief.send(heartbeat(), position(9_000, lon=20.0))
+            wait_for(lambda gateway=gateway: gateway.sessions[3].losses["unsigned"] >= 2)
+            thief.received()
+            time.sleep(1.2)
+            assert thief.received() == [], "nothing is said to it"
+    assert not TelemetryRecord.objects.filter(sequence=9_000).exists()
 
 
 def _rotated(uav) -> bytes:

@@ -42,7 +42,7 @@ pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
 ROUNDS = int(os.environ.get("SPANWISE_KILL_ROUNDS", "10"))
 AGAIN_WITHIN_S = 10.0
-FIRST_WITHIN_S = 60.0
+FIRST_WITHIN_S = 300.0  # where the planners' core has to be compiled first
 SYSTEM = 7
 KILLED = ("redis", "gateway", "estimator", "live", *WEB_PROGRAMS)
 

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from django.utils import timezone
 
-from missions.models import CommandKind, Mission, MissionUav, OfferState, ReplanOffer, UavCommand
+from missions.models import CommandKind, LinkKind, Mission, MissionUav, OfferState, ReplanOffer, Uav, UavCommand
 from missions.services.flying import mark_started, mark_target
-from telemetry.models import Alert, AlertLevel, UavLink
+from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
 from tests.missions.flights import carry, dispatched, fleet, ground
@@ -56,6 +56,22 @@ def test_what_flies_is_shown_as_it_is_described(tmp_path: Path) -> None:
     assert (target["state"], target["uav"], live["missions"][0]["counts"]) == ("complete", 0, {"complete": 1, "all": 1})
     assert target["state_at"] is not None
     assert live["missions"][0]["started_at"] is not None
+
+
+def test_a_report_is_late_when_alerts_call_it_late(tmp_path: Path) -> None:
+    ground(tmp_path / "ground.tif")
+    user, here, uavs = somebody(), world(), fleet("Kite", "Tern")
+    mission = dispatched(user, uavs, [here.towers[3], here.bridge])
+    carry(*uavs)
+    kite, tern = uavs
+    Uav.objects.filter(pk=tern.pk).update(link=LinkKind.HTTP)
+    store_records([record(kite, 1), record(tern, 1)])
+    UavWatch.objects.filter(uav=kite).update(estimated={"report_interval_s": 4.0})
+    told = {uav["name"]: uav["rhythm"] for uav in shown(user)["uavs"]}
+    assert told["Kite"] == {"interval_s": 4.0, "late_after_s": 10.0, "silent_after_s": 12.0}
+    assert told["Tern"] == {"interval_s": 10.0, "late_after_s": 25.0, "silent_after_s": 30.0}, "it was heard once, over HTTP"
+    Mission.objects.filter(pk=mission.pk).update(alert_limits={"link_late_s": 15.0, "link_lost_s": 60.0})
+    assert {uav["name"]: uav["rhythm"]["late_after_s"] for uav in shown(user)["uavs"]} == {"Kite": 15.0, "Tern": 25.0}
 
 
 def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:

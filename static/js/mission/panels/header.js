@@ -1,5 +1,7 @@
 /** The mission's name, state and one line of facts; what has to be said stands below. */
 
+import { openAlertLimits } from "../../alert_limits/dialog.js";
+import { ApiError } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
@@ -26,6 +28,16 @@ async function copyAddress(mission) {
   }
 }
 
+async function changeAlertLimits({ id, name }) {
+  const hint = t("For this mission alone, also while it flies. Empty: as the type of each UAV says, else the usual, in grey.");
+  try {
+    await openAlertLimits({ address: `/missions/${id}/alert-limits`, title: t("Where alerts begin: {name}", { name }), hint });
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+  }
+}
+
 /** canCopy: who plans missions may copy one that nobody can change; showPlace(position): on the map. */
 export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
   const name = byId("mission-name");
@@ -46,6 +58,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
         items.push({ icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) });
         items.push({ icon: "history", label: t("History"), act: () => void showHistory(mission) });
       }
+      if (canCopy && mission) items.push({ icon: "bell", label: t("Where alerts begin"), act: () => void changeAlertLimits(mission) });
       if (canCopy && mission) items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
       if (canPlan && mission) items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
       else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });

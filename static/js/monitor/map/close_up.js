@@ -3,7 +3,7 @@
 import { h, icon } from "../../dom.js";
 import { provideImages } from "../../map/images.js";
 import { maplibre } from "../../map/maplibre.js";
-import { boxAround } from "../../map/map_view.js";
+import { boxAround, tellFaults } from "../../map/map_view.js";
 import { mapStyle, repaint } from "../../map/style.js";
 import { t } from "../../text.js";
 import { ESTIMATED, withinOf_m } from "../certainty.js";
@@ -34,6 +34,7 @@ export function createCloseUp(view, frame, page) {
 
   function start() {
     small = new maplibre.Map({ container: place, style: mapStyle(view.palette(), options), interactive: false, attributionControl: false, fadeDuration: 0, center: latest.position, zoom: 14 });
+    tellFaults(small);
     redrawImages = provideImages(small, () => view.palette());
     small.on("load", () => {
       flightLayers.addTo(small, view.palette());

@@ -63,7 +63,7 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
         const look = `map-flyer ${uav.certainty} ${uav.place === null ? "" : `route-${routeNumber(uav.place)}`}`.trim();
         for (const kind of ["map-flyer", "measured", "estimated", "lost", ...[1, 2, 3, 4, 5, 6, 7, 8].map((number) => `route-${number}`)]) element.classList.toggle(kind, look.split(" ").includes(kind));
         element.classList.toggle("chosen", uav.isChosen);
-        certainty.textContent = `, ${CERTAINTIES[uav.certainty]}, `;
+        certainty.textContent = uav.fact.includes(CERTAINTIES[uav.certainty]) ? ", " : `, ${CERTAINTIES[uav.certainty]}, `;
         dart.replaceChildren(shapeOf(uav.heading_deg));
         letter.hidden = uav.letter === "";
         letter.textContent = uav.letter;

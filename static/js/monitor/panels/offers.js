@@ -7,10 +7,11 @@ import { confirmAct } from "../../mission/panels/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { clockText } from "../../units.js";
-import { causeWords, isUndecided, sentenceOf, targetLines, uavLines } from "../offer_words.js";
+import { causeWords, isUndecided, overWords, sentenceOf, targetLines, uavLines } from "../offer_words.js";
 
 export function mountOffers(store, page) {
   let drawn = "";
+  const putAway = new Set();
   let routesOf = ""; // the offer whose routes are on the map
 
   async function decide(offer, act, words) {
@@ -45,6 +46,16 @@ export function mountOffers(store, page) {
       page.canFly && h("div", { class: "alert-acts" }, h("button", { type: "button", class: "button primary", onclick: (event) => void accept(offer, event.currentTarget) }, t("Accept")), h("button", { type: "button", class: "button", onclick: () => void decide(offer, "decline", t("Declined: the plan stays as it is.")) }, t("Decline"))));
   }
 
+  /** The newest that is over, until somebody puts it away: what became of it, and where the flight goes on. */
+  function over(offer) {
+    const { strong, rest } = overWords(offer);
+    const goesOn = offer.state === "accepted" && page.mission === offer.mission;
+    return h("article", { class: "offer over" },
+      h("p", {}, icon(offer.state === "accepted" ? "circle-check" : "info", "small"), h("span", {}, h("strong", {}, strong), rest && ` ${rest}`)),
+      h("button", { type: "button", class: "icon-button tight", "aria-label": t("Put away"), title: t("Put away"), onclick: () => (putAway.add(offer.id), draw(store.state)) }, icon("x", "small")),
+      goesOn && h("a", { class: "button primary", href: `/missions/${offer.continuation}/fly` }, t("Watch it go on")));
+  }
+
   /** The offered routes, in the colours of the UAVs that would fly them. */
   async function drawRoutes(offer) {
     const wanted = offer?.continuation ?? "";
@@ -62,13 +73,17 @@ export function mountOffers(store, page) {
     if (routesOf === wanted) store.update({ offered });
   }
 
-  store.listen(["offers"], ({ offers }) => {
-    const shown = offers.filter(isUndecided);
-    const key = JSON.stringify(shown);
+  function draw({ offers }) {
+    const undecided = offers.filter(isUndecided);
+    const [newest] = offers.filter((offer) => !isUndecided(offer)).sort((a, b) => Date.parse(b.created_at) - Date.parse(a.created_at));
+    const last = undecided.length === 0 && newest && !putAway.has(newest.id) ? newest : null;
+    const key = JSON.stringify([undecided, last]);
     if (key === drawn) return;
     drawn = key;
-    byId("offers").hidden = shown.length === 0;
-    byId("offer-list").replaceChildren(...shown.map(card));
-    void drawRoutes(shown.find(({ state }) => state === "open"));
-  });
+    byId("offers").hidden = undecided.length === 0 && last === null;
+    byId("offer-list").replaceChildren(...(last ? [over(last)] : undecided.map(card)));
+    void drawRoutes(undecided.find(({ state }) => state === "open"));
+  }
+
+  store.listen(["offers"], draw);
 }

@@ -1,0 +1,29 @@
+"""The hash that names what was rehearsed: the same plan, UAVs and airframes, or another."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from missions.mavlink.content import FlightLoad, load_to_json
+from missions.mavlink.frozen import route_to_json
+from simulation.rehearsing.flying import RouteToFly
+
+
+def content_of(
+    routes: Sequence[RouteToFly], airframes: Sequence[str], batteries_wh: Sequence[float | None], departs_s: float | None
+) -> str:
+    """SHA-256 of the routes, their items, what flies them and when."""
+    parts: list[dict[str, Any]] = [
+        {
+            "uav": route.uav,
+            "route": route_to_json(route.route),
+            "items": [load_to_json(FlightLoad(items))["mission"] for items in route.items],
+            "reserve_percent": route.reserve_percent,
+            "airframe": airframe,
+            "battery_wh": battery_wh,
+        }
+        for route, airframe, battery_wh in zip(routes, airframes, batteries_wh, strict=True)
+    ]
+    text = json.dumps({"departs_s": departs_s, "routes": parts}, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()

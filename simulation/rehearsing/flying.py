@@ -1,0 +1,224 @@
+"""All routes of a mission flown together: each UAV flies the very items that it would be given, in lock-step of simulated time."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+
+from inspection.geodesy import LonLat
+from missions.mavlink.content import MissionItem
+from missions.mavlink.frozen import HOVER, Flight, FrozenRoute
+from simulation.verdict.flown import NO_WAYPOINT, Ending, FlownFlight, FlownRoute, FlownTrack
+
+TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND
+STEP_S = 0.04  # of a UAV's step
+STEPS_A_SAMPLE = 5
+TOGETHER_S = 1.0  # no UAV is ahead of another one by more
+HOVERS_S = 10.0  # after its last waypoint, before a flight that ends so is over
+PATIENCE = 3.0  # times the planned duration
+PATIENCE_S = 600.0  # and so much more: then a flight does not end by itself
+UP_THERE = 0.95  # of a take-off's height
+
+
+class Vehicle(Protocol):
+    """What flying a mission needs of a simulated UAV; see simulation.flight.uav.SimulatedUav."""
+
+    now_s: float
+
+    @property
+    def state(self) -> Any: ...
+    def step(self) -> None: ...
+    def load(self, items: Sequence[MissionItem]) -> Any: ...
+    def arm(self) -> Any: ...
+    def take_off(self, height_relative_m: float) -> Any: ...
+    def start_mission(self) -> Any: ...
+    def take_texts(self) -> list[str]: ...
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where and with what a flight begins; `seed` is its own."""
+
+    uav: int
+    flight: int
+    home: LonLat
+    ground_amsl_m: float | None
+    heading_deg: float
+    seed: int
+
+
+MakeVehicle = Callable[[Start], Vehicle]
+OnProgress = Callable[[float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class RouteToFly:
+    """A route with the items of each of its flights. planned_s is how long each flight is reckoned to take."""
+
+    uav: int
+    name: str
+    route: FrozenRoute
+    items: tuple[tuple[MissionItem, ...], ...]
+    reserve_percent: float
+    planned_wh: float | None = None
+    planned_s: float | None = None
+
+
+def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float, seed: int, on_progress: OnProgress) -> list[FlownRoute]:
+    """Fly them all, from the first take-off to the last landing. on_progress is told the share that is done; what it raises ends it all."""
+    flyers = [_Flyer(route, make, turnaround_s, seed * 1_000 + number) for number, route in enumerate(routes)]
+    now_s = min((flyer.next_s for flyer in flyers), default=math.inf)
+    while not all(flyer.is_over for flyer in flyers):
+        now_s = max(now_s + TOGETHER_S, min(flyer.next_s for flyer in flyers if not flyer.is_over))
+        for flyer in flyers:
+            flyer.fly_until(now_s)
+        on_progress(sum(flyer.share for flyer in flyers) / len(flyers))
+    return [flyer.flown() for flyer in flyers]
+
+
+@dataclass(eq=False)
+class _Rows:
+    """A track while it is being flown."""
+
+    rows: list[tuple[float, ...]] = field(default_factory=list)
+    texts: list[str] = field(default_factory=list)
+
+
+class _Flyer:
+    """One UAV through all flights of its route; each begins with another battery."""
+
+    def __init__(self, route: RouteToFly, make: MakeVehicle, turnaround_s: float, seed: int) -> None:
+        self._route, self._make, self._turnaround_s, self._seed = route, make, turnaround_s, seed
+        self._flights = route.route.flights
+        self._flown: list[FlownFlight] = []
+        self._vehicle: Vehicle | None = None
+        self._rows = _Rows()
+        self._begins_s = route.route.departs_s
+        self._was_up = self._is_waiting_to_start = False
+        self._complete_s = math.inf
+        self._failed = False
+
+    @property
+    def is_over(self) -> bool:
+        return self._failed or len(self._flown) >= len(self._flights)
+
+    @property
+    def next_s(self) -> float:
+        """When it has something to do next, after the mission's departure."""
+        if self.is_over:
+            return math.inf
+        return self._begins_s if self._vehicle is None else self._begins_s + self._vehicle.now_s
+
+    @property
+    def share(self) -> float:
+        """Of its route, by the times that are planned."""
+        if self.is_over:
+            return 1.0
+        begun = 0.0 if self._vehicle is None else min(self._vehicle.now_s / max(self._planned_s(self._flight), 1.0), 1.0)
+        return (len(self._flown) + begun) / len(self._flights)
+
+    def fly_until(self, now_s: float) -> None:
+        while not self.is_over and self.next_s < now_s - 1e-9:
+            if self._vehicle is None:
+                self._begin()
+            else:
+                self._sample_and_step(self._vehicle)
+
+    def flown(self) -> FlownRoute:
+        route = self._route
+        missing = tuple(FlownFlight(flight, None) for flight in self._flights[len(self._flown) :])
+        return FlownRoute(
+            route.uav, route.name, route.route, (*self._flown, *missing), route.reserve_percent, route.planned_wh, route.planned_s
+        )
+
+    @property
+    def _flight(self) -> Flight:
+        return self._flights[len(self._flown)]
+
+    @property
+    def _items(self) -> tuple[MissionItem, ...]:
+        return self._route.items[len(self._flown)]
+
+    def _planned_s(self, flight: Flight) -> float:
+        known = [waypoint.arrival_s for waypoint in flight.waypoints if waypoint.arrival_s is not None]
+        return max(max(known) - min(known), 60.0) if known else 600.0
+
+    def _begin(self) -> None:
+        flight = self._flight
+        self._rows, self._was_up, self._complete_s = _Rows(), False, math.inf
+        seed = self._seed * 100 + flight.number
+        start = Start(self._route.uav, flight.number, flight.take_off.position, flight.take_off.altitude_amsl_m, _heading_deg(flight), seed)
+        self._vehicle = vehicle = self._make(start)
+        self._note(vehicle)
+        has_take_off = bool(self._items) and self._items[0].command == TAKE_OFF
+        self._is_waiting_to_start = not has_take_off
+        orders = [vehicle.load(self._items), vehicle.arm()]
+        orders.append(vehicle.start_mission() if has_take_off else vehicle.take_off(flight.waypoints[0].altitude_relative_m))
+        refused = next((order for order in orders if not order.is_done), None)
+        if refused is not None:
+            self._rows.texts.append(refused.words)
+            self._end(Ending.REFUSED)
+
+    def _sample_and_step(self, vehicle: Vehicle) -> None:
+        for _ in range(STEPS_A_SAMPLE):
+            vehicle.step()
+        self._note(vehicle)
+        state = vehicle.state
+        self._was_up = self._was_up or state.is_in_air
+        if self._is_waiting_to_start and state.altitude_relative_m >= UP_THERE * self._flight.waypoints[0].altitude_relative_m:
+            self._is_waiting_to_start = False
+            vehicle.start_mission()
+        if state.mission_state == "complete" and math.isinf(self._complete_s):
+            self._complete_s = vehicle.now_s
+        if state.is_crashed:
+            self._end(Ending.CRASHED)
+        elif self._was_up and not state.is_in_air and not state.is_armed:
+            self._end(Ending.LANDED)
+        elif self._flight.end_action == HOVER and vehicle.now_s >= self._complete_s + HOVERS_S:
+            self._end(Ending.HOVERING)
+        elif vehicle.now_s > PATIENCE * self._planned_s(self._flight) + PATIENCE_S:
+            self._end(Ending.UNFINISHED)
+
+    def _note(self, vehicle: Vehicle) -> None:
+        state = vehicle.state
+        index = state.current_item
+        item = self._items[index] if 0 <= index < len(self._items) else None
+        is_on_mission = state.mode == "mission" and item is not None
+        waypoint = NO_WAYPOINT if item is None or item.waypoint is None or not is_on_mission else item.waypoint
+        is_coming_down = state.mode in ("land", "return") or (is_on_mission and item is not None and item.command == LAND_ITEM)
+        lon, lat = state.true_position
+        self._rows.rows.append((
+            self._begins_s + vehicle.now_s, lon, lat, state.altitude_amsl_m, state.altitude_relative_m, state.battery_percent,
+            state.battery_used_wh, waypoint, state.is_in_air, is_coming_down,
+        ))  # fmt: skip
+        self._rows.texts += vehicle.take_texts()
+
+    def _end(self, ending: Ending) -> None:
+        columns = np.array(self._rows.rows, dtype=np.float64)
+        track = FlownTrack(
+            t_s=columns[:, 0],
+            position=columns[:, 1:3],
+            amsl_m=columns[:, 3],
+            relative_m=columns[:, 4],
+            battery_percent=columns[:, 5],
+            used_wh=columns[:, 6],
+            waypoint=columns[:, 7].astype(np.int64),
+            is_in_air=columns[:, 8].astype(bool),
+            is_coming_down=columns[:, 9].astype(bool),
+            ending=ending,
+            said=tuple(self._rows.texts),
+        )
+        self._flown.append(FlownFlight(self._flight, track))
+        self._begins_s, self._vehicle = float(track.t_s[-1]) + self._turnaround_s, None
+        self._failed = not track.is_over_well
+
+
+def _heading_deg(flight: Flight) -> float:
+    """As the UAV is put down: towards the second waypoint."""
+    if len(flight.waypoints) < 2:
+        return 0.0
+    (lon, lat), (to_lon, to_lat) = flight.waypoints[0].position, flight.waypoints[1].position
+    east, north = (to_lon - lon) * math.cos(math.radians(lat)), to_lat - lat
+    return math.degrees(math.atan2(east, north)) % 360.0

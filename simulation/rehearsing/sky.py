@@ -1,0 +1,121 @@
+"""Under which conditions a mission is rehearsed: by name, or by a person's own figures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+from missions.flight_plan.conditions import MAX_WIND_MPS, Conditions, InvalidConditions, WindLayer, conditions_from_json, conditions_to_json
+
+FRESH_BREEZE_MPS = 8.0  # Beaufort 5 begins there (WMO-No. 306, code table 1100)
+STRONGER = 1.5  # than planned, where that is more
+STRONG_GUSTS_MPS = 2.0
+WIND_TURBULENT_FROM_MPS = 1.0  # in a calm there is no turbulence
+WORN_BATTERY_PERCENT = 80.0  # of its rated energy, at which batteries are commonly taken out of service
+PREVAILING_FROM_DEG = 270.0
+LOW_AGL_M = 10.0  # 33 feet: where winds are told
+LONGEST_NAME = 60
+OWN_KEYS = {"name", "wind", "temperature_c", "gusts_mps", "turbulence_mps_at_20ft", "battery_percent"}
+MOST_GUSTS_MPS = 10.0
+LEAST_BATTERY_PERCENT = 10.0
+
+
+class Named(StrEnum):
+    CALM = "calm"
+    AS_PLANNED = "as-planned"
+    STRONG_WIND = "strong-wind"
+    WEAK_BATTERY = "weak-battery"
+    OWN = "own"
+
+
+@dataclass(frozen=True)
+class Sky:
+    """battery_percent is the share of the rated energy that a full battery holds; turbulence is Dryden's, by the wind at 20 feet."""
+
+    code: Named
+    conditions: Conditions
+    gusts_mps: float = 0.0
+    turbulence_mps_at_20ft: float = 0.0
+    battery_percent: float = 100.0
+    name: str = ""
+
+
+def named_sky(code: Named, planned: Conditions) -> Sky:
+    """What a name stands for, given the conditions that the mission was planned with. Raises InvalidConditions for `own`."""
+    if code is Named.CALM:
+        return Sky(code, replace(planned, wind=()))
+    if code is Named.AS_PLANNED:
+        return Sky(code, planned, turbulence_mps_at_20ft=_turbulence_of(planned))
+    if code is Named.STRONG_WIND:
+        strong = strong_wind(planned)
+        return Sky(code, strong, gusts_mps=STRONG_GUSTS_MPS, turbulence_mps_at_20ft=_turbulence_of(strong))
+    if code is Named.WEAK_BATTERY:
+        return Sky(code, planned, turbulence_mps_at_20ft=_turbulence_of(planned), battery_percent=WORN_BATTERY_PERCENT)
+    raise InvalidConditions("conditions", "its figures are to be said")
+
+
+def strong_wind(planned: Conditions) -> Conditions:
+    """At each height half as much again as planned, and at least a fresh breeze."""
+    if planned.is_calm:
+        return replace(planned, wind=(WindLayer(LOW_AGL_M, FRESH_BREEZE_MPS, PREVAILING_FROM_DEG),))
+    layers = (replace(layer, speed_mps=min(max(layer.speed_mps * STRONGER, FRESH_BREEZE_MPS), MAX_WIND_MPS)) for layer in planned.wind)
+    return replace(planned, wind=tuple(layers))
+
+
+def own_sky(value: Any, planned: Conditions) -> Sky:
+    """A person's own figures; what is left out is as planned. Raises InvalidConditions."""
+    if not isinstance(value, Mapping):
+        raise InvalidConditions("conditions", "must be a name or an object")
+    for key in value:
+        if key not in OWN_KEYS:
+            raise InvalidConditions(str(key), "is not known")
+    stated = {key: value[key] for key in ("wind", "temperature_c") if value.get(key) is not None}
+    conditions = conditions_from_json(conditions_to_json(planned) | stated)
+    name = value.get("name") or ""
+    if not isinstance(name, str) or len(name) > LONGEST_NAME:
+        raise InvalidConditions("name", f"must be a text of at most {LONGEST_NAME} characters")
+    turbulence = value.get("turbulence_mps_at_20ft")
+    return Sky(
+        Named.OWN,
+        conditions,
+        gusts_mps=_within(value.get("gusts_mps"), 0.0, MOST_GUSTS_MPS, 0.0, "gusts_mps"),
+        turbulence_mps_at_20ft=_within(turbulence, 0.0, MAX_WIND_MPS, _turbulence_of(conditions), "turbulence_mps_at_20ft"),
+        battery_percent=_within(value.get("battery_percent"), LEAST_BATTERY_PERCENT, 100.0, 100.0, "battery_percent"),
+        name=name,
+    )
+
+
+def sky_to_json(sky: Sky) -> dict[str, Any]:
+    return {
+        "code": str(sky.code),
+        "name": sky.name,
+        **conditions_to_json(sky.conditions),
+        "gusts_mps": sky.gusts_mps,
+        "turbulence_mps_at_20ft": sky.turbulence_mps_at_20ft,
+        "battery_percent": sky.battery_percent,
+    }
+
+
+def sky_from_json(stored: Mapping[str, Any]) -> Sky:
+    return Sky(
+        Named(stored["code"]),
+        conditions_from_json({"wind": stored["wind"], "temperature_c": stored["temperature_c"]}),
+        gusts_mps=stored["gusts_mps"],
+        turbulence_mps_at_20ft=stored["turbulence_mps_at_20ft"],
+        battery_percent=stored["battery_percent"],
+        name=stored["name"],
+    )
+
+
+def _turbulence_of(conditions: Conditions) -> float:
+    """The lowest wind that is told is taken for the one at 20 feet."""
+    speed_mps = conditions.wind[0].speed_mps if conditions.wind else 0.0
+    return speed_mps if speed_mps >= WIND_TURBULENT_FROM_MPS else 0.0
+
+
+def _within(value: Any, low: float, high: float, otherwise: float, place: str) -> float:
+    if value is None:
+        return otherwise
+    if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+        raise InvalidConditions(place, f"must be from {low:g} to {high:g}")
+    return float(value)

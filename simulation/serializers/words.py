@@ -1,0 +1,78 @@
+"""Why a rehearsal did not pass, in the reader's language: a verdict keeps codes and figures, and sentences are made when it is read."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from django.utils.formats import get_format
+from django.utils.translation import gettext as _
+from django.utils.translation import gettext_noop
+
+from workspace.stored_words import in_words
+
+# Of findings, by their code; the figures are put in as they are written for people.
+SENTENCES = {
+    "crashed": gettext_noop("%(name)s crashed%(flight)s. %(said)s"),
+    "unfinished": gettext_noop("%(name)s did not come to the end of its flight%(flight)s. %(said)s"),
+    "refused": gettext_noop("%(name)s did not take off%(flight)s. %(said)s"),
+    "not-begun": gettext_noop("%(name)s did not begin flight %(number)s: the one before it did not end well."),
+    "wind": gettext_noop("wind of %(wind)s m/s at %(agl)s m, the simulated airframe flies %(limit)s m/s"),
+    "reserve": gettext_noop("%(percent)s %% battery at return%(flight)s, limit %(limit)s %%"),
+    "reserve-near": gettext_noop("%(percent)s %% battery at return%(flight)s, little above the limit of %(limit)s %%"),
+    "across": gettext_noop("%(metres)s m off its line on the way to waypoint %(waypoint)s, limit %(limit)s m"),
+    "height": gettext_noop("%(metres)s m off its height on the way to waypoint %(waypoint)s, limit %(limit)s m"),
+    "not-flown-to": gettext_noop("waypoint %(waypoint)s was not flown to"),
+    "missed": gettext_noop("passed waypoint %(waypoint)s at %(metres)s m, limit %(limit)s m"),
+    "passed-wide": gettext_noop("passed waypoint %(waypoint)s at %(metres)s m, usual are %(limit)s m"),
+    "not-held": gettext_noop("stayed %(held)s s of %(hold)s s"),
+    "late": gettext_noop("%(seconds)s s late at waypoint %(waypoint)s, limit %(limit)s s"),
+    "early": gettext_noop("%(seconds)s s early at waypoint %(waypoint)s, limit %(limit)s s"),
+    "zone-entered": gettext_noop("inside %(zone)s while it is in force, on the way to waypoint %(waypoint)s"),
+    "zone-near": gettext_noop("%(metres)s m from %(zone)s while it is in force, limit %(limit)s m"),
+    "low": gettext_noop("%(metres)s m above the ground on the way to waypoint %(waypoint)s, limit %(limit)s m"),
+    "obstacle": gettext_noop("%(metres)s m from a tower or wire on the way to waypoint %(waypoint)s, limit %(limit)s m"),
+    "obstacle-column": gettext_noop("takes off or lands %(metres)s m from a tower or wire, limit %(limit)s m"),
+    "apart": gettext_noop("%(metres)s m from %(other)s in the air, limit %(limit)s m"),
+}
+DIGITS = {"metres": 1, "limit": 0, "percent": 0, "seconds": 0, "held": 0, "hold": 0, "wind": 1, "agl": 0}
+LIMITS = ("limit_m", "limit_percent", "limit_s", "limit_mps")
+
+
+def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
+    """One sentence; `names` are those of UAVs by their places."""
+    facts = dict(finding["facts"])
+    facts["limit"] = next((facts[name] for name in LIMITS if name in facts), None)
+    facts["held"], facts["hold"] = facts.get("held_s"), facts.get("hold_s")
+    facts["wind"], facts["agl"] = facts.get("wind_mps"), facts.get("agl_m")
+    facts["number"] = facts.get("flight")
+    facts["other"] = names.get(facts.get("other", -1), "")
+    facts["said"] = in_words(str(facts.get("said") or ""))
+    several = (facts.get("flights") or 1) > 1
+    facts["flight"] = f" ({_('flight %(number)s') % {'number': facts['number']}})" if several else ""
+    facts["waypoint"] = _number_of(facts.get("waypoint"))
+    shown = {name: _shown(name, value) for name, value in facts.items()}
+    sentence = SENTENCES.get(finding["code"])
+    return str(finding["code"]) if sentence is None else (_(sentence) % shown).strip()
+
+
+def finding_in_words(finding: Mapping[str, Any], names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any]:
+    """With its sentence, after what it is about: the target by its number and name, else the UAV."""
+    target = finding["target"]
+    about = names.get(finding["uav"], "")
+    if target is not None:
+        about = _("target %(number)s") % {"number": target + 1}
+        about = f"{about} {labels[target]}" if labels.get(target) else about
+    reason = reason_of(finding, names)
+    whole = reason if finding["code"] in ("crashed", "unfinished", "refused", "not-begun") else f"{about}: {reason}"
+    return {**{name: finding[name] for name in ("level", "code", "uav", "target")}, "reason": reason, "message": whole}
+
+
+def _number_of(waypoint: int | None) -> str:
+    """Waypoints are counted from 1 for people."""
+    return "–" if waypoint is None or waypoint < 0 else str(waypoint + 1)
+
+
+def _shown(name: str, value: Any) -> Any:
+    if isinstance(value, float) and name in DIGITS:
+        text = f"{value:.{DIGITS[name]}f}"
+        return text.replace(".", get_format("DECIMAL_SEPARATOR"))
+    return value

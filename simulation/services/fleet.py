@@ -1,0 +1,60 @@
+"""What flies for each UAV of a mission, and with which battery."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from missions.flight_plan.performance import PERFORMANCE_KEYS, performance_from_json
+from missions.models import MissionUav, UavType
+from simulation.flight.airframe import AIRFRAMES
+from simulation.models import SimulatedAirframe
+from simulation.rehearsing.airframe_choice import nearest_airframe
+from simulation.rehearsing.candidates import CANDIDATES
+
+CHOSEN, NEAREST = "chosen", "nearest"  # why it flies: said for the type, or the nearest by mass and endurance
+
+
+@dataclass(frozen=True)
+class StandIn:
+    """What flies for a UAV. battery_wh: its own where one is stated, else the airframe's."""
+
+    uav: int
+    name: str
+    airframe: str
+    airframe_name: str
+    why: str
+    battery_wh: float
+    has_own_battery: bool
+
+
+def stand_in_of(uav: MissionUav) -> StandIn:
+    performance = performance_from_json(uav.performance or None)
+    chosen = _chosen(uav)
+    airframe = AIRFRAMES[chosen or nearest_airframe(performance, CANDIDATES)]
+    own_wh = performance.battery_wh
+    return StandIn(
+        uav=uav.sequence,
+        name=uav.name,
+        airframe=airframe.code,
+        airframe_name=airframe.name,
+        why=CHOSEN if chosen else NEAREST,
+        battery_wh=airframe.battery_wh if own_wh is None else own_wh,
+        has_own_battery=own_wh is not None,
+    )
+
+
+def stand_in_to_json(stand_in: StandIn) -> dict[str, Any]:
+    return asdict(stand_in)
+
+
+def airframe_of_type(uav_type: UavType) -> str:
+    """The code of what flies for a type's UAVs that have no figures of their own."""
+    chosen = SimulatedAirframe.objects.filter(uav_type=uav_type).values_list("airframe", flat=True).first()
+    figures = {name: getattr(uav_type, name) for name in PERFORMANCE_KEYS}
+    return chosen if chosen in AIRFRAMES else nearest_airframe(performance_from_json(figures), CANDIDATES)
+
+
+def _chosen(uav: MissionUav) -> str | None:
+    """What was said for its type; an airframe that is no longer there counts as not said."""
+    type_id = None if uav.uav is None else uav.uav.uav_type_id
+    found = SimulatedAirframe.objects.filter(uav_type=type_id).values_list("airframe", flat=True).first() if type_id else None
+    return found if found in AIRFRAMES else None

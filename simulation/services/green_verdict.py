@@ -1,0 +1,44 @@
+"""What an organisation may ask for before a mission is approved: a rehearsal of this very plan that no run of failed."""
+
+from django.db import transaction
+from django.utils.translation import gettext as _
+
+from missions.models import Mission
+from missions.services.refused import Reason, Refused
+from simulation.models import RehearsalRule, VerdictLevel
+from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
+from simulation.services.plan_to_fly import plan_to_fly
+from workspace.models import Organisation, User
+from workspace.services import record_change
+
+
+def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
+    """Why a mission may not be approved yet, and what to do; none where nobody asks for a rehearsal."""
+    if not requires_green(mission.organisation_id):
+        return []
+    try:
+        content = plan_to_fly(mission).content_sha256
+    except Refused as refused:
+        return list(refused.reasons)
+    newest = newest_finished(mission.pk, content)
+    if newest is None:
+        if rehearsals_of_mission(mission.organisation, mission.pk).exclude(level="").exists():
+            words = _("The plan has changed since it was rehearsed. Rehearse it again: your organisation approves only what has passed.")
+            return [Reason("rehearsal_outdated", words)]
+        return [Reason("not_rehearsed", _("Rehearse the mission first: your organisation approves only what has passed."))]
+    if newest.level == VerdictLevel.FAIL:
+        words = _("The rehearsal failed. Change the plan for what its verdict says, plan and rehearse it again.")
+        return [Reason("rehearsal_failed", words)]
+    return []
+
+
+def set_rule(*, organisation: Organisation, actor: User, requires: bool) -> RehearsalRule:
+    with transaction.atomic():
+        before = requires_green(organisation.pk)
+        rule, _made = RehearsalRule.objects.update_or_create(organisation=organisation, defaults={"requires_green": requires})
+        if before != requires:
+            record_change(
+                organisation=organisation, actor=actor, action="changed", subject_type="rehearsal rule", subject_id=organisation.pk,
+                before={"requires_green": before}, after={"requires_green": requires},
+            )  # fmt: skip
+    return rule

@@ -1,0 +1,85 @@
+"""The present plan of a mission as it is flown in simulation: its routes with the very items that UAVs would be given."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from django.utils.translation import gettext as _
+
+from missions.flight_plan.conditions import Conditions, conditions_from_json
+from missions.flight_plan.performance import performance_from_json
+from missions.mavlink.content import FlightLoad, load_from_json
+from missions.mavlink.frozen import FrozenRoute, NotARoute, route_from_json
+from missions.mavlink.items import CannotBeFlown, flight_loads
+from missions.models import Approval, Mission, MissionUav
+from missions.services.approval_document import frozen_route
+from missions.services.refused import Reason, Refused, refuse
+from missions.zone_selectors import departure_s
+from simulation.rehearsing.content import content_of
+from simulation.rehearsing.flying import RouteToFly
+from simulation.services.fleet import StandIn, stand_in_of
+
+
+@dataclass(frozen=True, eq=False)
+class PlanToFly:
+    """departs_s: seconds since the epoch, None for any time. content_sha256 names all of it."""
+
+    routes: tuple[RouteToFly, ...]
+    stand_ins: tuple[StandIn, ...]
+    conditions: Conditions
+    departs_s: float | None
+    content_sha256: str
+
+
+def plan_to_fly(mission: Mission) -> PlanToFly:
+    """Of a mission as loaded by selectors.mission_of_organisation. Raises Refused where there is nothing, or nothing that can be flown.
+
+    What is approved is read from the approval's document, like what is sent to UAVs; else it is made from the stored plan in the same way.
+    """
+    flown = [route for route in mission.routes.all() if route.geometry is not None]
+    if not flown:
+        raise refuse("not_planned", _("There is no plan to rehearse. Plan the mission first."))
+    approved = _approved_routes(mission)
+    routes, stand_ins, reasons = [], [], []
+    for route in flown:
+        uav = route.mission_uav
+        try:
+            frozen, loads = approved[uav.sequence] if uav.sequence in approved else _made(frozen_route(route, mission))
+        except (CannotBeFlown, NotARoute) as error:
+            values = {"uav": uav.name, "why": str(error)}
+            reasons.append(Reason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
+            continue
+        routes.append(_to_fly(uav, frozen, loads, route.energy_wh, route.duration_s))
+        stand_ins.append(stand_in_of(uav))
+    if reasons:
+        raise Refused(reasons)
+    departs_s = departure_s(mission)
+    content = content_of(routes, [one.airframe for one in stand_ins], [one.battery_wh for one in stand_ins], departs_s)
+    return PlanToFly(tuple(routes), tuple(stand_ins), conditions_from_json(mission.conditions or None), departs_s, content)
+
+
+def _made(route: FrozenRoute) -> tuple[FrozenRoute, tuple[FlightLoad, ...]]:
+    return route, flight_loads(route)
+
+
+def _approved_routes(mission: Mission) -> dict[int, tuple[FrozenRoute, tuple[FlightLoad, ...]]]:
+    """By the UAV's place, as its approval has them; those of a companion computer, which has no items, are made from their route."""
+    document = Approval.objects.filter(mission=mission, revoked_at=None).values_list("document", flat=True).first()
+    found = {}
+    for stored in [] if document is None else document["routes"]:
+        route = route_from_json(stored["route"])
+        items: list[dict[str, Any] | None] = [flight["items"] for flight in stored["flights"]]
+        made = None if any(one is None for one in items) else tuple(load_from_json(one) for one in items if one is not None)
+        found[stored["place"]] = (route, made) if made is not None else _made(route)
+    return found
+
+
+def _to_fly(uav: MissionUav, route: FrozenRoute, loads: tuple[FlightLoad, ...], planned_wh: float | None, planned_s: float) -> RouteToFly:
+    return RouteToFly(
+        uav=uav.sequence,
+        name=uav.name,
+        route=route,
+        items=tuple(load.mission for load in loads),
+        reserve_percent=performance_from_json(uav.performance or None).reserve_percent,
+        planned_wh=planned_wh,
+        planned_s=planned_s,
+    )

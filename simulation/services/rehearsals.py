@@ -1,0 +1,153 @@
+"""Rehearsals from request to verdict."""
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+from uuid import UUID
+
+from django.conf import settings
+from django.db import transaction
+from django.utils import timezone
+
+from inspection.selectors.planning import PlanningGround, heights_at, planning_read
+from missions.models import Mission
+from missions.selectors import mission_of_organisation
+from missions.services.missions import note
+from simulation.flight.airframe import AIRFRAMES
+from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
+from simulation.rehearsing.flying import fly
+from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
+from simulation.services.fleet import stand_in_to_json
+from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
+from simulation.services.surroundings import surroundings_of
+from simulation.services.vehicles import vehicle_maker
+from simulation.verdict.finding import Finding, Level, worst
+from simulation.verdict.flown import FlownRoute
+from simulation.verdict.judging import Verdict, judge
+from simulation.verdict.limits import Limits, limits_to_json
+from simulation.verdict.stored import track_to_json, verdict_to_json
+from simulation.verdict.wind import wind_finding
+from workspace.models import Job, User
+from workspace.services import cancel_job, create_job_within, finish_job
+
+REHEARSE = "simulation.tasks.rehearse_mission"
+KEPT = 20  # rehearsals of one mission; older ones go
+
+OnProgress = Callable[[str, float], None]
+
+
+class PlanChanged(Exception):
+    """The mission is no longer as it was asked for."""
+
+
+def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7) -> Rehearsal:
+    """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs."""
+    plan = plan_to_fly(mission)
+    with transaction.atomic():
+        job = create_job_within(
+            settings.MOST_OPEN_REHEARSALS,
+            organisation=mission.organisation,
+            created_by=actor,
+            task=REHEARSE,
+            parameters={"mission": str(mission.pk)},
+            message="Waiting for a worker",
+        )
+        rehearsal = Rehearsal.objects.create(
+            organisation=mission.organisation,
+            mission=mission,
+            job=job,
+            content_sha256=plan.content_sha256,
+            mission_revision=mission.revision,
+            ground_revision=planning_read().edition[0],
+            uavs=[stand_in_to_json(stand_in) for stand_in in plan.stand_ins],
+            seed=seed,
+            limits=limits_to_json(limits_of_settings()),
+            created_by=actor,
+        )
+        RehearsalRun.objects.bulk_create(
+            RehearsalRun(rehearsal=rehearsal, sequence=number, conditions=sky_to_json(sky)) for number, sky in enumerate(skies)
+        )
+        _forget_old(mission)
+        facts = {"rehearsal": str(rehearsal.pk), "conditions": [str(sky.code) for sky in skies], "sha256": plan.content_sha256}
+        note(mission, actor, "rehearse", before=None, after=facts)
+    return rehearsal
+
+
+def cancel_rehearsal(*, rehearsal: Rehearsal, actor: User) -> Job:
+    """Stop it: what has been flown until then is kept."""
+    job = cancel_job(job=rehearsal.job)
+    note(rehearsal.mission, actor, "cancel-rehearsal", before=None, after={"rehearsal": str(rehearsal.pk)})
+    return job
+
+
+def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
+    """Fly what is not flown yet, and end the job. Raises PlanChanged, Refused, or whatever `progress` does."""
+    rehearsal = Rehearsal.objects.select_related("mission__organisation").get(job=job)
+    mission = mission_of_organisation(rehearsal.organisation, rehearsal.mission_id)
+    plan = plan_to_fly(mission)
+    if plan.content_sha256 != rehearsal.content_sha256:
+        raise PlanChanged
+    runs = list(rehearsal.runs.all())
+    for number, run in enumerate(runs):
+        if run.finished_at is None:
+            share = _shares(progress, number, len(runs))
+            _fly_run(run, plan, planning_read().ground(), rehearsal.seed, share)
+    _finish(rehearsal.pk, job)
+
+
+def limits_of_settings() -> Limits:
+    return Limits.of(settings.FLIGHT_RULES, settings.SEPARATION_RULES, zone_height_m=settings.ZONE_RULES.height_margin_m)
+
+
+def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], None]:
+    def told(share: float) -> None:
+        progress(f"Flying {number + 1} of {runs}", (number + share) / runs)
+
+    return told
+
+
+def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: int, on_progress: Callable[[float], None]) -> None:
+    began_s = time.monotonic()
+    sky = sky_from_json(run.conditions)
+    maker = vehicle_maker(plan.stand_ins, sky, heights_at(ground.edition))
+    on_progress(0.0)
+    flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
+    around = surroundings_of(plan.routes, ground, plan.departs_s)
+    verdict = judge(flown, around, limits_of_settings(), known=_too_windy(plan, sky))
+    _store(run, flown, verdict, time.monotonic() - began_s)
+
+
+def _too_windy(plan: PlanToFly, sky: Sky) -> list[Finding]:
+    found = (
+        wind_finding(route.uav, route.route, sky.conditions, AIRFRAMES[stand_in.airframe].max_airspeed_mps)
+        for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
+    )
+    return [finding for finding in found if finding is not None]
+
+
+def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, took_s: float) -> None:
+    """Once, whole or not at all: another worker that has taken over finds either all of it or nothing."""
+    with transaction.atomic():
+        held = RehearsalRun.objects.select_for_update().get(pk=run.pk)
+        if held.finished_at is not None:
+            return
+        held.verdict, held.level, held.took_s = verdict_to_json(verdict), str(verdict.level), took_s
+        held.finished_at = timezone.now()
+        held.save()
+        RehearsalTrack.objects.bulk_create(RehearsalTrack(run=held, uav=route.uav, flights=track_to_json(route.tracks)) for route in flown)
+
+
+def _finish(rehearsal_id: UUID, job: Job) -> None:
+    with transaction.atomic():
+        levels = [Level(level) for level in RehearsalRun.objects.filter(rehearsal=rehearsal_id).values_list("level", flat=True)]
+        level = worst(levels)
+        result: dict[str, Any] = {"rehearsal": str(rehearsal_id), "level": str(level)}
+        if finish_job(job=job, result=result, message="Rehearsed"):
+            Rehearsal.objects.filter(pk=rehearsal_id).update(level=str(level))
+
+
+def _forget_old(mission: Mission) -> None:
+    """Those beyond KEPT that are over."""
+    keys = list(Rehearsal.objects.filter(mission=mission).order_by("-created_at").values_list("pk", flat=True)[KEPT:])
+    for old in Rehearsal.objects.filter(pk__in=keys).exclude(job__state__in=("queued", "running")).select_related("job"):
+        old.delete()

@@ -1,0 +1,46 @@
+"""Doors to the queue `simulation`."""
+
+from celery import shared_task
+from celery.exceptions import SoftTimeLimitExceeded
+
+from inspection.selectors import NoGraph
+from missions.models import Mission
+from missions.services.refused import Refused
+from simulation.models import Rehearsal
+from simulation.services.rehearsals import PlanChanged, rehearse_for_job
+from workspace.errors import DATABASE_AWAY
+from workspace.job_watch import JobWatch
+from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
+
+SOFT_LIMIT_S = 840
+HARD_LIMIT_S = 900
+CHANGED = "The mission was changed while it was being rehearsed. Rehearse it again."
+
+
+@shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def rehearse_mission(job_id: str) -> None:
+    """Fly a mission in simulation. Safe to run twice: a job is held by one worker, and each run is stored once."""
+    job = start_job(job_id=job_id)
+    if job is None:
+        return
+    try:
+        with JobWatch(job) as watch:
+            rehearse_for_job(job=job, progress=watch.progress)
+    except JobCancelled:
+        confirm_cancelled(job=job)
+    except (PlanChanged, Mission.DoesNotExist, Rehearsal.DoesNotExist):
+        fail_job(job=job, code="mission_changed", message=CHANGED)
+    except Refused as refused:
+        fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
+    except NoGraph:
+        fail_job(
+            job=job, code="no_graph", message="There is no network yet: import infrastructure first, or wait until it has been linked."
+        )
+    except SoftTimeLimitExceeded:
+        message = f"Not flown within {SOFT_LIMIT_S // 60} min. Rehearse fewer conditions at once, or split the mission."
+        fail_job(job=job, code="took_too_long", message=message)
+    except DATABASE_AWAY:
+        raise  # the lease runs out, and the job is taken up again
+    except Exception:
+        fail_job(job=job, code="internal", message="The rehearsal failed inside Spanwise; the error is in the log.")
+        raise

@@ -1,0 +1,123 @@
+"""A batch of simulated UAVs in one process, at one pace: a step for all of them, then the ears until the next."""
+
+import selectors
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from queue import Empty, SimpleQueue
+
+from simulation.flight.faults import Faults
+from simulation.flight.weather import Weather
+from simulation.vehicle_endpoint.flying_uav import FlyingUav
+from simulation.vehicle_protocol.pace import Pace
+
+STEP_S = 0.04  # of simulated time, as SimulatedUav has it
+SLOWEST, FASTEST = 0.1, 60.0
+
+
+class WrongPace(ValueError):
+    """A pace that nothing is flown at."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What is to be different from now on; None stays. `system` None: of all UAVs. `faults` is made of those that a UAV has."""
+
+    system: int | None = None
+    weather: Weather | None = None
+    faults: Callable[[Faults, float], Faults] | None = None  # of those before, and simulated seconds
+    speed: float | None = None
+
+
+@dataclass(frozen=True)
+class FleetReport:
+    """How the pace was kept: `latest_s` by how much the latest step began too late, `slipped_s` what was never made up for, on the wall."""
+
+    uavs: int
+    simulated_s: float
+    wall_s: float
+    steps: int
+    late_steps: int
+    latest_s: float
+    slipped_s: float
+    sent: int
+    heard: int
+
+
+@dataclass
+class Fleet:
+    """`speed` is simulated seconds a second. `post` may be called from any thread, everything else from the one that runs it."""
+
+    uavs: Sequence[FlyingUav]
+    speed: float = 1.0
+    _changes: SimpleQueue[Change] = field(default_factory=SimpleQueue)
+    _is_ended: bool = False
+
+    def __post_init__(self) -> None:
+        _check_speed(self.speed)
+        self._began_s = time.monotonic()
+        self._pace = Pace(STEP_S, self.speed, self._began_s)
+
+    def post(self, change: Change) -> None:
+        """At the next step. Raises WrongPace."""
+        if change.speed is not None:
+            _check_speed(change.speed)
+        self._changes.put(change)
+
+    def end(self) -> None:
+        """Soon, from any thread and from signal handlers."""
+        self._is_ended = True
+
+    def run(self, until: Callable[[], bool] = lambda: False) -> FleetReport:
+        """Until told to end or `until` says so, which is asked after each step."""
+        self._began_s = time.monotonic()
+        self._pace = Pace(STEP_S, self._pace.speed, self._began_s)
+        with selectors.DefaultSelector() as selector:
+            for uav in self.uavs:
+                selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
+            while not self._is_ended:
+                if self._pace.begin(time.monotonic()):
+                    self._make_changes()
+                    for uav in self.uavs:
+                        uav.step()
+                    if until():
+                        break
+                for key, _ in selector.select(max(self._pace.next_s - time.monotonic(), 0.0)):
+                    key.data.hear()
+        return self.report()
+
+    def close(self) -> None:
+        for uav in self.uavs:
+            uav.radio.close()
+
+    def report(self) -> FleetReport:
+        pace = self._pace
+        return FleetReport(
+            uavs=len(self.uavs),
+            simulated_s=round(pace.steps * STEP_S, 3),
+            wall_s=round(time.monotonic() - self._began_s, 3),
+            steps=pace.steps,
+            late_steps=pace.late_steps,
+            latest_s=round(pace.latest_s, 4),
+            slipped_s=round(pace.slipped_s, 3),
+            sent=sum(uav.sent for uav in self.uavs),
+            heard=sum(uav.heard for uav in self.uavs),
+        )
+
+    def _make_changes(self) -> None:
+        while True:
+            try:
+                change = self._changes.get_nowait()
+            except Empty:
+                return
+            if change.speed is not None:
+                self._pace.change(change.speed, time.monotonic())
+            for uav in self.uavs:
+                if change.system in (None, uav.system):
+                    faults = None if change.faults is None else change.faults(uav.uav.faults, uav.uav.now_s)
+                    uav.change(weather=change.weather, faults=faults)
+
+
+def _check_speed(speed: float) -> None:
+    if not SLOWEST <= speed <= FASTEST:
+        raise WrongPace(f"The pace must be from {SLOWEST:g} to {FASTEST:g} times real time, not {speed:g}.")

@@ -1,0 +1,67 @@
+"""From what is wanted to UAVs that stand on the ground and talk."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from inspection.geodesy import LonLat
+from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.faults import Faults
+from simulation.flight.ground import FlatGround, Ground
+from simulation.flight.uav import SimulatedUav
+from simulation.flight.weather import Weather
+from simulation.vehicle_endpoint.fleet import Fleet
+from simulation.vehicle_endpoint.flying_uav import FlyingUav
+from simulation.vehicle_endpoint.radio import Address, Radio
+from simulation.vehicle_protocol.flavour import Flavour
+
+HIGHEST_SYSTEM = 250  # those above are ground stations
+METRES_PER_DEGREE = 111_195.0
+
+
+@dataclass(frozen=True)
+class Launch:
+    """One UAV. `airframe` is one of AIRFRAMES; `key` has 32 bytes."""
+
+    system: int
+    home: LonLat
+    airframe: str = "iris"
+    flavour: Flavour = Flavour.PX4
+    key: bytes | None = field(default=None, repr=False)
+    seed: int = 0
+    heading_deg: float = 0.0
+    battery_percent: float = 100.0
+    ground: Ground = field(default_factory=FlatGround)
+    weather: Weather = field(default_factory=Weather)
+    faults: Faults = field(default_factory=Faults)
+    talks_to: Sequence[Address] = ()
+    listens_at: Address | None = None
+
+
+def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
+    """Raises OSError where a socket cannot be had; then none is kept."""
+    uavs: list[FlyingUav] = []
+    try:
+        for launch in launches:
+            uav = SimulatedUav(
+                AIRFRAMES[launch.airframe],
+                launch.home,
+                ground=launch.ground,
+                weather=launch.weather,
+                seed=launch.seed,
+                heading_deg=launch.heading_deg,
+                battery_percent=launch.battery_percent,
+                faults=launch.faults,
+            )
+            uavs.append(FlyingUav(uav, launch.system, Radio(launch.talks_to, launch.listens_at), launch.flavour, launch.key))
+    except BaseException:
+        for flying in uavs:
+            flying.radio.close()
+        raise
+    return Fleet(uavs, speed)
+
+
+def in_a_row(first: LonLat, count: int, spacing_m: float) -> list[LonLat]:
+    """Places from west to east."""
+    step_deg = spacing_m / (METRES_PER_DEGREE * math.cos(math.radians(first.lat)))
+    return [LonLat(first.lon + number * step_deg, first.lat) for number in range(count)]

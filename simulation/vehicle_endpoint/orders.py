@@ -1,0 +1,91 @@
+"""Changes in flight as lines of JSON, for whoever drives a fleet from outside its process."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from missions.flight_plan.conditions import Conditions, InvalidConditions, WindLayer
+from simulation.flight.faults import Faults, ImpossibleFault
+from simulation.flight.weather import ImpossibleWeather, Weather
+from simulation.vehicle_endpoint.fleet import Change
+
+WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights
+ORDER = frozenset({"system", "weather", "faults", "pace"})
+WEATHER = frozenset({"wind", "gusts_mps", "turbulence_mps", "temperature_c"})
+FAULTS = frozenset({"link_lost_for_s", "gps_lost_for_s", "battery_wh_left", "motor_failed", "stuck_item", "clock_offset_s"})
+
+
+class WrongOrder(ValueError):
+    """A line that says nothing that could be done."""
+
+
+def change_of(line: str) -> Change:
+    """`{"system": 3, "weather": {"wind": [8, 270], "gusts_mps": 2}, "faults": {"link_lost_for_s": 20}, "pace": 5}`, or parts of it.
+
+    Without a system all UAVs are meant. Weather is as the line has it, calm in all that it leaves out; faults it leaves out stay as they
+    are, and those that last for a time count from now on in simulated seconds. Raises WrongOrder.
+    """
+    try:
+        order = json.loads(line)
+    except ValueError as error:
+        raise WrongOrder(f"not JSON: {error}") from error
+    _known(order, ORDER)
+    system, pace = order.get("system"), order.get("pace")
+    if system is not None and not isinstance(system, int):
+        raise WrongOrder("system is a number from 1 to 255")
+    return Change(
+        system=system,
+        weather=weather_of(order["weather"]) if "weather" in order else None,
+        faults=faults_of(order["faults"]) if "faults" in order else None,
+        speed=None if pace is None else _number(pace, "pace"),
+    )
+
+
+def weather_of(told: Any) -> Weather:
+    """Raises WrongOrder."""
+    _known(told, WEATHER)
+    wind = told.get("wind", [0.0, 0.0])
+    if not (isinstance(wind, list) and len(wind) == 2):
+        raise WrongOrder("wind is [speed in m/s, degrees that it blows from]")
+    speed_mps, from_deg = (_number(value, "wind") for value in wind)
+    try:
+        layer = WindLayer(WIND_MEASURED_AGL_M, speed_mps, from_deg % 360.0)
+        conditions = Conditions((layer,), _number(told.get("temperature_c", 15.0), "temperature_c"))
+        gusts_mps, turbulence_mps = (_number(told.get(name, 0.0), name) for name in ("gusts_mps", "turbulence_mps"))
+        return Weather(conditions, gusts_mps=gusts_mps, turbulence_mps_at_20ft=turbulence_mps)
+    except (InvalidConditions, ImpossibleWeather) as error:
+        raise WrongOrder(str(error)) from error
+
+
+def faults_of(told: Any) -> Callable[[Faults, float], Faults]:
+    """From the faults before and simulated seconds to those from now on. Raises WrongOrder."""
+    _known(told, FAULTS)
+    values: dict[str, Any] = {}
+    for name, value in told.items():
+        is_whole = name in ("motor_failed", "stuck_item")
+        if is_whole and value is not None and not isinstance(value, int):
+            raise WrongOrder(f"{name} is a whole number or null")
+        values[name] = value if value is None or is_whole else _number(value, name)
+    lasting = {f"{name}_until_s": values.pop(f"{name}_for_s") or 0.0 for name in ("link_lost", "gps_lost") if f"{name}_for_s" in values}
+
+    def changed(before: Faults, now_s: float) -> Faults:
+        return replace(before, **values, **{name: now_s + for_s for name, for_s in lasting.items()})
+
+    try:
+        changed(Faults(), 0.0)
+    except (ImpossibleFault, TypeError) as error:
+        raise WrongOrder(str(error)) from error
+    return changed
+
+
+def _known(told: Any, names: frozenset[str]) -> None:
+    if not isinstance(told, dict) or not told.keys() <= names:
+        raise WrongOrder(f"only {', '.join(sorted(names))} can be told")
+
+
+def _number(value: Any, name: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise WrongOrder(f"{name} is a number")
+    return float(value)

@@ -1,0 +1,107 @@
+"""One UAV's socket: it talks to the addresses it was given and to whoever talked to it, by UDP."""
+
+import contextlib
+import socket
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from missions.mavlink.frames import Damage, Frame, frames_of_datagram
+
+LARGEST_DATAGRAM = 65_535
+MOST_DATAGRAMS = 100  # that are heard before something else has its turn
+MOST_PEERS = 16
+FORGOTTEN_AFTER_S = 60.0  # of silence; the addresses it was given never
+Address = tuple[str, int]
+
+
+class WrongAddress(ValueError):
+    """Text that is no HOST:PORT, or a host that is not known."""
+
+
+def address_of(text: str) -> Address:
+    """HOST:PORT, with an IPv6 host in brackets; the host is looked up. Raises WrongAddress."""
+    host, _, port = text.strip().rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65_536:
+        raise WrongAddress(f"{text!r} is not HOST:PORT.")
+    try:
+        where = socket.getaddrinfo(host.strip("[]"), int(port), type=socket.SOCK_DGRAM)[0][4]
+    except OSError as error:
+        raise WrongAddress(f"{text!r}: {error}.") from error
+    return str(where[0]), int(where[1])
+
+
+@dataclass
+class _Peer:
+    link: int
+    heard_s: float
+    is_given: bool
+
+
+@dataclass
+class Radio:
+    """`damages` counts what was no frame. A peer is named by a number, its link, which is not given away again."""
+
+    given: Sequence[Address]
+    listen: Address | None = None
+    damages: Counter[Damage] = field(default_factory=Counter)
+    _peers: dict[Address, _Peer] = field(default_factory=dict)
+    _links: int = 0
+
+    def __post_init__(self) -> None:
+        first = self.listen or next(iter(self.given), ("127.0.0.1", 0))
+        family = socket.AF_INET6 if ":" in first[0] else socket.AF_INET
+        self.socket = socket.socket(family, socket.SOCK_DGRAM)
+        try:
+            self.socket.setblocking(False)
+            self.socket.bind(self.listen or ("", 0))
+        except OSError:
+            self.socket.close()
+            raise
+        for address in self.given:
+            self._add(address, is_given=True)
+
+    def close(self) -> None:
+        self.socket.close()
+
+    @property
+    def port(self) -> int:
+        return int(self.socket.getsockname()[1])
+
+    def received(self) -> Iterator[tuple[Frame, Address]]:
+        """What has come in, with who sent it."""
+        for _ in range(MOST_DATAGRAMS):
+            try:
+                datagram, address = self.socket.recvfrom(LARGEST_DATAGRAM)
+            except BlockingIOError:
+                return
+            except OSError:  # what was sent before could not be delivered
+                continue
+            for frame in frames_of_datagram(datagram, self.damages):
+                yield frame, (address[0], address[1])
+
+    def link_of(self, address: Address) -> int | None:
+        """Of who sent something that was believed; None while too many others are talking."""
+        peer = self._peers.get(address) or self._add(address, is_given=False)
+        if peer is None:
+            return None
+        peer.heard_s = time.monotonic()
+        return peer.link
+
+    def send(self, frame: bytes, link: int | None) -> None:
+        """To one peer, or to all."""
+        for address, peer in self._peers.items():
+            if link is None or peer.link == link:
+                with contextlib.suppress(OSError):  # a full buffer or an unreachable port is a lost datagram
+                    self.socket.sendto(frame, address)
+
+    def _add(self, address: Address, *, is_given: bool) -> _Peer | None:
+        now_s = time.monotonic()
+        for other, peer in list(self._peers.items()):
+            if not peer.is_given and now_s - peer.heard_s > FORGOTTEN_AFTER_S:
+                del self._peers[other]
+        if len(self._peers) >= MOST_PEERS and not is_given:
+            return None
+        self._links += 1
+        return self._peers.setdefault(address, _Peer(self._links, now_s, is_given))

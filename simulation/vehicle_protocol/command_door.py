@@ -1,0 +1,62 @@
+"""Commands as they come in, made safe once: whoever carries them out never sees a NaN, an infinity or a place in whole numbers."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from simulation.vehicle_protocol.item_rules import ABOVE_SEA, PLACED_FRAMES
+from simulation.vehicle_protocol.stations import Outgoing, Station
+
+E7 = 1e7
+NO_PLACE_E7 = 2**31 - 1  # of COMMAND_INT: as NaN in COMMAND_LONG
+Seven = tuple[
+    float | None, float | None, float | None, float | None, float | None, float | None, float | None
+]  # fmt: skip
+
+
+class NotFinite(ValueError):
+    """A parameter is infinite, which no command means."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """`values` are its seven parameters, None where it left the choice to the vehicle; 5 and 6 of a place are latitude and longitude [deg].
+
+    `is_above_sea` tells how the seventh counts, where the message said so; COMMAND_LONG does not.
+    """
+
+    number: int
+    values: Seven
+    is_above_sea: bool | None = None
+
+    def __getitem__(self, number: int) -> float | None:
+        """Parameters count from 1."""
+        return self.values[number - 1]
+
+    def whole(self, number: int) -> int | None:
+        """Its parameter as a whole number; None where it is none, or none was given."""
+        value = self[number]
+        return int(value) if value is not None and value == int(value) else None
+
+
+def command_of(message: Any) -> Command:
+    """Of COMMAND_LONG or COMMAND_INT. Raises NotFinite."""
+    first = (message.param1, message.param2, message.param3, message.param4)
+    if message.get_type() == "COMMAND_LONG":
+        return Command(message.command, _finite(*first, message.param5, message.param6, message.param7))
+    place = (math.nan if value == NO_PLACE_E7 else value / E7 for value in (message.x, message.y))
+    is_above_sea = message.frame in ABOVE_SEA if message.frame in PLACED_FRAMES else None
+    return Command(message.command, _finite(*first, *place, message.z), is_above_sea)
+
+
+def acknowledgement(number: int, result: int, station: Station) -> Outgoing:
+    return Outgoing(mavlink.MAVLink_command_ack_message(number, int(result), 0, 0, *station.ends), station)
+
+
+def _finite(*values: float) -> Seven:
+    if any(math.isinf(value) for value in values):
+        raise NotFinite
+    one, two, three, four, five, six, seven = (None if math.isnan(value) else float(value) for value in values)
+    return (one, two, three, four, five, six, seven)

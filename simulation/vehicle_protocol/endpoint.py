@@ -1,0 +1,270 @@
+"""A simulated UAV as a MAVLink system: what comes in is answered, and what is due goes out.
+
+Streams go by the UAV's own clock, which may run faster than the one on the wall; heartbeats and the tries of protocols go by the wall's.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.content import MissionItem, MissionType
+from missions.mavlink.frames import Message
+from missions.mavlink.items import position_e7
+from simulation.flight import events
+from simulation.flight.settings import Settings
+from simulation.flight.states import Refused, Severity, UavState
+from simulation.vehicle_protocol import file_transfer, time_service
+from simulation.vehicle_protocol.command_door import NotFinite, acknowledgement, command_of
+from simulation.vehicle_protocol.fence import fence_of
+from simulation.vehicle_protocol.fence_watch import MODES, FenceAction, FenceWatch
+from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mission_server import MissionServer
+from simulation.vehicle_protocol.mode_numbers import AUTO
+from simulation.vehicle_protocol.parameters import parameters_of, settings_at_start
+from simulation.vehicle_protocol.pilot import DENIED, FAILED, UNSUPPORTED, Pilot
+from simulation.vehicle_protocol.reports import REPORTS, Report, heartbeat, mission_current
+from simulation.vehicle_protocol.requests import Requests
+from simulation.vehicle_protocol.stations import Outgoing, Station, is_for
+from simulation.vehicle_protocol.streams import Streams
+from simulation.vehicle_protocol.texts import text_messages
+from simulation.vehicle_protocol.vehicle import Vehicle
+
+HEARTBEAT_S = 1.0
+LARGEST_NUMBER = 65_535
+SEVERITIES = {
+    Severity.INFO: mavlink.MAV_SEVERITY_INFO, Severity.WARNING: mavlink.MAV_SEVERITY_WARNING,
+    Severity.CRITICAL: mavlink.MAV_SEVERITY_CRITICAL,
+}  # fmt: skip
+
+
+class Endpoint:
+    """Times are monotonic seconds of the wall; `unix_at_zero_s` is the time of day when they were 0, by the vehicle's own clock."""
+
+    def __init__(self, vehicle: Vehicle, *, flavour: Flavour, system: int, unix_at_zero_s: float) -> None:
+        self.vehicle = vehicle
+        self.flavour = flavour
+        self.system = system
+        self.unix_at_zero_s = unix_at_zero_s
+        settings = settings_at_start(flavour, vehicle.settings)
+        vehicle.settings = settings
+        self.pilot = Pilot(vehicle, flavour)
+        self.parameters = parameters_of(flavour, system, settings, self._configure)
+        self.streams = Streams(flavour, phase=float(system))
+        self.missions = MissionServer(flavour, self._replace, self._home_item, self._current_item)
+        self._fence = FenceWatch(flavour, self.parameters)
+        self._requests = Requests(flavour, system, self.streams, self._report)
+        self._now_s = 0.0
+        self._heartbeat_due_s = -math.inf
+        self._told: tuple[int, bool] | None = None  # mode and arming of the last heartbeat
+        self._texts = 0
+
+    def receive(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        """Whatever it bears, it is answered or ignored: nothing that comes in makes this fail."""
+        if station.system == self.system or not is_for(message, self.system):
+            return []
+        handler = _HANDLERS.get(message.get_type())
+        if handler is None:
+            return []
+        self._now_s = now_s
+        answers = handler(self, message, station, now_s)
+        return [*answers, *self._refusal(), *self._changed_heartbeat(now_s)]
+
+    def tick(self, now_s: float) -> list[Outgoing]:
+        """After each step of the flight, and as often as one likes."""
+        self._now_s = now_s
+        messages: list[Message] = []
+        for event in self.vehicle.take_events():
+            told = _TOLD.get(type(event))
+            if told is not None:
+                messages += told(self, event)
+        state = self.vehicle.state
+        messages += self._mind_fence(state)
+        report = self._report()
+        messages += [REPORTS[number](report) for number in self.streams.due(state.at_s)]
+        return [*map(Outgoing, messages), *self._heartbeat(report, now_s), *self.missions.tick(now_s)]
+
+    # What comes in
+
+    def _command(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        """Always one acknowledgement."""
+        wanted: list[Message] = []
+        try:
+            command = command_of(message)
+            answer = self._requests.answer(command)
+            result, wanted = (self.pilot.carry_out(command), []) if answer is None else answer
+        except NotFinite:
+            result = DENIED
+        except (ValueError, ArithmeticError):  # of a figure that nobody thought of
+            result = FAILED
+        return [acknowledgement(message.command, result, station), *(Outgoing(one, station) for one in wanted)]
+
+    def _set_mode(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        is_own = message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+        result = self.pilot.set_mode_number(message.custom_mode) if is_own else UNSUPPORTED
+        return [acknowledgement(mavlink.MAVLINK_MSG_ID_SET_MODE, result, station)]
+
+    def _set_current(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        self.pilot.set_current(message.seq)
+        return [Outgoing(mission_current(self._report()))]
+
+    def _mission(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        return self.missions.receive(message, station, now_s)
+
+    def _parameter(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        return self.parameters.receive(message, station)
+
+    def _file(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        return file_transfer.refused(message, station)
+
+    def _timesync(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        return time_service.timesync_answer(message, station, now_s)
+
+    def _ping(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        return time_service.ping_answer(message, station)
+
+    # What changes
+
+    def _configure(self, settings: Settings) -> None:
+        self.vehicle.settings = settings
+
+    def _replace(self, kind: MissionType, items: tuple[MissionItem, ...]) -> int:
+        if kind is MissionType.FENCE:
+            self._fence.fence = fence_of(items)
+        if kind is not MissionType.MISSION:
+            return int(mavlink.MAV_MISSION_ACCEPTED)
+        is_flown = self.vehicle.state.is_armed and self.pilot.custom_mode == AUTO
+        if self.flavour is Flavour.ARDUPILOT and not items and is_flown:
+            return int(mavlink.MAV_MISSION_ERROR)
+        outcome = self.vehicle.load(items)
+        self.streams.send_now(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
+        if isinstance(outcome, Refused):
+            self.pilot.refusal = outcome.words
+            return int(mavlink.MAV_MISSION_DENIED)
+        return int(mavlink.MAV_MISSION_ACCEPTED)
+
+    def _mind_fence(self, state: UavState) -> list[Message]:
+        action = self._fence.look(state.position, state.at_s, is_in_air=state.is_in_air)
+        if action is FenceAction.NONE:
+            return []
+        if action in MODES:
+            self.pilot.set_mode(MODES[action])
+        return self._text(f"Fence broken: {action.value}", mavlink.MAV_SEVERITY_CRITICAL)
+
+    # What is told
+
+    def _report(self) -> Report:
+        return Report(
+            state=self.vehicle.state,
+            flavour=self.flavour,
+            custom_mode=self.pilot.custom_mode,
+            current_item=self._current_item(),
+            item_count=len(self.vehicle.items),
+            unix_s=self.unix_at_zero_s + self._now_s,
+            is_fence_broken=self._fence.is_broken,
+        )
+
+    def _current_item(self) -> int:
+        """Of a list that is done the last."""
+        count = len(self.vehicle.items)
+        return min(self.vehicle.state.current_item, count - 1) + self.flavour.first_item if count else 0
+
+    def _home_item(self) -> MissionItem:
+        state = self.vehicle.state
+        longitude_e7, latitude_e7 = position_e7(state.home)
+        nothing = (0.0, 0.0, 0.0, 0.0)
+        return MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL, nothing, longitude_e7, latitude_e7, state.home_amsl_m)
+
+    def _heartbeat(self, report: Report, now_s: float) -> list[Outgoing]:
+        """Each second, and as soon as the mode or the arming is another."""
+        shows = (report.custom_mode, report.state.is_armed)
+        if now_s < self._heartbeat_due_s and shows == self._told:
+            return []
+        self._heartbeat_due_s, self._told = now_s + HEARTBEAT_S, shows
+        return [Outgoing(heartbeat(report))]
+
+    def _changed_heartbeat(self, now_s: float) -> list[Outgoing]:
+        if self._told == (self.pilot.custom_mode, self.vehicle.state.is_armed):
+            return []
+        return self._heartbeat(self._report(), now_s)
+
+    def _refusal(self) -> list[Outgoing]:
+        words, self.pilot.refusal = self.pilot.refusal, ""
+        return [Outgoing(one) for one in self._text(words, mavlink.MAV_SEVERITY_WARNING)] if words else []
+
+    def _text(self, words: str, severity: int) -> list[Message]:
+        self._texts = self._texts % LARGEST_NUMBER + 1
+        return text_messages(words, severity, self._texts)
+
+    def _reached(self, event: events.ItemReached) -> list[Message]:
+        """Before the heartbeat that tells of a landing, so that nobody takes the flight for broken off."""
+        reached = mavlink.MAVLink_mission_item_reached_message(event.index + self.flavour.first_item)
+        return [reached, mission_current(self._report())]
+
+    def _ended(self, event: events.MissionEnded) -> list[Message]:
+        return [mission_current(self._report())]
+
+    def _said(self, event: events.Said) -> list[Message]:
+        return self._text(event.text, SEVERITIES[event.severity])
+
+    def _landed(self, event: events.Event) -> list[Message]:
+        return [REPORTS[mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE](self._report())]
+
+    def _crashed(self, event: events.Crashed) -> list[Message]:
+        self._heartbeat_due_s = -math.inf
+        return [*self._text(f"Crashed: {event.reason}", mavlink.MAV_SEVERITY_EMERGENCY), *self._landed(event)]
+
+    def _photo(self, event: events.PhotoTaken) -> list[Message]:
+        state = self.vehicle.state
+        longitude_e7, latitude_e7 = position_e7(event.position)
+        altitude_mm, relative_mm = round(event.altitude_amsl_m * 1e3), round((event.altitude_amsl_m - state.home_amsl_m) * 1e3)
+        half_rad = math.radians(event.heading_deg) / 2
+        return [
+            mavlink.MAVLink_camera_image_captured_message(
+                int(event.at_s * 1e3),
+                int((self.unix_at_zero_s + self._now_s) * 1e6),
+                0,
+                latitude_e7,
+                longitude_e7,
+                altitude_mm,
+                relative_mm,
+                [math.cos(half_rad), 0.0, 0.0, math.sin(half_rad)],
+                event.number,
+                1,
+                b"",
+            )
+        ]
+
+
+_HANDLERS: dict[str, Callable[[Endpoint, Any, Station, float], list[Outgoing]]] = {
+    "COMMAND_LONG": Endpoint._command,
+    "COMMAND_INT": Endpoint._command,
+    "SET_MODE": Endpoint._set_mode,
+    "MISSION_SET_CURRENT": Endpoint._set_current,
+    "MISSION_COUNT": Endpoint._mission,
+    "MISSION_ITEM": Endpoint._mission,
+    "MISSION_ITEM_INT": Endpoint._mission,
+    "MISSION_REQUEST": Endpoint._mission,
+    "MISSION_REQUEST_INT": Endpoint._mission,
+    "MISSION_REQUEST_LIST": Endpoint._mission,
+    "MISSION_REQUEST_PARTIAL_LIST": Endpoint._mission,
+    "MISSION_WRITE_PARTIAL_LIST": Endpoint._mission,
+    "MISSION_CLEAR_ALL": Endpoint._mission,
+    "MISSION_ACK": Endpoint._mission,
+    "PARAM_REQUEST_LIST": Endpoint._parameter,
+    "PARAM_REQUEST_READ": Endpoint._parameter,
+    "PARAM_SET": Endpoint._parameter,
+    "FILE_TRANSFER_PROTOCOL": Endpoint._file,
+    "TIMESYNC": Endpoint._timesync,
+    "PING": Endpoint._ping,
+}
+_TOLD: dict[type, Callable[[Endpoint, Any], list[Message]]] = {
+    events.ItemReached: Endpoint._reached,
+    events.MissionEnded: Endpoint._ended,
+    events.Said: Endpoint._said,
+    events.TookOff: Endpoint._landed,
+    events.LandedAt: Endpoint._landed,
+    events.Crashed: Endpoint._crashed,
+    events.PhotoTaken: Endpoint._photo,
+}

@@ -1,0 +1,86 @@
+"""Which items a simulated UAV takes: what it would not fly, or keep as a fence, is refused with the reason that MAVLink has for it."""
+
+import math
+from collections.abc import Sequence
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.content import MissionItem, MissionType
+from simulation.flight.orders import HIGHEST_M, CannotFly, orders
+from simulation.vehicle_protocol.flavour import Flavour
+
+MOST_ITEMS = {
+    Flavour.PX4: {MissionType.MISSION: 2_000, MissionType.FENCE: 64, MissionType.RALLY: 32},
+    Flavour.ARDUPILOT: {MissionType.MISSION: 649, MissionType.FENCE: 84, MissionType.RALLY: 50},  # without home
+}
+ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
+RELATIVE = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
+PLACED_FRAMES = RELATIVE | ABOVE_SEA
+POLYGONS = frozenset({mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION})
+CIRCLES = frozenset({mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION})
+FENCE = POLYGONS | CIRCLES | {mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT}
+INVALID_PARAMETERS = {
+    1: mavlink.MAV_MISSION_INVALID_PARAM1, 2: mavlink.MAV_MISSION_INVALID_PARAM2, 3: mavlink.MAV_MISSION_INVALID_PARAM3,
+    4: mavlink.MAV_MISSION_INVALID_PARAM4, 5: mavlink.MAV_MISSION_INVALID_PARAM5_X, 6: mavlink.MAV_MISSION_INVALID_PARAM6_Y,
+    7: mavlink.MAV_MISSION_INVALID_PARAM7,
+}  # fmt: skip
+
+
+def refusal_of(item: MissionItem, kind: MissionType) -> int | None:
+    """A MAV_MISSION_RESULT for an item that is refused by itself; None for one that is taken."""
+    if kind is MissionType.MISSION:
+        # Where a jump leads is seen once the list is whole.
+        return None if item.command == mavlink.MAV_CMD_DO_JUMP else _refusal_of_mission((item,))
+    if item.command not in (FENCE if kind is MissionType.FENCE else {mavlink.MAV_CMD_NAV_RALLY_POINT}):
+        return int(mavlink.MAV_MISSION_UNSUPPORTED)
+    return _refusal_of_place(item)
+
+
+def refusal_of_list(items: Sequence[MissionItem], kind: MissionType) -> int | None:
+    """The same for a list whose items were taken one by one."""
+    if kind is MissionType.MISSION:
+        return _refusal_of_mission(items)
+    return _refusal_of_fence(items) if kind is MissionType.FENCE else None
+
+
+def _refusal_of_mission(items: Sequence[MissionItem]) -> int | None:
+    try:
+        orders(items, is_home_first=False)
+    except CannotFly as error:
+        if error.code == "frame":
+            return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
+        return int(INVALID_PARAMETERS.get(error.parameter, mavlink.MAV_MISSION_UNSUPPORTED))
+    return None
+
+
+def _refusal_of_place(item: MissionItem) -> int | None:
+    if item.frame not in PLACED_FRAMES:
+        return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
+    for number, value in enumerate(item.parameters, 1):
+        if math.isinf(value):
+            return int(INVALID_PARAMETERS[number])
+    if abs(item.latitude_e7) > 900_000_000:
+        return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)
+    if abs(item.longitude_e7) > 1_800_000_000:
+        return int(mavlink.MAV_MISSION_INVALID_PARAM6_Y)
+    return None if abs(item.altitude_m) <= HIGHEST_M else int(mavlink.MAV_MISSION_INVALID_PARAM7)
+
+
+def _refusal_of_fence(items: Sequence[MissionItem]) -> int | None:
+    """Each vertex of a polygon tells how many there are, and they follow each other."""
+    place = 0
+    while place < len(items):
+        item = items[place]
+        if item.command in CIRCLES and not item.parameters[0] > 0:
+            return int(mavlink.MAV_MISSION_INVALID_PARAM1)
+        if item.command not in POLYGONS:
+            place += 1
+            continue
+        count = item.parameters[0]
+        if not (count >= 3 and count == int(count)):
+            return int(mavlink.MAV_MISSION_INVALID_PARAM1)
+        vertices = items[place : place + int(count)]
+        if len(vertices) < count or any((one.command, one.parameters[0]) != (item.command, count) for one in vertices):
+            return int(mavlink.MAV_MISSION_INVALID_PARAM1)
+        place += int(count)
+    return None

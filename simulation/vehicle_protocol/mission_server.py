@@ -1,0 +1,193 @@
+"""The vehicle's side of MAVLink's mission protocol: lists in and out, one by one, and a list is replaced as a whole or not at all.
+
+Rules beyond the MAVLink guide, so that no station waits in vain: an announcement made again begins anew, an item sent again is answered
+again, one out of turn draws the request for the right one, and a station that falls silent is told that its upload is over.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.mavlink.content import MissionItem, MissionType
+from missions.mavlink.frames import Message
+from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.item_rules import MOST_ITEMS, refusal_of, refusal_of_list
+from simulation.vehicle_protocol.item_wire import as_kept, float_item_message, item_message, item_of
+from simulation.vehicle_protocol.stations import Outgoing, Station
+
+REQUEST_EVERY_S = 0.25
+MOST_REQUESTS = 20  # of one item
+ALL_LISTS = mavlink.MAV_MISSION_TYPE_ALL
+ACCEPTED, DENIED = int(mavlink.MAV_MISSION_ACCEPTED), int(mavlink.MAV_MISSION_DENIED)
+
+Replace = Callable[[MissionType, tuple[MissionItem, ...]], int]  # a MAV_MISSION_RESULT; nothing has changed unless it is ACCEPTED
+
+
+@dataclass
+class _Upload:
+    station: Station
+    kind: MissionType
+    count: int
+    asked_s: float
+    items: list[MissionItem] = field(default_factory=list)
+    requests: int = 1
+
+
+@dataclass
+class MissionServer:
+    """`held` are the lists without home; `replace` is told of each new one before it counts, and may refuse it.
+
+    `home` is item 0 of what ArduPilot gives back, `current` the number of the item that is being flown, as the flavour counts.
+    """
+
+    flavour: Flavour
+    replace: Replace
+    home: Callable[[], MissionItem]
+    current: Callable[[], int]
+    held: dict[MissionType, tuple[MissionItem, ...]] = field(default_factory=lambda: dict.fromkeys(MissionType, ()))
+    _upload: _Upload | None = None
+    _done: tuple[Station, MissionType, int] | None = None  # whose last item, of which number, ended an upload
+
+    def receive(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
+        """Of all messages those of the mission protocol are answered."""
+        name = message.get_type()
+        if name == "MISSION_CLEAR_ALL":
+            return self._clear(message.mission_type, station)
+        if name not in _HANDLERS:
+            return []
+        kind = _kind_of(message)
+        if kind is None:
+            return [] if name == "MISSION_ACK" else [_ack(mavlink.MAV_MISSION_UNSUPPORTED, message.mission_type, station)]
+        return _HANDLERS[name](self, message, kind, station, now_s)
+
+    def tick(self, now_s: float) -> list[Outgoing]:
+        upload = self._upload
+        if upload is None or now_s < upload.asked_s + REQUEST_EVERY_S:
+            return []
+        if upload.requests >= MOST_REQUESTS:
+            self._upload = None
+            return [_ack(mavlink.MAV_MISSION_OPERATION_CANCELLED, upload.kind, upload.station)]
+        upload.requests += 1
+        return self._ask(upload, now_s)
+
+    @property
+    def is_uploading(self) -> bool:
+        return self._upload is not None
+
+    # A list comes in
+
+    def _announced(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
+        if self._upload is not None and self._upload.station != station:
+            return [_ack(DENIED, kind, station)]
+        self._upload = self._done = None
+        flown = max(message.count - self._first(kind), 0)
+        if flown > MOST_ITEMS[self.flavour][kind]:
+            return [_ack(mavlink.MAV_MISSION_NO_SPACE, kind, station)]
+        if message.count == 0:
+            return [_ack(self.put(kind, ()), kind, station)]
+        self._upload = _Upload(station, kind, message.count, now_s)
+        return self._ask(self._upload, now_s)
+
+    def _item(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
+        upload = self._upload
+        if upload is None or (upload.station, upload.kind) != (station, kind):
+            if upload is None and self._done == (station, kind, message.seq):
+                return [_ack(ACCEPTED, kind, station)]  # the answer to it was lost
+            result = mavlink.MAV_MISSION_INVALID_SEQUENCE if upload is None or upload.station == station else DENIED
+            return [_ack(result, kind, station)]
+        if message.seq != len(upload.items):
+            return [] if message.seq < len(upload.items) else self._ask(upload, now_s)
+        item = item_of(message)
+        is_flown = message.seq >= self._first(kind)
+        refusal = refusal_of(item, kind) if is_flown else None
+        if refusal is not None:
+            self._upload = None
+            return [_ack(refusal, kind, station)]
+        upload.items.append(as_kept(item, kind, self.flavour) if is_flown else item)
+        upload.requests = 1
+        return self._ask(upload, now_s) if len(upload.items) < upload.count else self._complete(upload)
+
+    def _complete(self, upload: _Upload) -> list[Outgoing]:
+        self._upload = None
+        items = tuple(upload.items[self._first(upload.kind) :])
+        result = refusal_of_list(items, upload.kind)
+        result = self.put(upload.kind, items) if result is None else result
+        if result == ACCEPTED:
+            self._done = (upload.station, upload.kind, upload.count - 1)
+        return [_ack(result, upload.kind, upload.station)]
+
+    def put(self, kind: MissionType, items: tuple[MissionItem, ...]) -> int:
+        """In place of the list that is held, or, with any other result than ACCEPTED, not at all."""
+        result = self.replace(kind, items)
+        if result == ACCEPTED:
+            self.held[kind] = items
+        return result
+
+    def _ask(self, upload: _Upload, now_s: float) -> list[Outgoing]:
+        """ArduPilot asks by the older message, and takes the newer items for an answer."""
+        upload.asked_s = now_s
+        message: type[Message] = mavlink.MAVLink_mission_request_int_message
+        if self.flavour is Flavour.ARDUPILOT:
+            message = mavlink.MAVLink_mission_request_message
+        return [Outgoing(message(*upload.station.ends, len(upload.items), int(upload.kind)), upload.station)]
+
+    def _acknowledged(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
+        upload = self._upload
+        if upload is not None and (upload.station, upload.kind) == (station, kind) and message.type != ACCEPTED:
+            self._upload = None
+        return []
+
+    def _clear(self, mission_type: int, station: Station) -> list[Outgoing]:
+        kinds = list(MissionType) if mission_type == ALL_LISTS else [kind for kind in MissionType if kind == mission_type]
+        if not kinds:
+            return [_ack(mavlink.MAV_MISSION_UNSUPPORTED, mission_type, station)]
+        if self._upload is not None:
+            return [_ack(mavlink.MAV_MISSION_ERROR, mission_type, station)]
+        results = [self.put(kind, ()) for kind in kinds]
+        return [_ack(next((result for result in results if result != ACCEPTED), ACCEPTED), mission_type, station)]
+
+    # A list goes out
+
+    def _listed(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
+        return [Outgoing(mavlink.MAVLink_mission_count_message(*station.ends, len(self._told(kind)), int(kind)), station)]
+
+    def _requested(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
+        told = self._told(kind)
+        if message.seq >= len(told):
+            return [_ack(mavlink.MAV_MISSION_INVALID_SEQUENCE, kind, station)]
+        is_current = kind is MissionType.MISSION and message.seq == self.current()
+        write = item_message if message.get_type() == "MISSION_REQUEST_INT" else float_item_message
+        return [Outgoing(write(told[message.seq], message.seq, kind, station, is_current=is_current), station)]
+
+    def _told(self, kind: MissionType) -> Sequence[MissionItem]:
+        return self.held[kind] if self._first(kind) == 0 else (self.home(), *self.held[kind])
+
+    def _partial(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
+        """A list is never changed in part."""
+        return [_ack(mavlink.MAV_MISSION_UNSUPPORTED, kind, station)]
+
+    def _first(self, kind: MissionType) -> int:
+        return self.flavour.first_item if kind is MissionType.MISSION else 0
+
+
+_HANDLERS = {
+    "MISSION_COUNT": MissionServer._announced,
+    "MISSION_ITEM_INT": MissionServer._item,
+    "MISSION_ITEM": MissionServer._item,
+    "MISSION_ACK": MissionServer._acknowledged,
+    "MISSION_REQUEST_LIST": MissionServer._listed,
+    "MISSION_REQUEST_INT": MissionServer._requested,
+    "MISSION_REQUEST": MissionServer._requested,
+    "MISSION_WRITE_PARTIAL_LIST": MissionServer._partial,
+    "MISSION_REQUEST_PARTIAL_LIST": MissionServer._partial,
+}
+
+
+def _kind_of(message: Any) -> MissionType | None:
+    return next((kind for kind in MissionType if kind == message.mission_type), None)
+
+
+def _ack(result: int, kind: int, to: Station) -> Outgoing:
+    return Outgoing(mavlink.MAVLink_mission_ack_message(*to.ends, int(result), int(kind)), to)

@@ -1,0 +1,197 @@
+"""Commands to orders for the UAV, as each flavour of autopilot understands them.
+
+Sources: what QGroundControl, MAVSDK and MAVProxy send; PX4's Commander; ArduCopter 4.6 in its simulator.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
+from simulation.flight.states import DONE, Mode, Outcome, Refused
+from simulation.vehicle_protocol.command_door import Command
+from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import (
+    COPTER_BY_HAND,
+    COPTER_NOT_ARMABLE,
+    GUIDED,
+    ShownMode,
+    ordered_mode,
+    px4_number,
+    usual_number,
+)
+from simulation.vehicle_protocol.vehicle import Vehicle
+
+ACCEPTED, DENIED, FAILED = int(mavlink.MAV_RESULT_ACCEPTED), int(mavlink.MAV_RESULT_DENIED), int(mavlink.MAV_RESULT_FAILED)
+UNSUPPORTED, REJECTED = int(mavlink.MAV_RESULT_UNSUPPORTED), int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+FORCE = 21_196  # of COMPONENT_ARM_DISARM
+LEAST_TAKE_OFF_M = 1.0
+AIRSPEED, GROUND_SPEED = 0, 1
+PAUSE, GO_ON = 0, 1
+
+
+@dataclass
+class Pilot:
+    """`refusal` is why the last order was refused, in words, for the people at the stations; whoever tells it takes it out."""
+
+    vehicle: Vehicle
+    flavour: Flavour
+    refusal: str = ""
+    shown: ShownMode = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.shown = ShownMode.at_start(self.flavour)
+
+    @property
+    def custom_mode(self) -> int:
+        state = self.vehicle.state
+        return self.shown.number(state.mode, is_in_air=state.is_in_air)
+
+    def carry_out(self, command: Command) -> int:
+        """A MAV_RESULT; UNSUPPORTED for what is not a pilot's matter."""
+        order = _ORDERS.get(command.number)
+        return UNSUPPORTED if order is None else order(self, command)
+
+    def set_mode_number(self, number: int) -> int:
+        """By the number that heartbeats bear."""
+        mode = ordered_mode(self.flavour, number)
+        if mode is None:
+            return self._refused("This mode needs a pilot at the sticks, and there is none.", UNSUPPORTED)
+        state = self.vehicle.state
+        if self.flavour is Flavour.ARDUPILOT and number in COPTER_BY_HAND and state.is_armed and state.is_in_air:
+            return self._refused("This mode needs a pilot at the sticks, and there is none.")
+        is_there = mode is Mode.HOLD and state.mode is Mode.HOLD
+        outcome = DONE if is_there else self.vehicle.set_mode(mode)
+        if outcome.is_done:
+            self.shown.asked = number
+        return self._result(outcome)
+
+    def set_mode(self, mode: Mode) -> int:
+        return self.set_mode_number(usual_number(self.flavour, mode))
+
+    def set_current(self, number: int) -> int:
+        """number: as the flavour counts; ArduPilot's home means the first that is flown."""
+        outcome = self.vehicle.set_current(max(number - self.flavour.first_item, 0))
+        return self._result(outcome, DENIED)
+
+    def _arm(self, command: Command) -> int:
+        wanted, is_forced = command.whole(1), command.whole(2) == FORCE
+        if wanted == 1:
+            if self.flavour is Flavour.ARDUPILOT and not self.vehicle.state.is_armed and self.custom_mode in COPTER_NOT_ARMABLE:
+                return self._refused("Arm: this mode is not armable")
+            return self._result(self.vehicle.arm())
+        if wanted == 0:
+            return self._result(self.vehicle.disarm(force=is_forced))
+        return DENIED
+
+    def _take_off(self, command: Command) -> int:
+        """PX4 is told before it is armed, by the height above sea level; ArduCopter armed in GUIDED, by the height above home."""
+        state, height_m = self.vehicle.state, command[7]
+        if self.flavour is Flavour.ARDUPILOT:
+            if not state.is_armed or self.custom_mode != GUIDED:
+                return self._refused("Take-off needs an armed vehicle in GUIDED")
+            if height_m is None or height_m <= 0:
+                return DENIED
+            return self._result(self.vehicle.take_off(height_m))
+        relative_m = self.vehicle.settings.take_off_height_m
+        if height_m is not None:
+            wanted_m = height_m if command.is_above_sea is False else height_m - state.home_amsl_m
+            relative_m = wanted_m if wanted_m >= LEAST_TAKE_OFF_M else relative_m
+        outcome = self.vehicle.take_off(relative_m)
+        if outcome.is_done:
+            self.shown.asked = usual_number(self.flavour, Mode.TAKE_OFF)
+        return self._result(outcome)
+
+    def _set_mode(self, command: Command) -> int:
+        base, main, sub = command.whole(1), command.whole(2), command.whole(3)
+        if base is None or not base & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED or main is None:
+            return UNSUPPORTED
+        if self.flavour is Flavour.ARDUPILOT:
+            return self.set_mode_number(main)
+        if not 0 <= main <= 255 or not 0 <= (sub or 0) <= 255:
+            return DENIED
+        return self.set_mode_number(px4_number(main, sub or 0))
+
+    def _start(self, command: Command) -> int:
+        """PX4 arms by itself; ArduCopter agrees while it is disarmed, and does nothing."""
+        first = command.whole(1)
+        if self.flavour is Flavour.ARDUPILOT:
+            return self.set_mode(Mode.MISSION) if self.vehicle.state.is_armed else ACCEPTED
+        if first is not None and first > 0 and (result := self.set_current(first)) != ACCEPTED:
+            return result
+        result = self.set_mode(Mode.MISSION)
+        return self._result(self.vehicle.arm()) if result == ACCEPTED and not self.vehicle.state.is_armed else result
+
+    def _pause(self, command: Command) -> int:
+        wanted = command.whole(1)
+        if wanted not in (PAUSE, GO_ON):
+            return DENIED
+        return self.set_mode(Mode.HOLD if wanted == PAUSE else Mode.MISSION)
+
+    def _go_to(self, command: Command) -> int:
+        """What is left open stays as it is; everything left open is a pause."""
+        state = self.vehicle.state
+        lat, lon, height_m = command[5], command[6], command[7]
+        if not state.is_in_air:
+            return self._refused("It stands on the ground", REJECTED)
+        if all(value is None for value in (lat, lon, height_m, command[4])):
+            return self.set_mode(Mode.HOLD)
+        if (lat is not None and not -90 <= lat <= 90) or (lon is not None and not -180 <= lon <= 180):
+            return DENIED
+        place = LonLat(state.position.lon if lon is None else lon, state.position.lat if lat is None else lat)
+        relative_m = state.altitude_relative_m
+        if height_m is not None:
+            relative_m = height_m if command.is_above_sea is False else height_m - state.home_amsl_m
+        if relative_m <= 0:
+            return DENIED
+        speed_mps = command[1]
+        if speed_mps is not None and speed_mps > 0:
+            self.vehicle.change_speed(speed_mps)
+        heading_rad = command[4]
+        outcome = self.vehicle.go_to(place, relative_m, None if heading_rad is None else math.degrees(heading_rad))
+        if outcome.is_done:
+            self.shown.asked = usual_number(self.flavour, Mode.GO_TO)
+        return self._result(outcome)
+
+    def _change_speed(self, command: Command) -> int:
+        """-1 is no change, -2 back to what is usual."""
+        if (command[1] or AIRSPEED) not in (AIRSPEED, GROUND_SPEED):
+            return UNSUPPORTED
+        speed_mps = command[2]
+        if speed_mps is None or speed_mps in (-1, -2):
+            return ACCEPTED
+        return self._result(self.vehicle.change_speed(speed_mps), DENIED) if speed_mps > 0 else DENIED
+
+    def _set_current(self, command: Command) -> int:
+        number = command.whole(1)
+        return DENIED if number is None or number < 0 else self.set_current(number)
+
+    def _land(self, command: Command) -> int:
+        return self.set_mode(Mode.LAND)
+
+    def _return(self, command: Command) -> int:
+        return self.set_mode(Mode.RETURN)
+
+    def _result(self, outcome: Outcome, refused: int = FAILED) -> int:
+        return self._refused(outcome.words, refused) if isinstance(outcome, Refused) else ACCEPTED
+
+    def _refused(self, words: str, result: int = FAILED) -> int:
+        self.refusal = words
+        return result
+
+
+_ORDERS: dict[int, Callable[[Pilot, Command], int]] = {
+    mavlink.MAV_CMD_COMPONENT_ARM_DISARM: Pilot._arm,
+    mavlink.MAV_CMD_NAV_TAKEOFF: Pilot._take_off,
+    mavlink.MAV_CMD_NAV_LAND: Pilot._land,
+    mavlink.MAV_CMD_DO_LAND_START: Pilot._land,  # MAVProxy's "land"
+    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: Pilot._return,
+    mavlink.MAV_CMD_MISSION_START: Pilot._start,
+    mavlink.MAV_CMD_DO_SET_MODE: Pilot._set_mode,
+    mavlink.MAV_CMD_DO_REPOSITION: Pilot._go_to,
+    mavlink.MAV_CMD_DO_PAUSE_CONTINUE: Pilot._pause,
+    mavlink.MAV_CMD_DO_CHANGE_SPEED: Pilot._change_speed,
+    mavlink.MAV_CMD_DO_SET_MISSION_CURRENT: Pilot._set_current,
+}

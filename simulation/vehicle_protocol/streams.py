@@ -1,0 +1,79 @@
+"""Which messages a vehicle sends by itself, and how often, by its own clock."""
+
+import math
+from collections.abc import Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from simulation.vehicle_protocol.flavour import Flavour
+
+# Seconds of simulated time. What MAVSDK, MAVProxy and a gateway need without asking.
+INTERVALS_S = {
+    mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
+    mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 2.0,
+    mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 0.2,
+    mavlink.MAVLINK_MSG_ID_ATTITUDE: 0.2,
+    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: 1.0,
+    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: 0.5,
+    mavlink.MAVLINK_MSG_ID_VFR_HUD: 0.5,
+    mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: 1.0,
+    mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: 0.5,
+    mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
+    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
+    mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0,
+}
+WIND_INTERVAL_S = 2.0
+WIND = {Flavour.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, Flavour.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
+SHORTEST_S = 0.04  # a step of the flight
+LONGEST_S = 3_600.0
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0  # multiples of it lie evenly, however many there are
+
+
+class Streams:
+    """Intervals by message. `phase` (any number) spreads the messages of one vehicle, and those of many, over their intervals."""
+
+    def __init__(self, flavour: Flavour, phase: float = 0.0) -> None:
+        self._usual = {**INTERVALS_S, WIND[flavour]: WIND_INTERVAL_S}
+        self._intervals_s: dict[int, float] = dict(self._usual)
+        self._due_s = {
+            message: interval_s * ((phase + place) * GOLDEN % 1.0) for place, (message, interval_s) in enumerate(self._usual.items())
+        }
+        self._next_s = -math.inf
+
+    @property
+    def intervals_s(self) -> Mapping[int, float]:
+        return self._intervals_s
+
+    def due(self, at_s: float) -> list[int]:
+        """Messages to be sent at this simulated time. What was missed is not made up for."""
+        if at_s < self._next_s:
+            return []
+        found = [message for message, due_s in self._due_s.items() if due_s <= at_s]
+        for message in found:
+            following_s = self._due_s[message] + self._intervals_s[message]
+            self._due_s[message] = following_s if following_s > at_s else at_s + self._intervals_s[message]
+        self._next_s = min(self._due_s.values(), default=math.inf)
+        return found
+
+    def send_now(self, message: int) -> None:
+        """At the next occasion, if it is sent at all."""
+        if message in self._due_s:
+            self._due_s[message] = self._next_s = -math.inf
+
+    def set_interval(self, message: int, interval_us: float | None) -> bool:
+        """As SET_MESSAGE_INTERVAL has it: below 0 is never, 0 as usual. Whether it can be had; None cannot."""
+        if interval_us is None:
+            return False
+        if interval_us < 0:
+            self._intervals_s.pop(message, None)
+            self._due_s.pop(message, None)
+        else:
+            interval_s = interval_us / 1e6 if interval_us else self._usual.get(message, 1.0)
+            self._intervals_s[message] = min(max(interval_s, SHORTEST_S), LONGEST_S)
+            self._due_s[message] = -math.inf
+        self._next_s = -math.inf
+        return True
+
+    def interval_us(self, message: int) -> int:
+        """As MESSAGE_INTERVAL has it."""
+        return round(self._intervals_s[message] * 1e6) if message in self._intervals_s else -1

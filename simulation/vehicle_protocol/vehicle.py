@@ -1,0 +1,38 @@
+"""What the MAVLink side needs of a UAV; SimulatedUav is one."""
+
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+from inspection.geodesy import LonLat
+from missions.mavlink.content import MissionItem
+from simulation.flight.events import Event
+from simulation.flight.settings import Settings
+from simulation.flight.states import Mode, Outcome, UavState
+
+
+class Vehicle(Protocol):
+    """Orders are carried out or refused at once; `state` and the events show the rest. Items count from 0 without home."""
+
+    settings: Settings
+    items: tuple[MissionItem, ...]
+
+    @property
+    def state(self) -> UavState: ...
+
+    def take_events(self) -> Iterable[Event]: ...
+
+    def load(self, items: Sequence[MissionItem]) -> Outcome: ...
+
+    def arm(self) -> Outcome: ...
+
+    def disarm(self, *, force: bool = False) -> Outcome: ...
+
+    def take_off(self, height_relative_m: float) -> Outcome: ...
+
+    def set_mode(self, mode: Mode) -> Outcome: ...
+
+    def go_to(self, position: LonLat, altitude_relative_m: float, heading_deg: float | None = None) -> Outcome: ...
+
+    def change_speed(self, speed_mps: float) -> Outcome: ...
+
+    def set_current(self, index: int) -> Outcome: ...

@@ -1,0 +1,95 @@
+"""What a simulated UAV did, as the verdict reads it: one row for each moment."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inspection.geodesy.local_frame import LocalFrame
+from missions.mavlink.frozen import Flight, FrozenRoute, FrozenWaypoint
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+NO_WAYPOINT = -1
+
+
+class Ending(StrEnum):
+    LANDED = "landed"
+    HOVERING = "hovering"  # after its last waypoint, as it was planned
+    CRASHED = "crashed"
+    UNFINISHED = "unfinished"  # longer than anybody would wait
+    REFUSED = "refused"  # it did not take off
+
+
+@dataclass(frozen=True, eq=False)
+class FlownTrack:
+    """One flight. All columns have n rows.
+
+    t_s             seconds after the mission's departure
+    position        (n, 2), lon, lat [deg]
+    amsl_m          above sea level, or above the assumed flat ground where no terrain is known
+    relative_m      above where this flight took off
+    battery_percent, used_wh
+    waypoint        sequence of the waypoint of the route that is flown to, NO_WAYPOINT before and after
+    is_coming_down  whether it is on its own way to the ground
+    """
+
+    t_s: FloatArray
+    position: FloatArray
+    amsl_m: FloatArray
+    relative_m: FloatArray
+    battery_percent: FloatArray
+    used_wh: FloatArray
+    waypoint: IntArray
+    is_in_air: BoolArray
+    is_coming_down: BoolArray
+    ending: Ending
+    said: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.t_s)
+
+    @property
+    def is_over_well(self) -> bool:
+        return self.ending in (Ending.LANDED, Ending.HOVERING)
+
+
+@dataclass(frozen=True, eq=False)
+class FlownFlight:
+    """A flight of a route with what was flown of it; None for one that never began, as the one before it failed."""
+
+    flight: Flight
+    track: FlownTrack | None
+
+
+@dataclass(frozen=True, eq=False)
+class FlownRoute:
+    """A UAV's whole route. `uav` is its place in the mission; reserve_percent is what its plan leaves in the battery."""
+
+    uav: int
+    name: str
+    route: FrozenRoute
+    flights: tuple[FlownFlight, ...]
+    reserve_percent: float
+    planned_wh: float | None = None
+    planned_s: float | None = None
+
+    @property
+    def tracks(self) -> tuple[FlownTrack, ...]:
+        return tuple(flown.track for flown in self.flights if flown.track is not None)
+
+
+def frame_of(routes: Sequence[FlownRoute]) -> LocalFrame | None:
+    """One flat frame for all of them; None where nothing was flown."""
+    flown = [track.position for route in routes for track in route.tracks if len(track)]
+    if not flown:
+        return None
+    lon, lat = np.concatenate(flown).mean(axis=0).tolist()
+    return LocalFrame.around(lon, lat)
+
+
+def waypoint_of(flight: Flight, sequence: int) -> FrozenWaypoint | None:
+    return next((waypoint for waypoint in flight.waypoints if waypoint.sequence == sequence), None)

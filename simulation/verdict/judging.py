@@ -1,0 +1,301 @@
+"""All of a rehearsed mission under one set of conditions, held against the limits: a level, and the reasons for it."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inspection.zones.reach import ZoneTable
+from simulation.verdict.energy import FlightEnergy, energy_of
+from simulation.verdict.finding import Facts, Finding, Level, level_of
+from simulation.verdict.flown import Ending, FloatArray, FlownRoute
+from simulation.verdict.following import Following, following_of
+from simulation.verdict.limits import Limits
+from simulation.verdict.meeting import Meeting, meetings_of
+from simulation.verdict.obstacles import Approach, Standing, lowest_of, nearest_standing
+from simulation.verdict.reaching import Visit, visits_of
+from simulation.verdict.zone_approach import ZoneApproach, zone_approaches
+
+MEETING_STEP_S = 0.2
+NEAR_ZONES = 5  # of a route that are told of
+
+GroundHeights = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """What flights are held against. ground_amsl_m takes (n, 2) lon, lat and gives (n,) metres, NaN where it is not known.
+
+    departs_s: the mission's departure, seconds since the epoch; None for any time.
+    """
+
+    zones: ZoneTable
+    standing: Standing
+    ground_amsl_m: GroundHeights
+    departs_s: float | None
+
+
+@dataclass(frozen=True)
+class TargetVerdict:
+    """One target. `closest_m` is the worst of its waypoints; at_s when the first was reached; battery left then."""
+
+    target: int
+    level: Level
+    is_reached: bool
+    closest_m: float | None
+    at_s: float | None
+    late_s: float | None
+    held_s: float
+    planned_hold_s: float
+    battery_percent: float | None
+
+
+@dataclass(frozen=True)
+class RouteVerdict:
+    """One UAV's route."""
+
+    uav: int
+    name: str
+    level: Level
+    endings: tuple[Ending | None, ...]  # of its flights; None: not begun
+    following: Following
+    energy: tuple[FlightEnergy, ...]
+    used_wh: float
+    planned_wh: float | None
+    reserve_percent: float
+    flown_s: float
+    planned_s: float | None
+    zones: tuple[ZoneApproach, ...]
+    lowest: Approach | None
+    obstacle: Approach | None
+    widest_waypoint_m: float | None  # the worst of all waypoints: how near it was passed
+    targets: tuple[TargetVerdict, ...]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    level: Level
+    findings: tuple[Finding, ...]
+    routes: tuple[RouteVerdict, ...]
+    meetings: tuple[Meeting, ...]
+
+
+def judge(routes: Sequence[FlownRoute], around: Surroundings, limits: Limits, *, known: Sequence[Finding] = ()) -> Verdict:
+    """known: findings that were there before the flight, such as a wind that the airframe cannot fly in."""
+    meetings = meetings_of(routes, step_s=MEETING_STEP_S)
+    findings = [*known, *_of_meetings(meetings, limits)]
+    verdicts = []
+    for route in routes:
+        told, verdict = _of_route(route, around, limits, [finding for finding in findings if finding.uav == route.uav])
+        findings += told
+        verdicts.append(verdict)
+    return Verdict(level_of(findings), tuple(findings), tuple(verdicts), tuple(meetings))
+
+
+def _of_route(route: FlownRoute, around: Surroundings, limits: Limits, met: Sequence[Finding]) -> tuple[list[Finding], RouteVerdict]:
+    visits, energy, following = visits_of(route, within_m=limits.waypoint_fail_m), energy_of(route), following_of(route)
+    grounds = [np.zeros(0) if flown.track is None else around.ground_amsl_m(flown.track.position) for flown in route.flights]
+    zones = _nearest_zones(route, grounds, around)
+    lowest, standing = _nearest(route, grounds, around, limits)
+    flown_s = sum(float(track.t_s[-1] - track.t_s[0]) for track in route.tracks if len(track))
+    targets = [_of_target(target, visits, limits) for target in dict.fromkeys(_targets(visits))]
+    findings = [
+        *_of_endings(route),
+        *_of_energy(route, energy, visits, limits),
+        *_of_following(route, following, limits),
+        *_of_visits(route, visits, limits),
+        *_of_times(route, visits, limits),
+        *(_zone_finding(route, zone, limits) for zone in zones if _is_near(zone, limits)),
+        *_of_ground(route, lowest, limits),
+        *_of_standing(route, standing, limits),
+    ]
+    told = [*met, *findings]
+    by_target = [_with_level(verdict, told) for verdict in targets]
+    passed_m = [visit.closest_m for visit in visits if visit.closest_m is not None]
+    return findings, RouteVerdict(
+        uav=route.uav,
+        name=route.name,
+        level=level_of(told),
+        endings=tuple(None if flown.track is None else flown.track.ending for flown in route.flights),
+        following=following,
+        energy=tuple(energy),
+        used_wh=sum(one.used_wh for one in energy),
+        planned_wh=route.planned_wh,
+        reserve_percent=route.reserve_percent,
+        flown_s=flown_s,
+        planned_s=route.planned_s,
+        zones=tuple(zones[:NEAR_ZONES]),
+        lowest=lowest,
+        obstacle=min((one for one in standing if one is not None), key=lambda one: one.away_m, default=None),
+        widest_waypoint_m=max(passed_m, default=None),
+        targets=tuple(by_target),
+    )
+
+
+def _targets(visits: Sequence[Visit]) -> Iterator[int]:
+    return (visit.waypoint.target for visit in visits if visit.waypoint.target is not None)
+
+
+def _of_target(target: int, visits: Sequence[Visit], limits: Limits) -> TargetVerdict:
+    own = [visit for visit in visits if visit.waypoint.target == target]
+    metres = [visit.closest_m for visit in own]
+    is_reached = all(one is not None and one <= limits.waypoint_fail_m for one in metres)
+    first = next((visit for visit in own if visit.at_s is not None), None)
+    return TargetVerdict(
+        target=target,
+        level=Level.PASS,
+        is_reached=is_reached,
+        closest_m=None if any(one is None for one in metres) else max(one for one in metres if one is not None),
+        at_s=None if first is None else first.at_s,
+        late_s=None if first is None else first.late_s,
+        held_s=sum(visit.held_s for visit in own if _hold_s(visit) > 0),
+        planned_hold_s=sum(_hold_s(visit) for visit in own),
+        battery_percent=None if first is None else first.battery_percent,
+    )
+
+
+def _hold_s(visit: Visit) -> float:
+    return 0.0 if visit.waypoint.task is None else visit.waypoint.task.hold_s
+
+
+def _with_level(verdict: TargetVerdict, findings: Sequence[Finding]) -> TargetVerdict:
+    level = level_of(finding for finding in findings if finding.target == verdict.target)
+    return replace(verdict, level=level)
+
+
+def _of_endings(route: FlownRoute) -> Iterator[Finding]:
+    for number, flown in enumerate(route.flights):
+        facts: Facts = {"name": route.name, "flight": number + 1, "flights": len(route.flights)}
+        if flown.track is None:
+            yield Finding(Level.FAIL, "not-begun", route.uav, facts=facts)
+        elif not flown.track.is_over_well:
+            said = flown.track.said[-1] if flown.track.said else ""
+            at_s = float(flown.track.t_s[-1]) if len(flown.track) else None
+            yield Finding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": said, "at_s": at_s})
+
+
+def _of_energy(route: FlownRoute, energy: Sequence[FlightEnergy], visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
+    """What is short is told of the route, and of the last target of the flight: without it the battery would have lasted longer."""
+    for one in energy:
+        facts: Facts = {
+            "name": route.name, "flight": one.flight + 1, "flights": len(route.flights), "percent": one.left_percent,
+            "limit_percent": route.reserve_percent,
+        }  # fmt: skip
+        if one.left_percent < route.reserve_percent:
+            last = next((v.waypoint.target for v in reversed(visits) if v.flight == one.flight and v.waypoint.target is not None), None)
+            yield Finding(Level.FAIL, "reserve", route.uav, last, facts)
+        elif one.left_percent < route.reserve_percent + limits.reserve_spare_percent:
+            yield Finding(Level.WARNINGS, "reserve-near", route.uav, None, facts)
+
+
+def _of_following(route: FlownRoute, following: Following, limits: Limits) -> Iterator[Finding]:
+    kinds = (
+        ("across", following.across, following.worst_across_waypoint, limits.across_warn_m, limits.across_fail_m),
+        ("height", following.height, following.worst_height_waypoint, limits.height_warn_m, limits.height_fail_m),
+    )
+    for code, error, waypoint, warn_m, fail_m in kinds:
+        if error.max_m is not None and error.max_m > warn_m:
+            level = Level.FAIL if error.max_m > fail_m else Level.WARNINGS
+            limit_m = fail_m if level is Level.FAIL else warn_m
+            facts: Facts = {"name": route.name, "metres": error.max_m, "limit_m": limit_m, "waypoint": waypoint}
+            yield Finding(level, code, route.uav, facts=facts)
+
+
+def _of_visits(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
+    for visit in visits:
+        facts: Facts = {"name": route.name, "waypoint": visit.waypoint.sequence}
+        target = visit.waypoint.target
+        if visit.closest_m is None:
+            if target is not None:
+                yield Finding(Level.FAIL, "not-flown-to", route.uav, target, facts)
+        elif visit.closest_m > limits.waypoint_fail_m:
+            yield Finding(Level.FAIL, "missed", route.uav, target, facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_fail_m})
+        elif visit.closest_m > limits.waypoint_warn_m:
+            told = facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_warn_m}
+            yield Finding(Level.WARNINGS, "passed-wide", route.uav, target, told)
+        if target is not None and visit.closest_m is not None and visit.held_s < _hold_s(visit) - limits.hold_slack_s:
+            yield Finding(Level.FAIL, "not-held", route.uav, target, facts | {"held_s": visit.held_s, "hold_s": _hold_s(visit)})
+
+
+def _of_times(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
+    """The waypoint farthest from its time."""
+    late = max((visit for visit in visits if visit.late_s is not None), key=lambda visit: abs(visit.late_s or 0.0), default=None)
+    if late is not None and late.late_s is not None and abs(late.late_s) > limits.late_warn_s:
+        code = "late" if late.late_s > 0 else "early"
+        facts: Facts = {"name": route.name, "seconds": abs(late.late_s), "limit_s": limits.late_warn_s, "waypoint": late.waypoint.sequence}
+        yield Finding(Level.WARNINGS, code, route.uav, facts=facts)
+
+
+def _nearest_zones(route: FlownRoute, grounds: Sequence[FloatArray], around: Surroundings) -> list[ZoneApproach]:
+    """The nearest that any flight of the route came to each zone, the nearest first."""
+    found: dict[int, ZoneApproach] = {}
+    for flown, ground_m in zip(route.flights, grounds, strict=True):
+        if flown.track is None:
+            continue
+        for zone in zone_approaches(flown.track, ground_m, around.zones, around.departs_s):
+            if zone.zone not in found or zone.away_m < found[zone.zone].away_m:
+                found[zone.zone] = zone
+    return sorted(found.values(), key=lambda zone: zone.away_m)
+
+
+def _is_near(zone: ZoneApproach, limits: Limits) -> bool:
+    return zone.beside_m < limits.zone_beside_m and zone.height_m < limits.zone_height_m
+
+
+def _zone_finding(route: FlownRoute, zone: ZoneApproach, limits: Limits) -> Finding:
+    facts: Facts = {"name": route.name, "zone": zone.name, "at_s": zone.t_s, "waypoint": zone.waypoint, "metres": zone.away_m}
+    if zone.is_inside:
+        return Finding(Level.FAIL, "zone-entered", route.uav, facts=facts)
+    limit_m = limits.zone_height_m if zone.beside_m == 0.0 else limits.zone_beside_m
+    return Finding(Level.WARNINGS, "zone-near", route.uav, facts=facts | {"limit_m": limit_m})
+
+
+def _nearest(
+    route: FlownRoute, grounds: Sequence[FloatArray], around: Surroundings, limits: Limits
+) -> tuple[Approach | None, tuple[Approach | None, Approach | None]]:
+    """The lowest, and the nearest to what stands: on the way, and in the columns."""
+
+    def nearer(one: Approach | None, other: Approach | None) -> Approach | None:
+        return min((known for known in (one, other) if known is not None), key=lambda known: known.away_m, default=None)
+
+    lowest: Approach | None = None
+    on_way: Approach | None = None
+    in_column: Approach | None = None
+    for flown, ground_m in zip(route.flights, grounds, strict=True):
+        if flown.track is None or not len(flown.track):
+            continue
+        lowest = nearer(lowest, lowest_of(flown, ground_m, column_m=limits.column_m))
+        way, column = nearest_standing(flown, around.standing, column_m=limits.column_m)
+        on_way, in_column = nearer(on_way, way), nearer(in_column, column)
+    return lowest, (on_way, in_column)
+
+
+def _of_ground(route: FlownRoute, lowest: Approach | None, limits: Limits) -> Iterator[Finding]:
+    if lowest is None or lowest.away_m >= limits.ground_warn_m:
+        return
+    level = Level.FAIL if lowest.away_m < limits.ground_fail_m else Level.WARNINGS
+    limit_m = limits.ground_fail_m if level is Level.FAIL else limits.ground_warn_m
+    facts: Facts = {"name": route.name, "metres": lowest.away_m, "limit_m": limit_m, "waypoint": lowest.waypoint, "at_s": lowest.t_s}
+    yield Finding(level, "low", route.uav, facts=facts)
+
+
+def _of_standing(route: FlownRoute, standing: tuple[Approach | None, Approach | None], limits: Limits) -> Iterator[Finding]:
+    for one in standing:
+        if one is None or one.away_m >= limits.obstacle_warn_m:
+            continue
+        level = Level.FAIL if one.away_m < limits.obstacle_fail_m and not one.is_column else Level.WARNINGS
+        limit_m = limits.obstacle_fail_m if level is Level.FAIL else limits.obstacle_warn_m
+        facts: Facts = {"name": route.name, "metres": one.away_m, "limit_m": limit_m, "waypoint": one.waypoint, "at_s": one.t_s}
+        yield Finding(level, "obstacle-column" if one.is_column else "obstacle", route.uav, facts=facts)
+
+
+def _of_meetings(meetings: Sequence[Meeting], limits: Limits) -> Iterator[Finding]:
+    """Each is told of both UAVs."""
+    for meeting in meetings:
+        is_hit = meeting.away_m < limits.apart_fail_m
+        if not is_hit and not (meeting.beside_m < limits.apart_warn_beside_m and meeting.height_m < limits.apart_warn_height_m):
+            continue
+        limit_m = limits.apart_fail_m if is_hit else limits.apart_warn_beside_m
+        for uav, other in (meeting.uavs, meeting.uavs[::-1]):
+            facts: Facts = {"metres": meeting.away_m, "limit_m": limit_m, "at_s": meeting.t_s, "other": other}
+            yield Finding(Level.FAIL if is_hit else Level.WARNINGS, "apart", uav, facts=facts)

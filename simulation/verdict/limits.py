@@ -1,0 +1,73 @@
+"""What a flight is held against. Each limit has a source, which is shown beside the figures."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+from missions.flight_plan.rules import FlightRules, SeparationRules
+
+
+@dataclass(frozen=True)
+class Limits:
+    """`..._warn_...` is worth a warning, `..._fail_...` a fail."""
+
+    waypoint_warn_m: float = 2.0
+    waypoint_fail_m: float = 10.0
+    hold_slack_s: float = 3.0
+    across_warn_m: float = 3.0
+    across_fail_m: float = 10.0
+    height_warn_m: float = 3.0
+    height_fail_m: float = 10.0
+    reserve_spare_percent: float = 5.0
+    late_warn_s: float = 60.0
+    zone_beside_m: float = 10.0
+    zone_height_m: float = 8.0
+    obstacle_warn_m: float = 10.0
+    obstacle_fail_m: float = 5.0
+    ground_warn_m: float = 10.0
+    ground_fail_m: float = 5.0
+    apart_fail_m: float = 10.0
+    apart_warn_beside_m: float = 30.0
+    apart_warn_height_m: float = 15.0
+    column_m: float = 15.0
+
+    @classmethod
+    def of(cls, flight: FlightRules, separation: SeparationRules, *, zone_height_m: float) -> "Limits":
+        """As the settings have them: a rehearsal is held against what the plan was made by."""
+        return cls(
+            late_warn_s=separation.time_s,
+            zone_height_m=max(zone_height_m - TRACKING_M, 0.0),
+            obstacle_warn_m=max(flight.clearance_m - TOLD_SHORT_M, cls.obstacle_fail_m),
+            ground_warn_m=max(flight.clearance_m - TOLD_SHORT_M, cls.ground_fail_m),
+            apart_warn_beside_m=separation.lateral_m,
+            apart_warn_height_m=separation.vertical_m,
+        )
+
+
+TRACKING_M = 2.0  # how far a UAV in simulated turbulence may stray from its line: the bar of the flight model
+TOLD_SHORT_M = 5.0  # by which a flown line comes short of a planned clearance: tracking, and 2 m that plans round by
+SOURCES: Mapping[str, str] = {
+    "waypoint_warn_m": "acceptance radius of the simulated autopilot",
+    "waypoint_fail_m": "PX4, NAV_ACC_RAD, default",
+    "hold_slack_s": "slowing down and setting out",
+    "across_warn_m": "bar of the flight model with gusts of 2 m/s",
+    "across_fail_m": "a third of the distance that UAVs are kept apart",
+    "height_warn_m": "bar of the flight model with gusts of 2 m/s",
+    "height_fail_m": "height margin from zones",
+    "reserve_spare_percent": "doubt of a battery's gauge",
+    "late_warn_s": "SPANWISE_SEPARATION_TIME_S",
+    "zone_beside_m": "error of a satellite position, twice",
+    "zone_height_m": "SPANWISE_ZONE_HEIGHT_MARGIN_M less 2 m of tracking",
+    "obstacle_warn_m": "SPANWISE_CLEARANCE_M less 5 m",
+    "obstacle_fail_m": "arms of a tower beside its middle",
+    "ground_warn_m": "SPANWISE_CLEARANCE_M less 5 m",
+    "ground_fail_m": "trees, and errors of terrain models",
+    "apart_fail_m": "errors of two satellite positions",
+    "apart_warn_beside_m": "SPANWISE_SEPARATION_LATERAL_M",
+    "apart_warn_height_m": "SPANWISE_SEPARATION_VERTICAL_M",
+    "column_m": "where a UAV takes off and lands is its operator's choice",
+}
+
+
+def limits_to_json(limits: Limits) -> dict[str, dict[str, float | str]]:
+    """By name, each with its value and its source."""
+    return {name: {"value": value, "source": SOURCES[name]} for name, value in asdict(limits).items()}

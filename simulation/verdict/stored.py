@@ -1,0 +1,139 @@
+"""A verdict as it is kept and answered: plain values, with the codes and facts that sentences are made from."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from simulation.verdict.finding import Finding
+from simulation.verdict.flown import FlownTrack
+from simulation.verdict.following import Error
+from simulation.verdict.judging import RouteVerdict, TargetVerdict, Verdict
+from simulation.verdict.meeting import Meeting
+from simulation.verdict.obstacles import Approach
+from simulation.verdict.zone_approach import ZoneApproach
+
+METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS = 2, 1, 1, 7
+TRACK_STEP_S = 1.0
+
+
+def verdict_to_json(verdict: Verdict) -> dict[str, Any]:
+    return {
+        "level": str(verdict.level),
+        "findings": [finding_to_json(finding) for finding in verdict.findings],
+        "routes": [_route(route) for route in verdict.routes],
+        "meetings": [_meeting(meeting) for meeting in verdict.meetings],
+    }
+
+
+def finding_to_json(finding: Finding) -> dict[str, Any]:
+    facts = {name: round(value, METRE_DIGITS) if isinstance(value, float) else value for name, value in finding.facts.items()}
+    return {"level": str(finding.level), "code": finding.code, "uav": finding.uav, "target": finding.target, "facts": facts}
+
+
+def track_to_json(tracks: Sequence[FlownTrack]) -> list[dict[str, Any]]:
+    """One object for each flight, columns of the same length, a row a second and the last one."""
+    return [_track(track) for track in tracks]
+
+
+def _track(track: FlownTrack) -> dict[str, Any]:
+    rows: list[int] = []
+    for row, t_s in enumerate(track.t_s.tolist()):
+        if not rows or t_s - track.t_s[rows[-1]] >= TRACK_STEP_S - 1e-6 or row == len(track) - 1:
+            rows.append(row)
+    return {
+        "ending": str(track.ending),
+        "t_s": _column(track.t_s[rows].tolist(), SECOND_DIGITS),
+        "position": [[round(lon, DEGREE_DIGITS), round(lat, DEGREE_DIGITS)] for lon, lat in track.position[rows].tolist()],
+        "altitude_amsl_m": _column(track.amsl_m[rows].tolist(), METRE_DIGITS),
+        "altitude_relative_m": _column(track.relative_m[rows].tolist(), METRE_DIGITS),
+        "battery_percent": _column(track.battery_percent[rows].tolist(), PERCENT_DIGITS),
+        "used_wh": _column(track.used_wh[rows].tolist(), METRE_DIGITS),
+        "waypoint": [None if waypoint < 0 else waypoint for waypoint in track.waypoint[rows].tolist()],
+    }
+
+
+def _column(values: list[float], digits: int) -> list[float]:
+    return [round(value, digits) for value in values]
+
+
+def _route(route: RouteVerdict) -> dict[str, Any]:
+    return {
+        "uav": route.uav,
+        "name": route.name,
+        "level": str(route.level),
+        "endings": [None if ending is None else str(ending) for ending in route.endings],
+        "across": _error(route.following.across),
+        "height": _error(route.following.height),
+        "energy": [
+            {
+                "flight": one.flight + 1,
+                "used_wh": _rounded(one.used_wh),
+                "left_percent": _rounded(one.left_percent, PERCENT_DIGITS),
+                "lowest_percent": _rounded(one.lowest_percent, PERCENT_DIGITS),
+            }
+            for one in route.energy
+        ],
+        "used_wh": _rounded(route.used_wh),
+        "planned_wh": _rounded(route.planned_wh),
+        "reserve_percent": route.reserve_percent,
+        "flown_s": _rounded(route.flown_s, SECOND_DIGITS),
+        "planned_s": _rounded(route.planned_s, SECOND_DIGITS),
+        "zones": [_zone(zone) for zone in route.zones],
+        "lowest": _approach(route.lowest),
+        "obstacle": _approach(route.obstacle),
+        "widest_waypoint_m": _rounded(route.widest_waypoint_m),
+        "targets": [_target(target) for target in route.targets],
+    }
+
+
+def _target(target: TargetVerdict) -> dict[str, Any]:
+    return {
+        "target": target.target,
+        "level": str(target.level),
+        "is_reached": target.is_reached,
+        "closest_m": _rounded(target.closest_m),
+        "at_s": _rounded(target.at_s, SECOND_DIGITS),
+        "late_s": _rounded(target.late_s, SECOND_DIGITS),
+        "held_s": _rounded(target.held_s, SECOND_DIGITS),
+        "planned_hold_s": _rounded(target.planned_hold_s, SECOND_DIGITS),
+        "battery_percent": _rounded(target.battery_percent, PERCENT_DIGITS),
+    }
+
+
+def _error(error: Error) -> dict[str, float | None]:
+    return {"rms_m": _rounded(error.rms_m), "max_m": _rounded(error.max_m)}
+
+
+def _zone(zone: ZoneApproach) -> dict[str, Any]:
+    return {
+        "zone": zone.zone, "name": zone.name, "beside_m": _rounded(zone.beside_m), "height_m": _rounded(zone.height_m),
+        "at_s": _rounded(zone.t_s, SECOND_DIGITS), "waypoint": _waypoint(zone.waypoint),
+    }  # fmt: skip
+
+
+def _approach(approach: Approach | None) -> dict[str, Any] | None:
+    if approach is None:
+        return None
+    return {
+        "away_m": _rounded(approach.away_m),
+        "at_s": _rounded(approach.t_s, SECOND_DIGITS),
+        "waypoint": _waypoint(approach.waypoint),
+        "position": [round(degrees, DEGREE_DIGITS) for degrees in approach.position],
+        "is_column": approach.is_column,
+    }
+
+
+def _meeting(meeting: Meeting) -> dict[str, Any]:
+    return {
+        "uavs": list(meeting.uavs),
+        "beside_m": _rounded(meeting.beside_m),
+        "height_m": _rounded(meeting.height_m),
+        "at_s": _rounded(meeting.t_s, SECOND_DIGITS),
+    }
+
+
+def _waypoint(sequence: int) -> int | None:
+    return None if sequence < 0 else sequence
+
+
+def _rounded(value: float | None, digits: int = METRE_DIGITS) -> float | None:
+    return None if value is None else round(value, digits)

@@ -1,0 +1,1 @@
+"""Doors of simulation to the API."""

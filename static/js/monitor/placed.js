@@ -1,0 +1,18 @@
+/** UAVs whose mission is over keep the letter and colour that they had in it, as long as they fly no other. Values in, values out. */
+
+const endedAt_ms = ({ ended_at }) => (ended_at ? Date.parse(ended_at) : Infinity);
+
+/** missions: those on the page, with their UAVs: [{ id, ended_at, uavs: [{ place, uav }] }]. */
+export function placed(uavs, missions) {
+  const newest = [...missions].sort((a, b) => endedAt_ms(b) - endedAt_ms(a));
+  return uavs.map((uav) => {
+    if (missions.some(({ id }) => id === uav.mission)) return uav;
+    const last = newest.find((mission) => mission.uavs.some((entry) => entry.uav === uav.id));
+    if (!last) return uav;
+    const { place } = last.uavs.find((entry) => entry.uav === uav.id);
+    return { ...uav, mission: last.id, place, estimated: uav.mission === null ? uav.estimated : offRoute(uav.estimated) };
+  });
+}
+
+/** What is estimated of it along the route of a mission that is not on the page says nothing here. */
+const offRoute = (estimated) => estimated && { ...estimated, along_route_m: null, to_go_m: null, arrivals: [], waypoint_sequence: null };

@@ -1,0 +1,32 @@
+"""A planned mission on a sane world, rehearsed in this process."""
+
+from typing import Any
+
+from missions.flight_plan.conditions import conditions_from_json
+from missions.models import Mission
+from missions.selectors import mission_of_organisation
+from simulation.models import Rehearsal
+from simulation.rehearsing.sky import Named, Sky, named_sky
+from simulation.services.rehearsals import start_rehearsal
+from simulation.tasks import rehearse_mission
+from workspace.models import User
+
+
+def skies(mission: Mission, *names: str) -> list[Sky]:
+    planned = conditions_from_json(loaded(mission).conditions or None)
+    return [named_sky(Named(name), planned) for name in names or ("calm",)]
+
+
+def loaded(mission: Mission) -> Mission:
+    return mission_of_organisation(mission.organisation, mission.pk)
+
+
+def asked(mission: Mission, actor: User, *names: str, **more: Any) -> Rehearsal:
+    """It waits for a worker."""
+    return start_rehearsal(mission=loaded(mission), actor=actor, skies=skies(mission, *names), **more)
+
+
+def rehearsed(mission: Mission, actor: User, *names: str, **more: Any) -> Rehearsal:
+    rehearsal = asked(mission, actor, *names, **more)
+    rehearse_mission(str(rehearsal.job_id))
+    return Rehearsal.objects.select_related("job").get(pk=rehearsal.pk)
