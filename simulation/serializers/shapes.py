@@ -1,6 +1,5 @@
 """Shapes of rehearsals, for the OpenAPI document and for what comes in."""
 
-
 from rest_framework import serializers
 
 from simulation.models import VerdictLevel

@@ -47,7 +47,7 @@ class Endpoint:
         self.flavour = flavour
         self.system = system
         self.unix_at_zero_s = unix_at_zero_s
-        settings = settings_at_start(flavour, vehicle.settings)
+        settings = settings_at_start(vehicle.settings)
         vehicle.settings = settings
         self.pilot = Pilot(vehicle, flavour)
         self.parameters = parameters_of(flavour, system, settings, self._configure)
@@ -133,6 +133,7 @@ class Endpoint:
         if kind is MissionType.FENCE:
             self._fence.fence = fence_of(items)
         if kind is not MissionType.MISSION:
+            self.parameters.show(f"{kind.name}_TOTAL", float(len(items)))
             return int(mavlink.MAV_MISSION_ACCEPTED)
         is_flown = self.vehicle.state.is_armed and self.pilot.custom_mode == AUTO
         if self.flavour is Flavour.ARDUPILOT and not items and is_flown:
