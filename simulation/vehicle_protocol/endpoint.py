@@ -93,7 +93,12 @@ class Endpoint:
         try:
             command = command_of(message)
             answer = self._requests.answer(command)
-            result, wanted = (self.pilot.carry_out(command), []) if answer is None else answer
+            if answer is not None:
+                result, wanted = answer
+            elif command.number == mavlink.MAV_CMD_DO_FENCE_ENABLE:
+                result = self._fence.switch(command.whole(1))
+            else:
+                result = self.pilot.carry_out(command)
         except NotFinite:
             result = DENIED
         except (ValueError, ArithmeticError):  # of a figure that nobody thought of

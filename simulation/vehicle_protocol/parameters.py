@@ -108,7 +108,7 @@ class Parameters:
         return name in self._values
 
     def show(self, name: str, value: float) -> None:
-        """What a fixed one tells from now on, where there is one of this name."""
+        """What one of this name, if there is one, tells from now on; not for those that show a setting."""
         if name in self._values:
             self._values[name] = value
 

@@ -139,6 +139,17 @@ def test_a_wrong_clock_shows_in_the_time_of_day_until_a_key_sets_it():
             wait_for(lambda: abs(off_s()) < 5.0)
 
 
+def test_a_fault_of_the_program_costs_one_uav_and_not_the_batch(caplog, monkeypatch):
+    with flying([Launch(1, AT), Launch(2, AT)], speed=10.0) as fleet:
+        one, other = fleet.uavs
+        monkeypatch.setattr(one.uav, "step", lambda: 1 / 0)
+        wait_for(lambda: fleet.report().failed == 1)
+        stood_s, flew_s = one.uav.now_s, other.uav.now_s
+        wait_for(lambda: other.uav.now_s > flew_s + 2.0)
+        assert one.uav.now_s == stood_s
+    assert "simulated UAV 1" in caplog.text
+
+
 @pytest.mark.parametrize(
     "line",
     [
