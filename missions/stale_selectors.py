@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 from django.db.models import Exists, OuterRef
+from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, ground_revision
-from missions.flight_plan.clearance import FloatArray, FlownRoute
+from missions.ahead_selectors import WayAhead, ways_ahead
+from missions.flight_plan.clearance import TAKE_OFF, FloatArray, FlownRoute
 from missions.models import Base, Mission, MissionState, Route, WaypointKind
 from missions.uav_change_selectors import UavChange, uav_change_words
 from missions.zone_selectors import MetZone, departure_s, flown_route, zones_met
@@ -103,17 +105,27 @@ def cause_json(cause: StaleCause) -> dict[str, Any]:
 
 
 def _zones(mission: Mission) -> list[StaleCause]:
-    """What the routes meet of the zones of now: at the mission's time where it has one, else at any time."""
-    routes = [route for route in mission.routes.all() if route.geometry is not None]
-    flown = [flown_route(route, departure_s(mission)) for route in routes]
-    return [cause for route, way, met in zip(routes, flown, zones_met(flown), strict=True) for cause in _zone_causes(route, way, met)]
+    """What the routes meet of the zones of now: at the mission's time where it has one, else at any time.
+
+    Of a mission that flies, what its UAVs have still before them, at the time at which they come there.
+    """
+    if mission.state == MissionState.ACTIVE:
+        ways = ways_ahead(mission, timezone.now())
+    else:
+        begins_s = departure_s(mission)
+        ways = [WayAhead(route, flown_route(route, begins_s), TAKE_OFF) for route in mission.routes.all() if route.geometry is not None]
+    causes = []
+    for way, met in zip(ways, zones_met([way.flown for way in ways]), strict=True):
+        ahead = [meeting for meeting in met if meeting.breach.leg >= way.first_leg]
+        causes += _zone_causes(way.route, way.flown, ahead)
+    return causes
 
 
 def _zone_causes(route: Route, flown: FlownRoute, met: Sequence[MetZone]) -> list[StaleCause]:
     """One for each zone and pair of neighbouring targets between which it is met."""
     parts: dict[tuple[int, tuple[str, str]], list[MetZone]] = {}
     for meeting in met:
-        parts.setdefault((meeting.zone, _leg_names(route, meeting.breach.leg)), []).append(meeting)
+        parts.setdefault((meeting.zone, leg_names(route, meeting.breach.leg)), []).append(meeting)
     causes = []
     for (_zone, ends), meetings in parts.items():
         first = _waypoints_of(meetings[0].breach.leg, flown)
@@ -159,7 +171,7 @@ def _how_high(agl_m: tuple[float, float]) -> str:
     return _("It is flown %(heights)s m above ground.") % {"heights": heights}
 
 
-def _leg_names(route: Route, leg: int) -> tuple[str, str]:
+def leg_names(route: Route, leg: int) -> tuple[str, str]:
     """The targets before and after a leg, as the map numbers them."""
     letter = route_letter(route.mission_uav.sequence)
     visits = [place for place, waypoint in enumerate(route.waypoints.all()) if waypoint.kind == WaypointKind.TARGET]

@@ -6,7 +6,7 @@ from missions import views
 from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionDispatch, MissionRevoke
 from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.commands import CommandDetail, MissionCommands, UavCommands
-from missions.views.explanations import WhyRoute, WhyTarget
+from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
@@ -17,6 +17,7 @@ urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
     path("plans/why-target", WhyTarget.as_view(), name="api-plans-why-target"),
     path("plans/why-route", WhyRoute.as_view(), name="api-plans-why-route"),
+    path("plans/later-departure", LaterDeparture.as_view(), name="api-plans-later-departure"),
     path("plans/legal-windows", PlanLegalWindows.as_view(), name="api-plans-legal-windows"),
     path("reachability", Reachability.as_view(), name="api-reachability"),
     path("missions", views.MissionList.as_view(), name="api-missions"),
@@ -27,7 +28,9 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/plan", views.MissionPlan.as_view(), name="api-mission-plan"),
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),
     path("missions/<uuid:mission_id>/duplicate", views.MissionDuplicate.as_view(), name="api-mission-duplicate"),
+    path("missions/<uuid:mission_id>/follow-up", views.MissionFollowUp.as_view(), name="api-mission-follow-up"),
     path("missions/<uuid:mission_id>/presence", views.MissionPresence.as_view(), name="api-mission-presence"),
+    path("missions/<uuid:mission_id>/explanation", MissionExplanation.as_view(), name="api-mission-explanation"),
     path("missions/<uuid:mission_id>/legal-windows", MissionLegalWindows.as_view(), name="api-mission-legal-windows"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints", RouteWaypoints.as_view(), name="api-route-waypoints"),
     path("missions/<uuid:mission_id>/routes/<int:uav>/waypoints/look", RouteWaypointsLook.as_view(), name="api-route-waypoints-look"),

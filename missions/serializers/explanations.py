@@ -117,3 +117,35 @@ class RouteExplanationSerializer(serializers.Serializer):
         child=serializers.ChoiceField(choices=["battery", "range", "most_targets", "zone", "wind", "balance"]),
         help_text="what keeps the route from more targets, or from being quicker; balance: another UAV's route is the longest",
     )
+
+
+class ExplainedRouteSerializer(serializers.Serializer):
+    uav = serializers.IntegerField(help_text="index of the UAV")
+    fault = serializers.CharField(allow_blank=True, help_text="why it cannot be explained any more; empty where it is")
+    explanation = RouteExplanationSerializer(allow_null=True)
+
+
+class MissionExplanationSerializer(serializers.Serializer):
+    routes = ExplainedRouteSerializer(many=True, help_text="that are flown")
+    targets = TargetExplanationSerializer(many=True, help_text="that no route visits")
+    more_routes = serializers.IntegerField(help_text="that are flown, too: ask for them by `uav`")
+    more_targets = serializers.IntegerField(help_text="that no route visits, either: ask for them by `target`")
+
+
+class PlanTotalsSerializer(serializers.Serializer):
+    left_out = serializers.IntegerField(help_text="targets")
+    total_length_m = serializers.FloatField()
+    done_s = serializers.FloatField(help_text="from the departure until the last UAV has ended its route")
+    total_duration_s = serializers.FloatField(help_text="of all routes together")
+    total_energy_wh = serializers.FloatField(allow_null=True)
+
+
+class LaterDepartureSerializer(serializers.Serializer):
+    departs_at = serializers.DateTimeField(
+        allow_null=True, help_text="the first departure looked at with which fewer targets are left out, or the objective has less by 1 %"
+    )
+    looked_until = serializers.DateTimeField(
+        allow_null=True, help_text="the last departure looked at: one after each end of a zone near; null: none ends in the next 48 hours"
+    )
+    before = PlanTotalsSerializer(help_text="of the plan as it is asked for")
+    then = PlanTotalsSerializer(allow_null=True, help_text="of the plan with that departure")

@@ -7,7 +7,7 @@ from datetime import datetime
 import numpy as np
 
 from inspection.geodesy import LonLat
-from inspection.zones.reach import BoolArray, FloatArray, ZoneTable
+from inspection.zones.reach import BoolArray, ZoneTable
 from missions.flight_plan.rules import FlightRules
 
 NEAR_SHARE = 0.5  # of what a plan extends over, on each side; ways lead farther round only where nothing nearer is left
@@ -50,7 +50,7 @@ def zone_choice(
     to_s = from_s + flight.longest_flight_s
     no_matter = ~table.reaching(0.0, flight.max_agl_m)
     if positions is not None:
-        no_matter |= ~_near(table, np.array(positions, dtype=np.float64).reshape(-1, 2))
+        no_matter |= ~near_positions(table, positions)
     some = ~no_matter
     widest, narrowest = no_matter.copy(), no_matter.copy()
     asked = table.only(some)
@@ -59,9 +59,10 @@ def zone_choice(
     return ZoneChoice(table, widest, narrowest)
 
 
-def _near(table: ZoneTable, positions: FloatArray) -> BoolArray:
+def near_positions(table: ZoneTable, positions: Sequence[LonLat]) -> BoolArray:
     """Which zones come near the box of the positions, (z,)."""
-    low, high = positions.min(axis=0), positions.max(axis=0)
+    at = np.array(positions, dtype=np.float64).reshape(-1, 2)
+    low, high = at.min(axis=0), at.max(axis=0)
     about = np.maximum(NEAR_SHARE * (high - low), NEAR_DEG)
     low, high = low - about, high + about
     box = table.box

@@ -1,14 +1,27 @@
 """Why a plan is as it is. Nothing is stored: whoever may read a mission may ask."""
 
-from drf_spectacular.utils import extend_schema
+from collections.abc import Collection
+from dataclasses import replace
+from uuid import UUID
+
+from django.utils import timezone
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import services
 from missions.serializers import explanations
-from missions.serializers.inputs import plan_request
+from missions.serializers.inputs import PlanInputSerializer, plan_request
+from missions.services.later_departure import better_departure
+from missions.services.mission_explanation import explain_mission
+from missions.services.wishes import stored_bases
+from missions.views.missions import mission_or_404
+from missions.views.plans import is_small
 from missions.views.problems import api_problems
+from workspace.errors import ApiProblem
 from workspace.models import Role
 from workspace.throttling import ScopedRate
 
@@ -54,3 +67,58 @@ class WhyRoute(_Explanation):
                 request=plan_request(values), routes=values["routes"], uav=values["uav"], is_by_length=values["shortest_ways"]
             )
         return Response(explanations.RouteExplanationSerializer(answer).data)
+
+
+class LaterDeparture(_Explanation):
+    @extend_schema(
+        operation_id="find_later_departure",
+        summary="Whether departing later, when a zone near has ended, brings a better plan",
+        description="Of up to 12 targets. Each departure that is looked at is planned as a whole; nothing is stored.",
+        request=PlanInputSerializer,
+        responses=explanations.LaterDepartureSerializer,
+    )
+    def post(self, request: Request) -> Response:
+        body = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
+        body.is_valid(raise_exception=True)
+        asked = replace(body.to_request(), organisation=request.user.organisation_id)  # with a departure it is kept apart from others
+        if not is_small(len(asked.targets)):
+            raise ApiProblem(400, "too_many_targets", _("Departures are compared for few targets: pick those that are left out."))
+        with api_problems():
+            answer = better_departure(request=asked, now=timezone.now())
+        return Response(explanations.LaterDepartureSerializer(answer).data)
+
+
+class MissionExplanation(_Explanation):
+    @extend_schema(
+        operation_id="explain_mission",
+        summary="Why the plan of a mission is as it is",
+        description="Each route against the straight line, the zones behind its detours, what another UAV would fly, what binds it; "
+        "and why each target that is left out is. Worked out on the ground of now.",
+        parameters=[
+            OpenApiParameter("uav", int, many=True, description="the routes of these UAVs alone, by their index"),
+            OpenApiParameter("target", int, many=True, description="these targets alone, by their index"),
+        ],
+        responses={
+            200: explanations.MissionExplanationSerializer,
+            409: OpenApiResponse(description="The mission has no plan."),
+        },
+    )
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        if mission.planned_at is None:
+            raise ApiProblem(409, "not_planned", _("The mission has no routes yet."))
+        uavs, targets = (_places(request, name) for name in ("uav", "target"))
+        if uavs is not None or targets is not None:
+            uavs, targets = uavs or (), targets or ()
+        with api_problems():
+            asked = services.request_of_mission(mission=mission)
+            asked = replace(asked, bases=stored_bases(mission.organisation), organisation=mission.organisation_id)
+            answer = explain_mission(mission=mission, request=asked, uavs=uavs, targets=targets)
+        return Response(explanations.MissionExplanationSerializer(answer).data)
+
+
+def _places(request: Request, name: str) -> Collection[int] | None:
+    texts = request.query_params.getlist(name)
+    if any(not (text.isascii() and text.isdigit() and len(text) < 6) for text in texts):
+        raise serializers.ValidationError({name: [_("A whole number is needed.")]})
+    return {int(text) for text in texts} if texts else None

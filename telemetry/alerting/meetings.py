@@ -1,12 +1,13 @@
 """Which UAVs in the air come near each other within the next seconds."""
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from telemetry.alerting.memory import position_of
@@ -14,10 +15,12 @@ from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Meeting
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 STEP_S = 2.0
 MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
 DEGREE_M = 111_195.0
+MOST_MET = 8  # others that each is told of: in a crowd more would say nothing new
 NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
 
 
@@ -70,7 +73,7 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
 
 
 def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meeting]]:
-    """By the UAV with the smaller key of each pair: how near they come within so many seconds."""
+    """By the UAV with the smaller key of each pair: how near they come within so many seconds; of a crowd those that come nearest."""
     found: dict[int, list[Meeting]] = defaultdict(list)
     if len(moving) < 2:
         return found
@@ -78,26 +81,40 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
     way = np.array([one.ahead[:steps] for one in moving], dtype=np.float64)
     middle_lat = math.radians(float(way[:, 0, 1].mean()))
     way = way * (DEGREE_M * math.cos(middle_lat), DEGREE_M)
-    reach_m = np.hypot(*(way - way[:, :1]).transpose(2, 0, 1)).max(axis=1)
-    apart_m = np.hypot(way[:, None, 0, 0] - way[None, :, 0, 0], way[:, None, 0, 1] - way[None, :, 0, 1])
     group = np.array([one.organisation for one in moving])
-    near = (apart_m - reach_m[:, None] - reach_m[None, :] < NEAR_M) & (group[:, None] == group[None, :])
-    near &= ~(_least_apart_m(moving, within_s) > NEAR_HEIGHT_M)  # NaN: not known
-    ones, others = np.nonzero(np.triu(near, 1))
+    ones, others = _pairs(way)
+    near = group[ones] == group[others]
+    near &= ~(_least_apart_m(moving, within_s, ones, others) > NEAR_HEIGHT_M)  # NaN: not known
+    ones, others = ones[near], others[near]
     lateral_m, in_s = _closest(way[ones] - way[others])
-    for pair in np.flatnonzero(lateral_m <= NEAR_M).tolist():
+    met = Counter[int]()
+    for pair in np.argsort(lateral_m, kind="stable").tolist():
+        if lateral_m[pair] > NEAR_M:
+            break
         first, second = sorted((moving[ones[pair]], moving[others[pair]]), key=lambda uav: uav.uav_id)
+        if met[first.uav_id] >= MOST_MET and met[second.uav_id] >= MOST_MET:
+            continue
         meeting = _meeting(first, second, float(lateral_m[pair]), float(in_s[pair]))
         if meeting.height_m <= NEAR_HEIGHT_M:
             found[first.uav_id].append(meeting)
+            met.update((first.uav_id, second.uav_id))
     return found
 
 
-def _least_apart_m(moving: Sequence[Moving], within_s: float) -> FloatArray:
-    """In height, of each pair (n, n), at any time."""
+def _pairs(way: FloatArray) -> tuple[IntArray, IntArray]:
+    """Places of those whose boxes, about all that they fly over, are not farther apart than NEAR_M; way (n, steps, 2) [m]."""
+    low, high = way.min(axis=1) - NEAR_M / 2.0, way.max(axis=1) + NEAR_M / 2.0
+    boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
+    ones, others = shapely.STRtree(boxes).query(boxes)
+    once = ones < others
+    return ones[once], others[once]
+
+
+def _least_apart_m(moving: Sequence[Moving], within_s: float, ones: IntArray, others: IntArray) -> FloatArray:
+    """In height, of each pair (p,), at any time."""
     height_m = np.array([math.nan if one.height_m is None else one.height_m for one in moving])
     reach_m = within_s * np.abs([one.climb_mps for one in moving])
-    apart_m: FloatArray = np.abs(height_m[:, None] - height_m[None, :]) - reach_m[:, None] - reach_m[None, :]
+    apart_m: FloatArray = np.abs(height_m[ones] - height_m[others]) - reach_m[ones] - reach_m[others]
     return apart_m
 
 

@@ -13,6 +13,7 @@ import { addReport, flownParts } from "../../static/js/monitor/mission_details.j
 import { overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
 import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
 import { placed } from "../../static/js/monitor/placed.js";
+import { unheardLines } from "../../static/js/monitor/unheard.js";
 import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { distance_m } from "../../static/js/mission/span_strip.js";
 
@@ -183,4 +184,14 @@ test("of an offer that is over it is said what became of it, and by whom or why"
   const { strong, rest } = overWords({ state: "accepted", outcome: "", decided_by: "opal", decided_at: ago(0) });
   assert.match(`${strong} ${rest}`, /^The other plan is flown\. Decided by opal, /);
   assert.equal(overWords({ state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null }).rest, "Kite has no range left.");
+});
+
+test("of UAVs that are not heard it is said who is told all the same", () => {
+  const named = (name, kind, heard_s) => ({ name, link: { kind, heard_at: heard_s === null ? null : ago(heard_s) } });
+  const uavs = [named("Tern", "mavlink", 60), named("Kite", "http", 60), named("Gull", "mavlink", 7_200), named("Wren", "mavlink", null)];
+  const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
+  assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
+  assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
+  assert.match(unheardLines(uavs.slice(0, 1), "pause", NOW_MS)[0], /^There is no link to Tern now/);
+  assert.deepEqual(unheardLines([], "return", NOW_MS), []);
 });

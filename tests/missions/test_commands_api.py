@@ -7,7 +7,7 @@ from django.http import HttpResponse
 from django.test import Client
 
 from missions.models import Mission, Uav, UavCommand
-from missions.services.commands import note_failed
+from missions.services.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unheard
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.outbox import a_uav, claim, fence
@@ -210,6 +210,25 @@ def test_what_became_of_a_command_is_said_in_words(client: Client) -> None:
     assert (hold["state"], hold["priority"], hold["outcome"]) == ("failed", "safety", "The UAV refused it.")
     german = client.get(f"/api/v1/uavs/{tern.pk}/commands", headers={"Accept-Language": "de"}).json()["results"]
     assert german[1]["outcome"] == "Ein späterer Befehl trat an seine Stelle."
+
+
+def test_a_command_that_is_sent_unheard_says_so_until_its_uav_is_heard(client: Client) -> None:
+    tern: Uav = a_uav("Tern")
+
+    def told() -> tuple[str, str, bool]:
+        (command,) = get(client, f"uavs/{tern.pk}/commands").json()["results"]
+        return command["state"], command["outcome_code"], "nothing is heard" in command["outcome"]
+
+    post(client, f"uavs/{tern.pk}/commands", {"kind": "return"})
+    (command,) = claim(tern)
+    assert note_sent_unheard(command.pk, **fence(command)) and is_wanted(command.pk, **fence(command))
+    assert told() == ("sent", "unheard", True)
+    note_released(command.pk, **fence(command))
+    (command,) = claim(tern)
+    note_sent(command.pk, **fence(command))
+    assert told() == ("sent", "", False)
+    UavCommand.objects.update(expires_at=command.created_at)
+    assert not is_wanted(command.pk, **fence(command)) and not note_sent_unheard(command.pk, **fence(command))
 
 
 def test_another_link_is_refused_in_words_while_a_command_waits(client: Client) -> None:

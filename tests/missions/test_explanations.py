@@ -8,7 +8,7 @@ from django.test import Client
 from inspection.models import Asset
 from missions.models import Uav
 from tests.inspection import ground
-from tests.missions.api import TERN, plan_body, post
+from tests.missions.api import TERN, mission_body, plan_body, post
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
 from tests.workspace.people import client_of, somebody
 from workspace.models import Role
@@ -274,3 +274,30 @@ def test_a_route_on_the_shortest_ways_is_explained_on_these(here: World, client:
     asked = body | {"routes": [route["targets"] for route in plan["routes"]], "uav": 0, "shortest_ways": True}
     said = post(client, "plans/why-route", asked).json()
     assert said["length_m"] == pytest.approx(plan["total_length_m"], rel=1e-6)
+
+
+def test_a_mission_explains_its_routes_and_what_it_leaves_out(here: World, client: Client) -> None:
+    zone_around((10.008, 56.0))
+    made = post(client, "missions", mission_body(here.towers[2], here.towers[5], plan=True)).json()
+    said = client.get(f"/api/v1/missions/{made['id']}/explanation").json()
+    assert [(route["uav"], route["fault"]) for route in said["routes"]] == [(0, "")]
+    assert [(target["target"], target["reason"]) for target in said["targets"]] == [(0, "inside_zone")]
+    assert (said["more_routes"], said["more_targets"]) == (0, 0)
+    (route,) = made["plan"]["routes"]
+    explanation = said["routes"][0]["explanation"]
+    assert explanation["zones"] or not explanation["round_zones_m"]
+    assert route["explanation"]["straight_m"] == pytest.approx(explanation["straight_m"], abs=1.0)
+    assert route["explanation"]["more_m"] == pytest.approx(route["length_m"] - explanation["straight_m"], abs=1.0)
+    assert client.get(f"/api/v1/missions/{made['id']}/explanation?target=0").json()["routes"] == []
+    assert client.get(f"/api/v1/missions/{made['id']}/explanation?uav=0").json()["targets"] == []
+    assert client.get(f"/api/v1/missions/{made['id']}/explanation?uav=a").status_code == 400
+
+
+def test_a_route_that_can_no_longer_be_flown_says_so_in_its_mission(here: World, client: Client) -> None:
+    made = post(client, "missions", mission_body(here.towers[5], plan=True)).json()
+    zone_around((UAV_AT.lon, UAV_AT.lat))
+    (route,) = client.get(f"/api/v1/missions/{made['id']}/explanation").json()["routes"]
+    assert (route["explanation"], "no-fly zone" in route["fault"]) == (None, True)
+    draft = post(client, "missions", mission_body(here.towers[5])).json()
+    response = client.get(f"/api/v1/missions/{draft['id']}/explanation")
+    assert (response.status_code, response.json()["error"]["code"]) == (409, "not_planned")

@@ -13,7 +13,7 @@ from workspace.models import User
 
 
 def skies(mission: Mission, *names: str) -> list[Sky]:
-    planned = conditions_from_json(mission.conditions or None)
+    planned = conditions_from_json(loaded(mission).conditions or None)
     return [named_sky(Named(name), planned) for name in names or ("calm",)]
 
 

@@ -1,13 +1,26 @@
 """A mission is rehearsed by a worker: flown whole, judged, kept; what belongs to another plan says nothing of this one."""
 
-import pytest
+from datetime import timedelta
+from pathlib import Path
 
-from missions.models import Mission
-from simulation.models import Rehearsal
+import pytest
+from django.utils import timezone
+
+from missions.models import Mission, MissionState, UavType
+from missions.selectors import mission_of_organisation
+from missions.services import create_mission, plan_mission
+from missions.services.approval import approve_mission
+from missions.services.refused import Refused
+from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
+from simulation.services.green_verdict import set_rule
+from simulation.services.plan_to_fly import plan_to_fly
+from simulation.services.rehearsals import cancel_rehearsal
+from simulation.tasks import rehearse_mission
+from tests.missions import worlds
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import World, world
-from tests.simulation.rehearsed import rehearsed
-from workspace.models import JobState, User
+from tests.simulation.rehearsed import asked, loaded, rehearsed
+from workspace.models import AuditEntry, JobState, User
 
 pytestmark = pytest.mark.django_db
 
@@ -18,7 +31,7 @@ def person() -> User:
 
 
 @pytest.fixture
-def here(tmp_path) -> World:
+def here(tmp_path: Path) -> World:
     found = world()
     ground(tmp_path / "ground.tif")
     return found
@@ -26,13 +39,151 @@ def here(tmp_path) -> World:
 
 @pytest.fixture
 def mission(here: World, person: User) -> Mission:
-    return planned(person, fleet("Tern", "Gull"), [here.towers[0], here.towers[3]])
+    return planned(person, fleet(), [here.towers[0]])
 
 
-def test_a_planned_mission_is_flown_and_judged(mission: Mission, person: User) -> None:
+def content(mission: Mission) -> str:
+    return plan_to_fly(loaded(mission)).content_sha256
+
+
+def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: User) -> None:
+    mission = planned(person, fleet("Tern", "Gull"), [here.towers[0], here.towers[3]])
     rehearsal = rehearsed(mission, person, "calm")
     run = rehearsal.runs.get()
-    import json
-    print(json.dumps(run.verdict, indent=1)); print(rehearsal.job.error, rehearsal.uavs, run.took_s)
-    assert rehearsal.job.state == JobState.DONE
+    assert (rehearsal.job.state, rehearsal.level, run.level) == (JobState.DONE, "pass", "pass")
+    assert [route["endings"] for route in run.verdict["routes"]] == [["landed"], ["landed"]]
+    assert all(target["is_reached"] and target["closest_m"] < 2.0 for route in run.verdict["routes"] for target in route["targets"])
+    assert run.verdict["meetings"][0]["beside_m"] == pytest.approx(250.0, abs=10.0)
+    tracks = RehearsalTrack.objects.filter(run=run)
+    assert [track.uav for track in tracks] == [0, 1]
+    assert all(track.flights[0]["altitude_relative_m"][-1] == pytest.approx(0.0, abs=0.3) for track in tracks)
+    assert AuditEntry.objects.filter(action="rehearse", subject_id=str(mission.pk), actor=person).count() == 1
+
+
+def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> None:
+    first, second = (rehearsed(mission, person, "strong-wind", seed=3) for _ in range(2))
+    tracks = [RehearsalTrack.objects.get(run__rehearsal=rehearsal).flights for rehearsal in (first, second)]
+    assert tracks[0] == tracks[1]
+
+
+def test_wind_that_the_uav_cannot_fly_in_fails_with_its_reason(mission: Mission, person: User) -> None:
+    Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
+    rehearsal = rehearsed(mission, person, "as-planned")
+    findings = rehearsal.runs.get().verdict["findings"]
+    assert rehearsal.level == "fail"
+    assert findings[0]["code"] == "wind" and findings[0]["facts"]["wind_mps"] == pytest.approx(14.0)
+    assert {"not-flown-to", "reserve"} <= {finding["code"] for finding in findings}
+
+
+def test_a_battery_that_is_too_small_fails_with_its_reason(here: World, person: User) -> None:
+    uav_type = UavType.objects.create(organisation=person.organisation, name="Small", mass_kg=1.545)
+    mission = planned(person, fleet(uav_type=uav_type), [here.towers[0]])
+    mission.mission_uavs.update(performance={"battery_wh": 22.0})
+    rehearsal = rehearsed(mission, person, "calm")
+    findings = {finding["code"]: finding for finding in rehearsal.runs.get().verdict["findings"]}
+    assert rehearsal.level == "fail"
+    assert rehearsal.uavs[0]["battery_wh"] == 22.0
+    assert findings["reserve"]["facts"]["percent"] < 20.0
+
+
+def test_a_route_that_ends_in_hovering_ends_there(here: World, person: User) -> None:
+    draft = create_mission(
+        organisation=person.organisation, author=person, name="Bexley", request=worlds.request(here.towers[0], uavs=(worlds.uav(),))
+    )
+    mission = plan_mission(mission=draft, actor=person)
+    rehearsal = rehearsed(mission, person, "calm")
+    assert rehearsal.runs.get().verdict["routes"][0]["endings"] == ["hovering"]
+    assert rehearsal.level == "pass"
+
+
+def test_what_is_approved_is_flown_from_its_document(mission: Mission, person: User) -> None:
+    before = plan_to_fly(loaded(mission))
+    approve_mission(mission=mission, actor=person)
+    after = plan_to_fly(loaded(mission))
+    assert after.content_sha256 == before.content_sha256
+    assert after.routes[0].items == before.routes[0].items
+
+
+def test_a_mission_without_a_plan_is_refused(here: World, person: User) -> None:
+    mission = planned(person, fleet(), [here.towers[0]])
+    Mission.objects.filter(pk=mission.pk).update(state=MissionState.DRAFT)
+    mission.routes.all().delete()
+    with pytest.raises(Refused) as refused:
+        asked(mission, person)
+    assert refused.value.reasons[0].code == "not_planned"
+
+
+def test_another_departure_makes_a_rehearsal_out_of_date(mission: Mission, person: User) -> None:
+    known = content(mission)
+    Mission.objects.filter(pk=mission.pk).update(departs_at=timezone.now() + timedelta(hours=2))
+    assert content(mission) != known
+
+
+def test_another_plan_makes_a_rehearsal_out_of_date_and_the_same_plan_does_not(mission: Mission, person: User) -> None:
+    known = content(mission)
+    plan_mission(mission=mission, actor=person)
+    assert content(mission) == known
+    waypoint = mission.routes.get().waypoints.all()[1]
+    mission.routes.get().waypoints.filter(pk=waypoint.pk).update(altitude_relative_m=waypoint.altitude_relative_m + 1.0)
+    assert content(mission) != known
+
+
+def test_another_airframe_makes_a_rehearsal_out_of_date(here: World, person: User) -> None:
+    uav_type = UavType.objects.create(organisation=person.organisation, name="Heavy", mass_kg=3.8, battery_wh=260.0)
+    mission = planned(person, fleet(uav_type=uav_type), [here.towers[0]])
+    known = content(mission)
+    SimulatedAirframe.objects.create(uav_type=uav_type, airframe="inspector")
+    assert content(mission) != known
+
+
+def test_a_plan_that_changes_before_a_worker_comes_is_not_flown(mission: Mission, person: User) -> None:
+    rehearsal = asked(mission, person)
+    Mission.objects.filter(pk=mission.pk).update(departs_at=timezone.now() + timedelta(hours=2))
+    rehearse_mission(str(rehearsal.job_id))
+    rehearsal.job.refresh_from_db()
+    assert (rehearsal.job.state, rehearsal.job.error["code"]) == (JobState.FAILED, "mission_changed")
+    assert not RehearsalTrack.objects.exists()
+
+
+def test_one_that_is_cancelled_before_a_worker_comes_is_not_flown(mission: Mission, person: User) -> None:
+    rehearsal = asked(mission, person)
+    cancel_rehearsal(rehearsal=rehearsal, actor=person)
+    rehearse_mission(str(rehearsal.job_id))
+    rehearsal.job.refresh_from_db()
+    assert rehearsal.job.state == JobState.CANCELLED
+    assert not RehearsalRun.objects.exclude(level="").exists()
+
+
+def test_a_worker_that_takes_over_flies_only_what_is_left(mission: Mission, person: User) -> None:
+    rehearsal = asked(mission, person, "calm", "as-planned")
+    kept = {"level": "pass", "findings": [], "routes": [], "meetings": []}
+    rehearsal.runs.filter(sequence=0).update(level="pass", verdict=kept, finished_at=timezone.now())
+    rehearse_mission(str(rehearsal.job_id))
     assert Rehearsal.objects.get().level == "pass"
+    assert rehearsal.runs.get(sequence=0).verdict == kept
+    assert list(RehearsalTrack.objects.values_list("run__sequence", flat=True)) == [1]
+
+
+def reasons(mission: Mission, person: User) -> list[str]:
+    try:
+        approve_mission(mission=mission, actor=person)
+    except Refused as refused:
+        return [reason.code for reason in refused.reasons]
+    return []
+
+
+def test_nobody_asks_for_a_rehearsal_unless_told(mission: Mission, person: User) -> None:
+    assert reasons(mission, person) == []
+
+
+def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mission, person: User) -> None:
+    set_rule(organisation=person.organisation, actor=person, requires=True)
+    assert reasons(mission, person) == ["not_rehearsed"]
+    rehearsal = rehearsed(mission, person, "calm")
+    Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail")
+    assert reasons(mission, person) == ["rehearsal_failed"]
+    Rehearsal.objects.filter(pk=rehearsal.pk).update(level="pass", content_sha256="0" * 64)
+    assert reasons(mission, person) == ["rehearsal_outdated"]
+    Rehearsal.objects.filter(pk=rehearsal.pk).update(content_sha256=content(mission))
+    assert reasons(mission, person) == []
+    assert mission_of_organisation(person.organisation, mission.pk).state == MissionState.APPROVED

@@ -10,6 +10,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
+from missions.ahead_selectors import HEARD_WITHIN_S, OFF_ROUTE_M, first_ahead, passed_point
 from missions.flight_plan.rest_of_route import PassedPoint, PlaceOnRoute, place_on_route
 from missions.models import (
     Approval,
@@ -24,15 +25,11 @@ from missions.models import (
     Uav,
     UavCommand,
     Waypoint,
-    WaypointKind,
 )
 from missions.selectors import approval_in_force
 from missions.services.flying import FLIGHT_FAILED
 
-HEARD_WITHIN_S = 30.0  # else nobody knows where it is
-OFF_ROUTE_M = 100.0
 AT_TARGET_M = 15.0  # of a target that is in progress: it is still being done
-REACHED = (TargetState.IN_PROGRESS, TargetState.COMPLETE)
 LEFT = (TargetState.PENDING, TargetState.IN_PROGRESS)
 HOLDING = (CommandKind.HOLD, CommandKind.PAUSE)
 COMING_BACK = (CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
@@ -101,13 +98,13 @@ def _rest(
 ) -> Rest:
     uav = Uav.objects.filter(pk=route.mission_uav.uav_id).first()
     rows = tuple(route.waypoints.all())
-    points = tuple(_point(row, targets) for row in rows)
+    points = tuple(passed_point(row, targets) for row in rows)
     orders = _orders(uav, approval)
     trouble, is_out = _out(route, uav, orders, cause), True
     if not trouble:
         trouble, is_out = _bound(route, approved, uav, orders, now), False
     here = None
-    first = _first_ahead(rows, targets)
+    first = first_ahead(rows, targets)
     if uav is not None and len(points) > 1:
         here = place_on_route(points, LonLat(*uav.location.coords[:2]), first=first)
         if here.away_m > OFF_ROUTE_M:
@@ -128,16 +125,6 @@ def _rest(
         take_off_amsl_m=take_off["altitude_amsl_m"],
         battery_percent=_percent(rows, here, uav),
         flown_m=_flown_m(route, here, points),
-    )
-
-
-def _point(row: Waypoint, targets: Mapping[int, InspectionTarget]) -> PassedPoint:
-    return PassedPoint(
-        LonLat(*row.position.coords[:2]),
-        row.altitude_agl_m,
-        row.arrival_s or 0.0,
-        (row.task or {}).get("hold_s", 0.0),
-        None if row.target_id is None else targets[row.target_id].sequence,
     )
 
 
@@ -176,16 +163,6 @@ def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: S
     if uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
         return _("%(uav)s was not heard of lately: nobody knows where it is.") % values
     return ""
-
-
-def _first_ahead(rows: Sequence[Waypoint], targets: Mapping[int, InspectionTarget]) -> int:
-    """The waypoint after the last target that was reached."""
-    reached = [
-        place
-        for place, row in enumerate(rows)
-        if row.kind == WaypointKind.TARGET and row.target_id is not None and targets[row.target_id].state in REACHED
-    ]
-    return max(reached, default=0) + 1
 
 
 def _left(

@@ -10,6 +10,7 @@ from missions.models import Mission, MissionState, ReplanOffer
 from missions.selectors import mission_of_organisation
 from missions.services.replanning.offers import suggest
 from missions.services.replanning.rest import Cause, Rest, rests_of
+from missions.stale_selectors import leg_names
 from missions.zone_selectors import MetZone, flown_route, zones_met
 
 ZONE_ACTIVE = "zone-active"
@@ -43,6 +44,13 @@ def suggest_for_zones() -> list[ReplanOffer]:
             if met is None:
                 continue
             uav = None if rest.uav is None else rest.uav.pk
-            offer = suggest(mission_id=mission.pk, code=ZONE_ACTIVE, cause={"zone": met.zone, "zone_name": met.name, "first_uav": uav})
+            cause = {
+                "zone": met.zone,
+                "zone_name": met.name,
+                "first_uav": uav,
+                "uav_name": rest.name,
+                "leg": list(leg_names(rest.route, met.breach.leg)),
+            }
+            offer = suggest(mission_id=mission.pk, code=ZONE_ACTIVE, cause=cause)
             found += [] if offer is None else [offer]
     return found

@@ -23,6 +23,7 @@ import { mountLostLink } from "./panels/lost_link.js";
 import { mountOptions } from "./panels/options.js";
 import { mountOptionsRead } from "./panels/options_read.js";
 import { mountProfile } from "./panels/profile.js";
+import { mountRehearsal } from "./panels/rehearsal.js";
 import { mountRoutes } from "./panels/routes.js";
 import { askForList } from "./panels/paste_list.js";
 import { mountSavedState } from "./panels/saved_state.js";
@@ -33,6 +34,7 @@ import { mountUavs } from "./panels/uavs.js";
 import { mountWhy } from "./panels/why.js";
 import { isUnsaved } from "./plan_view.js";
 import { createGrounds } from "./profile.js";
+import { createRehearsing, NOTHING as NO_REHEARSAL } from "./rehearsal_actions.js";
 import { EMPTY, uavOf } from "./selection.js";
 import { watchMission } from "./together.js";
 
@@ -43,7 +45,7 @@ const store = createStore({
   stored: null, isAway: !navigator.onLine, others: [],
   lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
   tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], litReturn: null, hand: null,
-  commands: null, returns: null, connections: new Map(), isDispatching: false,
+  commands: null, returns: null, connections: new Map(), isDispatching: false, rehearsal: NO_REHEARSAL,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -58,6 +60,7 @@ const targetOfFeature = (feature) => actions.targetOfFeature(feature);
 mountHeader(store, actions, page.canPlan, { canCopy: page.canFly, showPlace: (position) => map.goTo({ position, zoom: 14 }) });
 const flyingKeys = page.isFrozen ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) }) : [];
 if (page.canPlan) mountApprove(store, flying);
+const rehearsalKeys = mountRehearsal(store, createRehearsing(store), { canRehearse: page.canFly, isFrozen: page.isFrozen });
 flying.watch();
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
@@ -89,6 +92,7 @@ startChrome({
     { keys: ["/"], words: t("Find an asset"), act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
     ...flyingKeys,
+    ...rehearsalKeys,
     ...map.bindings,
     { keys: ["f"], words: t("Fit the mission"), act: () => map.fit() },
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },

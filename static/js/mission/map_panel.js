@@ -6,6 +6,7 @@ import { piecesOf, routeClicks } from "../map/click_router.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import { partOfLine } from "../map/line_part.js";
+import * as rehearsedLayer from "../map/layers/rehearsed.js";
 import * as routesLayer from "../map/layers/routes.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createTargets } from "../map/layers/targets.js";
@@ -47,7 +48,7 @@ export function mountMap(store, actions, page, { askForUav }) {
   const tip = createTip(frame);
   let [handMap, reachLayer, lostLinkMap] = [null, null, null]; // once the map has its style
 
-  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => ["place", "rally"].includes(store.state.tool), measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => [handMap, reachLayer, lostLinkMap].forEach((drawn) => drawn?.recolour()), layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []) });
+  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => ["place", "rally"].includes(store.state.tool), measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => [handMap, reachLayer, lostLinkMap, { recolour: () => rehearsedLayer.recolour(map, view.palette()) }].forEach((drawn) => drawn?.recolour()), layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []) });
 
   // clicks
 
@@ -195,6 +196,7 @@ export function mountMap(store, actions, page, { askForUav }) {
     lostLinkMap = mountLostLinkMap(map, store, actions, page);
     handMap = mountHandMap(map, store, actions);
     reachLayer = mountReachLayer(map, frame, store);
+    store.listen(["rehearsal"], ({ rehearsal }) => rehearsedLayer.show(map, view.palette(), rehearsal.track?.routes ?? null));
     store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));

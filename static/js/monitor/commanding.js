@@ -11,6 +11,7 @@ import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 import { certaintyOf, MEASURED } from "./certainty.js";
 import { inAir } from "./in_air.js";
+import { unheardLines } from "./unheard.js";
 
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 const ALL = {
@@ -68,7 +69,7 @@ export function createCommanding(store) {
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = store.state.details.get(uav.mission)?.uavs[uav.place];
     const question = questionOf(kind, { name: uav.name, letter: uav.place === null ? "" : routeLetter(uav.place), speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5, returns: await wayHome(uav, kind) });
-    const late = certainty(uav) === MEASURED ? null : t("There is no link to {name} now. The command waits and is sent on contact, as long as it is wanted.", { name: uav.name });
+    const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const [first, ...rest] = question.lines;
     const asked = await confirmAct({ ...question, lines: [first, figuresLine(uav, mission), late, ...rest], opener });
     if (asked) await told(uav, kind, asked);
@@ -79,8 +80,8 @@ export function createCommanding(store) {
     const uavs = flyingUavs(store.state);
     const { title, lines, ...rest } = ALL[kind];
     if (!uavs.length) return void toast(t("No UAV is flying a mission."));
-    const silent = uavs.filter((uav) => certainty(uav) !== MEASURED).map(({ name }) => name).join(", ");
-    const asked = await confirmAct({ ...rest, title: title(uavs.length), lines: [`${uavs.map(({ name }) => name).join(", ")}.`, ...lines, silent && t("There is no link to {names} now: their command waits.", { names: silent }), LATE], keep: t("Keep flying"), opener });
+    const silent = uavs.filter((uav) => certainty(uav) !== MEASURED);
+    const asked = await confirmAct({ ...rest, title: title(uavs.length), lines: [`${uavs.map(({ name }) => name).join(", ")}.`, ...lines, ...unheardLines(silent, kind, store.state.now_ms), LATE], keep: t("Keep flying"), opener });
     if (!asked) return;
     const done = await Promise.all(uavs.map((uav) => told(uav, kind)));
     if (done.every(Boolean)) toast(tn(done.length, "{count} UAV is being told.", "{count} UAVs are being told."));

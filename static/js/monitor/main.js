@@ -36,7 +36,7 @@ const commanding = page.canFly ? createCommanding(store) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
-mountCards(store, { pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
+mountCards(store, { isOfOne: page.mission !== null, pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
 mountOffers(store, page);
 const alertKeys = mountAlerts(store, page, { pick, commanding });
 mountBoard(store, {

@@ -1,18 +1,24 @@
 """Why the rest of a mission is planned anew: a zone across a route, a battery that does not last; and when that is not possible."""
 
+from datetime import timedelta
+from typing import Any
+
 import numpy as np
 import pytest
 import shapely
+from django.utils import timezone
 from shapely.geometry import LineString
 
 from inspection.models import NoFlyZone
+from inspection.services import mark_ground_changed
+from missions import tasks
 from missions.models import CommandKind, OfferState, ReplanOffer
 from missions.services.replanning import accept_offer, suggest, suggest_for_zones
 from tests.missions import worlds
 from tests.missions.flights import carry, ground
 from tests.missions.outbox import give
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
-from tests.workspace.people import somebody
+from tests.workspace.people import client_of, somebody
 from workspace.models import Job
 
 pytestmark = pytest.mark.django_db
@@ -48,6 +54,48 @@ def test_a_zone_that_comes_across_a_route_is_gone_round(flight):
     shape = shapely.from_wkb(bytes(NoFlyZone.objects.get().geometry.wkb))
     for route in offer.continuation.routes.filter(geometry__isnull=False):
         assert not LineString(route.geometry.coords).intersects(shape)
+
+
+def marks(flight: Flight) -> list[dict[str, Any]]:
+    """What the mission's document says of zones."""
+    found = client_of(flight.author).get(f"/api/v1/missions/{flight.mission.pk}").json()
+    return [cause for cause in found["stale_causes"] if cause["what"] == "zone"]
+
+
+def test_a_mission_that_flies_is_marked_at_once_with_the_leg_that_is_still_flown(flight):
+    assert marks(flight) == []
+    zone = worlds.zone_around(middle_of_last_visits(flight, 1), half_deg=0.0008, name="Air show", with_graph=False)
+    told = {tuple(mark["leg"]) for mark in marks(flight)}
+    visits = flight.route(1).waypoints.filter(kind="target").count()
+    leg = (f"B{visits - 1}", f"B{visits}")
+    assert leg in told
+    assert all(mark["uav"] == 1 and "Air show touches" in mark["message"] for mark in marks(flight))
+    tasks.look_after_offers()
+    offer = ReplanOffer.objects.get()
+    assert (offer.cause["zone"], offer.cause["zone_name"], offer.cause["uav_name"]) == (zone.pk, "Air show", flight.uavs[1].name)
+    assert tuple(offer.cause["leg"]) in told
+    page = client_of(flight.author).get("/api/v1/missions").json()["results"]
+    assert [mission["is_stale"] for mission in page if mission["id"] == str(flight.mission.pk)] == [True]
+
+
+def test_a_leg_that_a_uav_has_behind_it_is_not_marked(flight):
+    rows = list(flight.route(1).waypoints.order_by("sequence"))
+    targets = [place for place, row in enumerate(rows) if row.kind == "target"]
+    between = np.mean([rows[place].position.coords[:2] for place in targets[:2]], axis=0)
+    worlds.zone_around(tuple(between.tolist()), half_deg=0.0004, name="Air show", with_graph=False)
+    assert ["B1", "B2"] in [mark["leg"] for mark in marks(flight)]
+    flight.fly_to(1, targets[-1], 0.5)
+    assert ["B1", "B2"] not in [mark["leg"] for mark in marks(flight)]
+
+
+def test_of_a_flying_mission_the_time_counts_at_which_its_uavs_come_there(flight):
+    """A zone that begins in two hours, and one that has begun."""
+    zone = worlds.zone_around(middle_of_last_visits(flight, 1), half_deg=0.0008, name="Air show", with_graph=False)
+    for begins, is_met in ((timedelta(hours=2), False), (-timedelta(minutes=5), True)):
+        period = {"startDateTime": f"{timezone.now() + begins:%Y-%m-%dT%H:%M:%SZ}", "endDateTime": None, "schedule": []}
+        NoFlyZone.objects.filter(pk=zone.pk).update(schedule=[period])
+        mark_ground_changed()
+        assert bool(marks(flight)) is is_met
 
 
 def test_a_zone_far_from_what_is_left_is_no_reason(flight):

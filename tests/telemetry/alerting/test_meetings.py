@@ -8,7 +8,7 @@ import pytest
 from inspection.geodesy import LonLat
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.meetings import STEP_S, Moving, meetings, moving_of
+from telemetry.alerting.meetings import MOST_MET, NEAR_M, STEP_S, Moving, meetings, moving_of
 from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.estimate import Ellipse, Estimate
@@ -110,3 +110,20 @@ def test_uavs_of_different_organisations_are_told_nothing_of_each_other():
 def test_a_height_that_is_not_known_counts_as_the_same():
     assert meetings([a_uav(1), a_uav(2, height_m=None)], 20.0)[1][0].height_m == 0.0
     assert not meetings([a_uav(1), a_uav(2, height_m=300.0)], 20.0)
+
+
+def test_pairs_far_away_from_each_other_are_found_among_many():
+    """Against all pairs, looked at one by one."""
+    chance = np.random.default_rng(8)
+    moving = [a_uav(key, lat_m=float(chance.uniform(0.0, 20_000.0))) for key in range(60)]
+    apart_m = {(one.uav_id, two.uav_id): abs(one.ahead[0][1] - two.ahead[0][1]) * 111_195.0 for one in moving for two in moving}
+    near = {pair for pair, metres in apart_m.items() if pair[0] < pair[1] and metres <= NEAR_M}
+    assert near and near == {(key, meeting.other_id) for key, met in meetings(moving, 20.0).items() for meeting in met}
+
+
+def test_in_a_crowd_each_is_told_of_those_that_come_nearest():
+    crowd = [a_uav(key, lat_m=float(key)) for key in range(40)]
+    met = meetings(crowd, 20.0)
+    told = {(key, meeting.other_id) for key, meetings_of in met.items() for meeting in meetings_of}
+    assert len(told) <= 40 * MOST_MET
+    assert {(key, key + 1) for key in range(39)} <= told

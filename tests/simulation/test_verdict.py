@@ -1,0 +1,158 @@
+"""The verdict against flights whose errors are known by hand."""
+
+import numpy as np
+import pytest
+
+from simulation.verdict.finding import Level
+from simulation.verdict.flown import Ending, FlownFlight, FlownRoute
+from simulation.verdict.following import following_of
+from simulation.verdict.judging import Verdict, judge
+from simulation.verdict.stored import track_to_json, verdict_to_json
+from tests.simulation.flown import LIMITS, a_route, a_track, around, flown, rows, standing, zones
+
+
+def codes(verdict: Verdict) -> list[tuple[str, str]]:
+    return [(str(finding.level), finding.code) for finding in verdict.findings]
+
+
+def judged(*routes: FlownRoute, **more) -> Verdict:
+    return judge(routes, around(**more), LIMITS)
+
+
+def test_a_flight_as_planned_passes_with_its_figures() -> None:
+    verdict = judged(flown())
+    (route,) = verdict.routes
+    assert verdict.level is Level.PASS and not verdict.findings
+    assert route.targets[0].target == 4 and route.targets[0].is_reached
+    assert route.targets[0].closest_m == pytest.approx(0.0, abs=0.3)
+    assert route.targets[0].late_s == pytest.approx(0.0, abs=0.5)
+    assert route.energy[0].left_percent == pytest.approx(50.0)
+    assert route.flown_s == pytest.approx(270.0)
+    assert route.lowest is not None and route.lowest.away_m == pytest.approx(60.0, abs=7.0)  # the foot of the column's edge
+
+
+@pytest.mark.parametrize(("off_m", "level"), [(2.0, Level.PASS), (6.0, Level.WARNINGS), (14.0, Level.FAIL)])
+def test_what_is_flown_beside_the_line_is_measured_across_it(off_m: float, level: Level) -> None:
+    route = flown(a_track(rows(off_m=off_m)))
+    error = following_of(route).across
+    assert error.max_m == pytest.approx(off_m, abs=0.1)
+    # a triangle over half of the way: its root mean square is the height by the root of three, of half of the moments
+    assert error.rms_m == pytest.approx(off_m / np.sqrt(3.0) * np.sqrt(0.5), rel=0.02)
+    assert judged(route).level is level
+
+
+def test_what_is_flown_too_high_is_measured_in_height() -> None:
+    verdict = judged(flown(a_track(rows(high_m=5.0))))
+    assert verdict.routes[0].following.height.max_m == pytest.approx(5.0, abs=0.1)
+    assert codes(verdict) == [("warnings", "height")]
+
+
+def test_a_battery_below_its_reserve_fails_the_route_and_its_last_target() -> None:
+    verdict = judged(flown(a_track(rows(left_percent=6.0))))
+    (finding,) = verdict.findings
+    assert (finding.code, finding.target, finding.facts["percent"], finding.facts["limit_percent"]) == ("reserve", 4, 6.0, 20.0)
+    assert verdict.routes[0].targets[0].level is Level.FAIL
+
+
+def test_a_target_that_is_passed_too_far_off_is_missed() -> None:
+    far = [(t_s, east_m + 25.0, north_m, up_m, percent) for t_s, east_m, north_m, up_m, percent in rows()]
+    verdict = judged(flown(a_track(far)))
+    assert ("fail", "missed") in codes(verdict)
+    assert not verdict.routes[0].targets[0].is_reached
+    assert verdict.routes[0].targets[0].closest_m == pytest.approx(25.0, abs=0.2)
+
+
+def test_a_target_that_was_not_stayed_at_fails() -> None:
+    assert ("fail", "not-held") in codes(judged(flown(hold_s=30.0)))
+
+
+def test_whoever_comes_later_than_uavs_are_kept_apart_in_time_is_warned_of() -> None:
+    verdict = judged(flown(a_track(rows(late_s=75.0), late_s=75.0)))
+    assert ("warnings", "late") in codes(verdict)
+
+
+@pytest.mark.parametrize("ending", [Ending.CRASHED, Ending.UNFINISHED, Ending.REFUSED])
+def test_a_flight_that_did_not_end_well_fails(ending: Ending) -> None:
+    assert ("fail", str(ending)) in codes(judged(flown(a_track(rows(), ending=ending))))
+
+
+def test_a_flight_that_never_began_fails_with_its_targets() -> None:
+    route = FlownRoute(0, "Tern", a_route(), (FlownFlight(a_route().flights[0], None),), 20.0)
+    assert set(codes(judged(route))) == {("fail", "not-begun"), ("fail", "not-flown-to")}
+
+
+def test_a_zone_that_is_flown_into_fails() -> None:
+    verdict = judged(flown(), zones=zones((-50.0, 700.0, 50.0, 800.0)))
+    assert codes(verdict) == [("fail", "zone-entered")]
+
+
+@pytest.mark.parametrize(("lower_m", "expected"), [(75.0, []), (65.0, [("warnings", "zone-near")]), (55.0, [("fail", "zone-entered")])])
+def test_a_zone_above_counts_from_the_flown_height(lower_m: float, expected: list[tuple[str, str]]) -> None:
+    verdict = judged(flown(), zones=zones((-50.0, 700.0, 50.0, 800.0), lower_m=lower_m))
+    assert codes(verdict) == expected
+
+
+def test_a_zone_beside_is_measured_across_the_ground() -> None:
+    verdict = judged(flown(), zones=zones((6.0, 700.0, 50.0, 800.0), (40.0, 200.0, 90.0, 300.0)))
+    assert [round(zone.beside_m) for zone in verdict.routes[0].zones] == [6, 40]
+    assert codes(verdict) == [("warnings", "zone-near")]
+
+
+def test_a_zone_counts_only_while_it_is_in_force() -> None:
+    """In force on the first of May from 10 to 11 in the morning; the UAV is there 70 to 80 s after its departure."""
+    period = {"startDateTime": "2027-05-01T10:00:00Z", "endDateTime": "2027-05-01T11:00:00Z", "schedule": []}
+    table = zones((-50.0, 700.0, 50.0, 800.0), schedule=[period])
+    at_ten = 1_809_165_600.0
+    assert not judged(flown(), zones=table, departs_s=at_ten - 3_600.0).findings
+    assert judged(flown(), zones=table, departs_s=at_ten - 60.0).level is Level.FAIL
+    assert not judged(flown(), zones=table, departs_s=at_ten + 3_600.0).findings
+
+
+@pytest.mark.parametrize(("top_m", "expected"), [(40.0, []), (53.0, [("warnings", "obstacle")]), (57.0, [("fail", "obstacle")])])
+def test_a_wire_that_is_crossed_is_measured_from_above(top_m: float, expected: list[tuple[str, str]]) -> None:
+    verdict = judged(flown(), standing=standing(((-100.0, 500.0), (100.0, 520.0), top_m)))
+    assert codes(verdict) == expected
+    assert verdict.routes[0].obstacle is not None
+    assert verdict.routes[0].obstacle.away_m == pytest.approx(60.0 - top_m, abs=0.1)
+
+
+def test_a_tower_that_is_taller_than_the_flight_is_measured_across() -> None:
+    verdict = judged(flown(), standing=standing(((30.0, 500.0), (30.0, 500.0), 90.0)))
+    assert verdict.routes[0].obstacle is not None
+    assert verdict.routes[0].obstacle.away_m == pytest.approx(30.0, abs=0.1)
+    assert not verdict.findings
+
+
+def test_what_stands_beside_the_take_off_is_worth_a_warning_alone() -> None:
+    assert codes(judged(flown(), standing=standing(((3.0, 0.0), (3.0, 0.0), 30.0)))) == [("warnings", "obstacle-column")]
+
+
+@pytest.mark.parametrize(("ground_m", "level"), [(140.0, Level.PASS), (152.0, Level.WARNINGS), (157.0, Level.FAIL)])
+def test_a_hill_under_the_way_is_measured_from_the_flight(ground_m: float, level: Level) -> None:
+    verdict = judged(flown(), ground_amsl_m=lambda positions: np.where(positions[:, 1] > 56.004, ground_m, 100.0))
+    assert verdict.level is level
+    assert verdict.routes[0].lowest is not None and verdict.routes[0].lowest.away_m == pytest.approx(160.0 - ground_m, abs=0.1)
+
+
+@pytest.mark.parametrize(("east_m", "expected"), [(40.0, Level.PASS), (20.0, Level.WARNINGS), (6.0, Level.FAIL)])
+def test_two_uavs_at_the_same_time_are_measured_from_each_other(east_m: float, expected: Level) -> None:
+    other = flown(uav=1, name="Gull", east_m=east_m)
+    verdict = judged(flown(), other)
+    assert verdict.level is expected
+    assert verdict.meetings[0].away_m == pytest.approx(east_m, abs=0.1)
+    assert {finding.uav for finding in verdict.findings} == ({0, 1} if expected is not Level.PASS else set())
+
+
+def test_two_uavs_at_one_place_one_after_the_other_do_not_meet() -> None:
+    later = [(t_s + 600.0, *rest) for t_s, *rest in rows()]
+    other = flown(a_track(later), uav=1, name="Gull")
+    assert not judged(flown(), other).meetings
+
+
+def test_a_verdict_and_a_track_are_plain_values_to_the_digits_that_are_shown() -> None:
+    stored = verdict_to_json(judged(flown(a_track(rows(left_percent=6.0)))))
+    assert stored["findings"][0]["facts"]["percent"] == 6.0
+    assert stored["routes"][0]["energy"] == [{"flight": 1, "used_wh": 47.0, "left_percent": 6.0, "lowest_percent": 6.0}]
+    (track,) = track_to_json([a_track(rows())])
+    assert len(track["t_s"]) == len(track["position"]) == 271
+    assert track["t_s"][0] == 0.0 and track["t_s"][-1] == 270.0
