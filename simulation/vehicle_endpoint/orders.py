@@ -67,7 +67,8 @@ def faults_of(told: Any) -> Callable[[Faults, float], Faults]:
         is_whole = name in ("motor_failed", "stuck_item")
         if is_whole and value is not None and not isinstance(value, int):
             raise WrongOrder(f"{name} is a whole number or null")
-        values[name] = value if value is None or is_whole else _number(value, name)
+        may_end = is_whole or name == "battery_wh_left"
+        values[name] = value if is_whole or (may_end and value is None) else _number(value, name)
     lasting = {f"{name}_until_s": values.pop(f"{name}_for_s") or 0.0 for name in ("link_lost", "gps_lost") if f"{name}_for_s" in values}
 
     def changed(before: Faults, now_s: float) -> Faults:
