@@ -32,6 +32,7 @@ class Talk:
 
     def __post_init__(self) -> None:
         self.endpoint = Endpoint(self.uav, flavour=self.flavour, system=SYSTEM, unix_at_zero_s=UNIX_S)
+        self.endpoint.tick(self.now_s)
 
     def say(self, *messages: Any, station: Station | None = None) -> list[Any]:
         who = station or self.station

@@ -217,3 +217,11 @@ def test_the_fence_is_kept_by_holding_or_as_it_is_set():
     assert talk.command(20) == ACCEPTED, "it may go home"
     talk.pass_by(10.0)
     assert talk.uav.state.mode is Mode.RETURN
+
+
+def test_ardupilots_fence_is_switched_off_and_px4_has_no_such_switch():
+    assert Talk().command(207, 0) == UNSUPPORTED
+    talk = Talk(Flavour.ARDUPILOT)
+    for wanted in (0, 1):
+        assert talk.command(207, wanted) == ACCEPTED and talk.endpoint.parameters["FENCE_ENABLE"] == wanted
+    assert talk.command(207, 7) == DENIED and talk.command(207) == DENIED
