@@ -112,7 +112,7 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
     maker = vehicle_maker(plan.stand_ins, sky, heights_at(ground.edition))
     on_progress(0.0)
     flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
-    around = surroundings_of(plan.routes, ground, plan.departs_s)
+    around = surroundings_of(plan, ground)
     verdict = judge(flown, around, limits_of_settings(), known=_too_windy(plan, sky))
     _store(run, flown, verdict, time.monotonic() - began_s)
 

@@ -67,7 +67,7 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
         re.compile(r"% battery at return, limit 20 %|was not flown to")
     )
     expect(panel.get_by_role("img", name="Height above take-off by time").first).to_be_visible()
-    expect(panel.get_by_role("row", name=re.compile("^Battery at landing .* limit 20 %"))).to_be_visible()
+    expect(panel.get_by_role("row", name=re.compile(r"^Battery at landing .* limit 20\s%"))).to_be_visible()
     panel.get_by_role("button", name="Calm").click()
     expect(panel.locator(".rehearsal-targets .pass")).to_have_count(3)
     panel.get_by_text("Limits and what flew").click()

@@ -1,4 +1,4 @@
-"""What a witness on the ground would say of flown tracks, with the judges' own plane, hills and rows of the database: no code of the verdict."""
+"""What a witness would say of flown tracks, by the judges' own plane and hills and the rows of the database: no code of the verdict."""
 
 from typing import Any
 
