@@ -255,6 +255,8 @@ SPECTACULAR_SETTINGS = {
         "MissionState": "missions.models.MissionState",
         "OfferState": "missions.models.OfferState",
         "VerdictLevel": "simulation.models.VerdictLevel",
+        "SimulationState": "simulation.models.SimulationState",
+        "VehicleFlavour": "simulation.models.VehicleFlavour",
         "AlertLevel": "telemetry.models.AlertLevel",
         "TargetState": "missions.models.TargetState",
         "UavState": "missions.models.UavState",
@@ -404,6 +406,14 @@ VEHICLE_COMMAND_RULES = VehicleCommandRules(
 TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 MOST_OPEN_REHEARSALS = int(_float("SPANWISE_MOST_OPEN_REHEARSALS", 4))  # of one user, waiting and running
+# Simulated UAVs in real time: who flies how many, where those of the pool listen, and where those of missions connect.
+SIMULATOR_NAME = os.environ.get("SPANWISE_SIMULATOR_NAME", "")
+SIMULATOR_MOST_UAVS = int(_float("SPANWISE_SIMULATOR_MOST_UAVS", 60))  # of one simulator; each counts as often as its speed
+SIMULATOR_GATEWAY = os.environ.get("SPANWISE_SIMULATOR_GATEWAY", "")  # HOST:PORT; empty: the first of SPANWISE_GATEWAY_UDP
+SIMULATOR_HOST = os.environ.get("SPANWISE_SIMULATOR_HOST", "127.0.0.1")
+SIMULATOR_PORTS = os.environ.get("SPANWISE_SIMULATOR_PORTS", "14600-14799")
+MOST_SIMULATED_UAVS = int(_float("SPANWISE_MOST_SIMULATED_UAVS", 20))  # of one organisation at once
+LONGEST_SIMULATION_H = _float("SPANWISE_LONGEST_SIMULATION_H", 8.0)
 LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 

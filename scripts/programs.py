@@ -127,6 +127,12 @@ def _estimator(places: Places) -> Program:
     return Program(name="estimator", stage=PROGRAM_STAGE, command=command, folder=places.process("estimator"), patience_s=12)
 
 
+def _simulator(places: Places) -> Program:
+    """Where simulated UAVs fly in real time."""
+    command = [sys.executable, str(PROJECT_DIR / "manage.py"), "run_simulator"]
+    return Program(name="simulator", stage=PROGRAM_STAGE, command=command, folder=places.process("simulator"), patience_s=12)
+
+
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
     live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
@@ -149,6 +155,7 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
         _worker(places, "simulation", 1),
         _gateway(places),
         _estimator(places),
+        _simulator(places),
         _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),
         Program(name="proxy", stage=PROGRAM_STAGE, command=nginx, folder=places.process("proxy")),
     ]

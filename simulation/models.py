@@ -9,6 +9,11 @@ from django.db.models.functions import Now
 from django.utils.translation import gettext_lazy as _
 
 from missions.models import Mission, UavType
+from simulation.vehicle_models import SimulatedVehicle as SimulatedVehicle
+from simulation.vehicle_models import Simulation as Simulation
+from simulation.vehicle_models import SimulationChange as SimulationChange
+from simulation.vehicle_models import SimulationState as SimulationState
+from simulation.vehicle_models import VehicleFlavour as VehicleFlavour
 from workspace.models import Job, Organisation
 
 

@@ -17,7 +17,8 @@ def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
 
     The caller holds the UAV's row, so that no command is given meanwhile. before: its facts.
     """
-    if all(getattr(uav, name) == before[name] for name in REACHED_BY):
+    changed = [name for name in REACHED_BY if getattr(uav, name) != before[name]]
+    if not changed or (changed == ["mavlink_system_id"] and before["mavlink_system_id"] is None):  # one without an id reached nobody
         return
     values = {"uav": uav.name}
     if uav.commands.filter(state__in=OPEN_COMMANDS).exists():

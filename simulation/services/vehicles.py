@@ -8,10 +8,10 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, Said
 from simulation.flight.states import Mode, Outcome, Severity, UavState
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import MOST_GUSTS_MPS, MOST_TURBULENCE_MPS, Weather
 from simulation.rehearsing.flying import MakeVehicle, Start, Vehicle
 from simulation.rehearsing.ground import BlockedGround, Heights
 from simulation.rehearsing.sky import Sky
+from simulation.rehearsing.sky_weather import weather_of
 from simulation.services.fleet import StandIn
 
 
@@ -52,11 +52,7 @@ class RehearsedUav:
 def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | None) -> MakeVehicle:
     """Makes the UAV for each flight: its airframe with the battery of the UAV that it stands in for, as full as the conditions say."""
     by_uav = {stand_in.uav: stand_in for stand_in in stand_ins}
-    weather = Weather(
-        conditions=sky.conditions,
-        gusts_mps=min(sky.gusts_mps, MOST_GUSTS_MPS),
-        turbulence_mps_at_20ft=min(sky.turbulence_mps_at_20ft, MOST_TURBULENCE_MPS),
-    )
+    weather = weather_of(sky)
 
     def make(start: Start) -> Vehicle:
         stand_in = by_uav[start.uav]

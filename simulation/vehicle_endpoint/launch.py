@@ -2,10 +2,10 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from inspection.geodesy import LonLat
-from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.faults import Faults
 from simulation.flight.ground import FlatGround, Ground
 from simulation.flight.uav import SimulatedUav
@@ -21,11 +21,12 @@ METRES_PER_DEGREE = 111_195.0
 
 @dataclass(frozen=True)
 class Launch:
-    """One UAV. `airframe` is one of AIRFRAMES; `key` has 32 bytes."""
+    """One UAV. `airframe` is one of AIRFRAMES, with a battery of its own where `battery_wh` is said; `key` has 32 bytes."""
 
     system: int
     home: LonLat
     airframe: str = "iris"
+    battery_wh: float | None = None
     flavour: Flavour = Flavour.PX4
     key: bytes | None = field(default=None, repr=False)
     seed: int = 0
@@ -44,7 +45,7 @@ def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
     try:
         for launch in launches:
             uav = SimulatedUav(
-                AIRFRAMES[launch.airframe],
+                _airframe(launch),
                 launch.home,
                 ground=launch.ground,
                 weather=launch.weather,
@@ -59,6 +60,11 @@ def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
             flying.radio.close()
         raise
     return Fleet(uavs, speed)
+
+
+def _airframe(launch: Launch) -> Airframe:
+    airframe = AIRFRAMES[launch.airframe]
+    return airframe if launch.battery_wh is None else replace(airframe, battery_wh=launch.battery_wh)
 
 
 def in_a_row(first: LonLat, count: int, spacing_m: float) -> list[LonLat]:

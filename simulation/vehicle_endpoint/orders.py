@@ -3,18 +3,17 @@
 import json
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 from missions.flight_plan.conditions import Conditions, InvalidConditions, WindLayer
-from simulation.flight.faults import Faults, ImpossibleFault
+from simulation.flight.faults import Faults
+from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.flight.weather import ImpossibleWeather, Weather
 from simulation.vehicle_endpoint.fleet import Change
 
 WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights
 ORDER = frozenset({"system", "weather", "faults", "pace"})
 WEATHER = frozenset({"wind", "gusts_mps", "turbulence_mps", "temperature_c"})
-FAULTS = frozenset({"link_lost_for_s", "gps_lost_for_s", "battery_wh_left", "motor_failed", "stuck_item", "clock_offset_s"})
 
 
 class WrongOrder(ValueError):
@@ -61,23 +60,10 @@ def weather_of(told: Any) -> Weather:
 
 def faults_of(told: Any) -> Callable[[Faults, float], Faults]:
     """From the faults before and simulated seconds to those from now on. Raises WrongOrder."""
-    _known(told, FAULTS)
-    values: dict[str, Any] = {}
-    for name, value in told.items():
-        is_whole = name in ("motor_failed", "stuck_item")
-        if is_whole and value is not None and not isinstance(value, int):
-            raise WrongOrder(f"{name} is a whole number or null")
-        values[name] = value if value is None or is_whole else _number(value, name)
-    lasting = {f"{name}_until_s": values.pop(f"{name}_for_s") or 0.0 for name in ("link_lost", "gps_lost") if f"{name}_for_s" in values}
-
-    def changed(before: Faults, now_s: float) -> Faults:
-        return replace(before, **values, **{name: now_s + for_s for name, for_s in lasting.items()})
-
     try:
-        changed(Faults(), 0.0)
-    except (ImpossibleFault, TypeError) as error:
+        return faults_told(told)
+    except WrongFaults as error:
         raise WrongOrder(str(error)) from error
-    return changed
 
 
 def _known(told: Any, names: frozenset[str]) -> None:

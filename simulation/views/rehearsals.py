@@ -13,18 +13,19 @@ from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
 from inspection.views.parameters import invalid
-from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
+from missions.flight_plan.conditions import conditions_from_json
 from missions.models import Mission
 from missions.services.refused import Refused
 from missions.views.missions import mission_or_404
 from missions.views.problems import refusals
 from simulation import selectors
 from simulation.models import Rehearsal
-from simulation.rehearsing.sky import Named, Sky, named_sky, own_sky
+from simulation.rehearsing.sky import Named
 from simulation.serializers import shapes
 from simulation.serializers.representations import planned_points, rehearsal_detail_json, rehearsal_json, track_json
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal, start_rehearsal
+from simulation.views.skies import skies_of
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
@@ -74,7 +75,7 @@ class MissionRehearsals(APIView):
         mission = mission_or_404(request.user, mission_id)
         body = shapes.RehearsalInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        skies = _skies(body.validated_data.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
+        skies = skies_of(body.validated_data.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
         try:
             with refusals(), transaction.atomic():
                 rehearsal = start_rehearsal(mission=mission, actor=request.user, skies=skies, seed=body.validated_data["seed"])
@@ -145,19 +146,6 @@ def _known(mission: Mission) -> dict[str, Any]:
     except Refused:
         content = None
     return {"content_sha256": content, "ground_revision": ground_revision()}
-
-
-def _skies(asked: list[Any], planned: Conditions) -> list[Sky]:
-    found = []
-    for number, entry in enumerate(asked):
-        try:
-            found.append(named_sky(Named(entry), planned) if isinstance(entry, str) else own_sky(entry, planned))
-        except InvalidConditions as error:
-            raise invalid(f"conditions.{number}.{error.place}", f"{error.place} {error.message}.") from error
-        except ValueError as error:
-            names = ", ".join(str(code) for code in Named if code is not Named.OWN)
-            raise invalid(f"conditions.{number}", f"{entry!r} is none of {names}.") from error
-    return found
 
 
 def _run_number(request: Request) -> int:

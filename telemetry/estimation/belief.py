@@ -39,8 +39,10 @@ def round_covariance(variance_m2: float) -> FloatArray:
     return np.eye(2) * variance_m2
 
 
-def reach2_of(east_m: FloatArray, north_m: FloatArray, weight: FloatArray, round_m2: float, covariance: FloatArray) -> float:
-    """How far, as a squared Mahalanobis distance, 95 % lie: of places around the mean, each with a round doubt of its own."""
+def reach2_of(
+    east_m: FloatArray, north_m: FloatArray, weight: FloatArray, round_m2: float, covariance: FloatArray, held: float = 0.95
+) -> float:
+    """How far, as a squared Mahalanobis distance, a share `held` lies: of places around the mean, each with a round doubt of its own."""
     inverse = np.linalg.inv(covariance)
     angle = np.arange(len(east_m)) * 2.399_963  # the golden angle, so that neighbours lie differently
     found, parts = [], []
@@ -53,4 +55,4 @@ def reach2_of(east_m: FloatArray, north_m: FloatArray, weight: FloatArray, round
     distance2, share = np.concatenate(found), np.concatenate(parts)
     order = np.argsort(distance2)
     total = np.cumsum(share[order])
-    return float(distance2[order][min(int(np.searchsorted(total, 0.95 * total[-1])), len(order) - 1)])
+    return float(distance2[order][min(int(np.searchsorted(total, held * total[-1])), len(order) - 1)])

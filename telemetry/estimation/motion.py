@@ -25,6 +25,7 @@ BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
 STEERED_S = 6.0  # how long a velocity tells of one that a person steers
 STEERED_MPS2 = 0.9
+UNFORESEEN_HZ, MOST_UNFORESEEN = 1.0 / 2_000.0, 0.03  # how often somebody stops or calls back one that flies its route
 SHARED_M, SHARED_HEIGHT_M = 1.07, 0.95  # errors that reports share: of GPS, and of the barometer
 
 
@@ -41,7 +42,8 @@ class State:
     """What is known right after a report, or of one that told no position. Metres in the frame, variances of what no two reports share.
 
     `route` is the approved flight with the place on it, also while it does something else; `home` the way back while it returns.
-    `placed_s` is when a position was last measured, `report_s` when anything was.
+    `placed_s` is when a position was last measured, `report_s` when anything was. One that `is_about_to_start` stands where the route
+    begins, armed and in its mission's mode: it may set out at any moment.
     """
 
     report_s: float
@@ -61,6 +63,7 @@ class State:
     route: Track | None
     home: Track | None = None
     sequence: int | None = None
+    is_about_to_start: bool = False
 
     @property
     def followed(self) -> Track | None:
@@ -74,11 +77,18 @@ def after(state: State, after_s: float, *, with_reach: bool = True) -> Belief:
     followed = state.followed
     if followed is not None:
         return _along(state, followed, after_s, with_reach=with_reach)
+    if state.phase is Phase.GROUND and state.is_about_to_start and state.route is not None:
+        return _along(state, state.route, after_s, with_reach=with_reach, is_surely_under_way=False)
     if state.phase is Phase.GROUND:
         return _plain(state, after_s, 0.0, 0.0, 0.02 * after_s, 0.0)
     if state.phase is Phase.HOLD or state.phase is Phase.LAND:
         return _plain(state, after_s, BRAKES_S, DRIFT_MPS * after_s, 0.3 * state_speed(state), 0.3)
     return _plain(state, after_s, STEERED_S, STEERED_MPS2 * min(after_s, 12.0) * math.sqrt(after_s + 0.25), 0.0, 1.0)
+
+
+def _held(after_s: float) -> float:
+    """What an ellipse holds of those that still fly on, to hold 95 of 100 of all: the others may be anywhere behind."""
+    return 0.95 / (1.0 - min(UNFORESEEN_HZ * after_s, MOST_UNFORESEEN))
 
 
 def state_speed(state: State) -> float:
@@ -122,10 +132,10 @@ def _sunk(height_m: float, sinks_mps: float, after_s: float) -> tuple[float, flo
     return below_m, -fast_mps if fast_s == after_s else -LANDING_MPS
 
 
-def _along(state: State, track: Track, after_s: float, *, with_reach: bool) -> Belief:
+def _along(state: State, track: Track, after_s: float, *, with_reach: bool, is_surely_under_way: bool = True) -> Belief:
     """On its profile, with what it was beside it dying away: from each place on it, it is at the place where it was seen."""
     profile = track.profile
-    later = ahead(profile, track.pace, after_s)
+    later = ahead(profile, track.pace, after_s, is_surely_under_way=is_surely_under_way)
     weight, clock = later.weight, later.clock
     aside, turning = math.exp(-after_s / ASIDE_S), math.exp(-after_s / TURNS_S)
     turned_s = TURNS_S * (1.0 - turning)
@@ -164,7 +174,7 @@ def _along(state: State, track: Track, after_s: float, *, with_reach: bool) -> B
         speeds[1],
         speeds[2],
         covariance,
-        reach2_of(off_east, off_north, weight, round_m2, covariance) if with_reach else CHI2_95,
+        reach2_of(off_east, off_north, weight, round_m2, covariance, _held(after_s)) if with_reach else CHI2_95,
         math.sqrt(height_m2 + float(weight @ (places[2] - middle[2]) ** 2)),
         math.sqrt(SPEED_SD_MPS**2 + float(weight @ (level_mps - mean_mps) ** 2) + (SPEED_SHARE * mean_mps * settled) ** 2),
         float(np.interp(float(weight @ later.reading_s), clock, profile.nominal_s)),

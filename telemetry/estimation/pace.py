@@ -86,11 +86,13 @@ def clock_of(profile: Profile, pace: Pace) -> FloatArray:
     return profile.moving_s / pace.pace + profile.standing_s
 
 
-def ahead(profile: Profile, pace: Pace, after_s: float) -> Ahead:
-    """after_s: since the places were right, at least 0."""
+def ahead(profile: Profile, pace: Pace, after_s: float, *, is_surely_under_way: bool = True) -> Ahead:
+    """after_s: since the places were right, at least 0. Without is_surely_under_way it may have stood still for any part of it."""
     clock = clock_of(profile, pace)
     from_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
     middle_s, doubt_s = _moved(profile, pace, clock, from_s, after_s)
+    if not is_surely_under_way:
+        middle_s, doubt_s = _at_any_time(from_s, doubt_s, after_s)
     reading_s = np.maximum(middle_s[:, None] + doubt_s[:, None] * SPREAD, from_s[:, None]).ravel()
     return Ahead(clock, reading_s, np.tile(SPREAD_WEIGHT / PLACES, PLACES))
 
@@ -104,7 +106,7 @@ def seen(profile: Profile, pace: Pace, after_s: float, sight: Seen, *, is_surely
     from_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
     middle_s, doubt_s = _moved(profile, pace, clock, from_s, after_s)
     if not is_surely_under_way:
-        middle_s, doubt_s = from_s + 0.5 * after_s, np.hypot(doubt_s, 0.4 * after_s)
+        middle_s, doubt_s = _at_any_time(from_s, doubt_s, after_s)
     low_s, high_s = float((middle_s - 4.5 * doubt_s).min()), float((middle_s + 4.5 * doubt_s).max())
     grid_s = np.linspace(max(low_s, float(from_s.min()) - 0.5, float(clock[0])), min(high_s, float(clock[-1])) + 1e-3, GRID)
     prior = np.exp(-0.5 * ((grid_s[:, None] - middle_s) / doubt_s) ** 2) / doubt_s
@@ -129,6 +131,11 @@ def _moved(profile: Profile, pace: Pace, clock: FloatArray, from_s: FloatArray, 
     middle_s = plain_s + pace.now * NOW_S * -np.expm1(-moving_s / NOW_S)
     gusts_s2 = 2.0 * GUST_SD**2 * GUST_S**2 * (moving_s / GUST_S + np.expm1(-moving_s / GUST_S))
     return middle_s, np.sqrt(SMALLEST_S**2 + gusts_s2 + pace.variance * moving_s**2 + slack_s2)
+
+
+def _at_any_time(from_s: FloatArray, doubt_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
+    """Mean and standard deviation of the clock of one that sets out at some moment of the time, or not yet."""
+    return from_s + 0.5 * after_s, np.hypot(doubt_s, 0.4 * after_s)
 
 
 def _at(reading_s: FloatArray, clock: FloatArray, column: FloatArray) -> FloatArray:

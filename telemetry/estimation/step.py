@@ -52,6 +52,7 @@ def first_state(course: Course, report: Report) -> State | None:
             report.measured_s, report.measured_s, _on_route(phase, route), told.mode, *place, told.altitude_relative_m,
             east_mps, north_mps, up_mps,
             GPS_VARIANCE_M2, BARO_VARIANCE_M2, told.heading_deg, _amsl_above(told), route, None, told.waypoint_sequence,
+            _is_about_to_start(told, phase, route),
         ),
     )  # fmt: skip
 
@@ -77,6 +78,7 @@ def next_state(course: Course, state: State, report: Report) -> State:
             east_m, north_m, height_m, east_mps, north_mps, up_mps, variance_m2, height_variance_m2,
             state.heading_deg if told.heading_deg is None else told.heading_deg,
             _kept_amsl(state, _amsl_above(told)), route, None, sequence,
+            _is_about_to_start(told, phase, route),
         ),
     )  # fmt: skip
 
@@ -147,6 +149,12 @@ def _route(course: Course, state: State, phase: Phase, after_s: float, sight: Se
     else:
         pace = before.pace  # it stands where it left the route
     return None if pace is None else Track(course.profile, pace)
+
+
+def _is_about_to_start(told: Measurement, phase: Phase, route: Track | None) -> bool:
+    flies_when_up = phase_of(told.mode, is_armed=None, is_in_air=None)
+    stands_ready = phase is Phase.GROUND and told.is_armed is True and flies_when_up in {Phase.MISSION, Phase.TAKE_OFF}
+    return stands_ready and route is not None and not route.pace.nominal_s.any()
 
 
 def _on_route(phase: Phase, route: Track | None) -> Phase:

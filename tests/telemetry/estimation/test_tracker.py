@@ -233,6 +233,22 @@ def test_one_on_the_ground_stands_there(knowledge):
     assert estimate.bound.along_m < 10.0
 
 
+def test_one_that_stands_armed_in_its_mission_may_set_out_at_any_moment(knowledge):
+    """Until a report says that it has: the bound holds both, the take-off and the way that it would be on by then."""
+    ready, flown = tracked(knowledge, [standing(True, "MISSION")]), tracked(knowledge, [report(0, 0, 0, altitude_relative_m=0.0)])
+    soon, later = ready.estimate(T0 + 1.0), ready.estimate(T0 + 30.0)
+    going = flown.estimate(T0 + 30.0)
+    assert soon.bound.along_m < 10.0 and later.bound_height_m > 20.0
+    assert 0.0 < metres(later)[0] < metres(going)[0] and metres(later)[0] - later.bound.along_m < 5.0
+    for is_armed, mode in ((False, "MISSION"), (True, "LOITER")):
+        waits = tracked(knowledge, [standing(is_armed, mode)]).estimate(T0 + 30.0)
+        assert waits.bound.along_m < 5.0 and waits.speed_mps == 0.0
+
+
+def standing(is_armed: bool, mode: str) -> Report:
+    return report(0, 0, 0, v=(0.0, 0.0), is_in_air=False, is_armed=is_armed, mode=mode, altitude_relative_m=0.0)
+
+
 def test_one_that_is_steered_goes_on_and_is_soon_less_sure(knowledge):
     reports = [*eastwards(range(30)), report(30.0, 400.0, 0.0, v=(0.0, 8.0), mode="STABILIZE")]
     tracker = tracked(knowledge, reports)

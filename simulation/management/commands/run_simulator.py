@@ -1,0 +1,49 @@
+"""Runs a simulator until it is told to stop (SIGTERM)."""
+
+import os
+import signal
+import sys
+import threading
+from argparse import ArgumentParser
+from typing import Any
+
+from django.core.management.base import BaseCommand, CommandError
+
+from simulation.simulator.options import options_of_settings
+from simulation.simulator.process import Simulator
+from simulation.vehicle_endpoint.radio import WrongAddress
+
+ENDS_WITHIN_S = 9.5
+SWITCH_S = 0.001  # between threads: a step of ten times real time is due every 4 ms
+
+
+class Command(BaseCommand):
+    requires_system_checks = ()  # set-up has made them; it starts again at once when it has been killed
+    help = (
+        "Run a simulator: it flies simulated UAVs in real time, those of missions through the gateway and those of the pool at ports of "
+        "their own. Any number can run at once; each simulation is flown by one of them, and begins anew at another when that is gone."
+    )
+
+    def add_arguments(self, parser: ArgumentParser) -> None:
+        parser.add_argument("--name", help="the same at each start, and no other simulator's (SPANWISE_SIMULATOR_NAME)")
+        parser.add_argument("--most-uavs", type=int, help="that it flies, each as often as its speed (SPANWISE_SIMULATOR_MOST_UAVS)")
+        parser.add_argument("--gateway", metavar="HOST:PORT", help="where missions' UAVs connect (SPANWISE_SIMULATOR_GATEWAY)")
+
+    def handle(self, *_: Any, name: str | None, most_uavs: int | None, gateway: str | None, **__: Any) -> None:
+        try:
+            simulator = Simulator(options_of_settings(name=name, most_uavs=most_uavs, gateway=gateway))
+        except WrongAddress as error:
+            raise CommandError(str(error)) from error
+
+        def stop(*_: Any) -> None:
+            simulator.stop()
+            last_resort = threading.Timer(ENDS_WITHIN_S, os._exit, [1])  # a database that neither answers nor refuses holds up nothing
+            last_resort.daemon = True
+            last_resort.start()
+
+        for number in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, stop)
+        sys.setswitchinterval(SWITCH_S)
+        self.stdout.write(f"simulating as {simulator.options.holder}")
+        self.stdout.flush()
+        simulator.run()

@@ -1,0 +1,259 @@
+"""Simulated UAVs in real time, in the shapes of the API."""
+
+from typing import Any
+
+from django.conf import settings
+from django.utils.translation import gettext_lazy
+from rest_framework import serializers
+
+from missions.fields import PositionField
+from missions.serializers.known_fields import KnownFieldsSerializer
+from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.faults_told import WrongFaults, faults_told
+from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
+from simulation.serializers.shapes import RehearsalConditionsSerializer
+
+SPEEDS = (1, 2, 5, 10)
+MOST_POOL_UAVS = 100
+HIGHEST_SYSTEM = 250
+SHORTEST_LIFETIME_S, USUAL_LIFETIME_S, LONGEST_TOLD_S = 60, 3_600, 7 * 86_400
+REASONS = {
+    "": "",
+    "ended-by-hand": gettext_lazy("Somebody ended it."),
+    "lifetime-over": gettext_lazy("Its lifetime is over."),
+    "mission-over": gettext_lazy("The mission is over."),
+    "uav-changed": gettext_lazy("A UAV that it stood in for is no longer marked as simulated, or is reached in another way."),
+    "simulator-lost": gettext_lazy("The simulator was lost while the UAV was in the air: the UAV is lost with it."),
+    "simulator-fault": gettext_lazy("It failed inside Spanwise; the error is in the simulator's log."),
+    "no-socket": gettext_lazy("The simulator could not listen at its port."),
+}
+
+
+class ConditionsField(serializers.JSONField):
+    """A name, or an object; read by simulation.views.skies."""
+
+
+class FaultsSerializer(KnownFieldsSerializer):
+    """What goes wrong from now on; what is left out stays as it is."""
+
+    link_lost_for_s = serializers.FloatField(required=False, min_value=0, max_value=86_400, help_text="silence both ways; 0: none")
+    gps_lost_for_s = serializers.FloatField(required=False, min_value=0, max_value=86_400, help_text="no fix; 0: no longer")
+    battery_wh_left = serializers.FloatField(
+        required=False, allow_null=True, min_value=0, max_value=10_000, help_text="what the battery holds from now on"
+    )
+    motor_failed = serializers.IntegerField(
+        required=False, allow_null=True, min_value=0, max_value=3, help_text="a rotor stands still; null: none"
+    )
+    stuck_item = serializers.IntegerField(
+        required=False, allow_null=True, min_value=0, max_value=100_000, help_text="a mission item that is never done; null: none"
+    )
+    clock_offset_s = serializers.FloatField(
+        required=False, min_value=-1e9, max_value=1e9, help_text="added to its idea of the time of day; 0: none"
+    )
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        try:
+            faults_told(attrs)
+        except WrongFaults as error:
+            raise serializers.ValidationError(str(error)) from error
+        return attrs
+
+
+CONDITIONS_TOLD = (
+    "calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, "
+    "turbulence_mps_at_20ft, battery_percent"
+)
+
+
+class VehicleChangeSerializer(KnownFieldsSerializer):
+    conditions = ConditionsField(required=False, help_text=f"the air from now on: {CONDITIONS_TOLD}; batteries stay as they are")
+    faults = FaultsSerializer(required=False)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if not attrs:
+            raise serializers.ValidationError("Something to change is needed.")
+        return attrs
+
+
+class SimulationChangeSerializer(VehicleChangeSerializer):
+    speed = serializers.ChoiceField(choices=SPEEDS, required=False, help_text="times real time, of all its UAVs")
+
+
+class SimulatedFlightsInputSerializer(KnownFieldsSerializer):
+    speed = serializers.ChoiceField(choices=SPEEDS, default=1, help_text="times real time")
+    conditions = ConditionsField(default="as-planned", help_text=CONDITIONS_TOLD)
+    faults = FaultsSerializer(required=False)
+    flavour = serializers.ChoiceField(choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
+    seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7, help_text="of gusts and turbulence")
+
+
+class PoolUavSerializer(KnownFieldsSerializer):
+    position = PositionField()
+    name = serializers.CharField(max_length=60, required=False, default="")
+    heading_deg = serializers.FloatField(min_value=0, max_value=360, default=0.0)
+    ground_amsl_m = serializers.FloatField(
+        min_value=-500, max_value=9_000, allow_null=True, default=None, help_text="of the ground there, where no terrain model tells it"
+    )
+
+
+class SimulationInputSerializer(KnownFieldsSerializer):
+    uavs = PoolUavSerializer(many=True, min_length=1, max_length=MOST_POOL_UAVS)
+    lifetime_s = serializers.IntegerField(
+        min_value=SHORTEST_LIFETIME_S,
+        max_value=LONGEST_TOLD_S,
+        default=USUAL_LIFETIME_S,
+        help_text="then they end",
+    )
+    airframe = serializers.ChoiceField(choices=sorted(AIRFRAMES), default="iris", help_text="GET /airframes lists them")
+    flavour = serializers.ChoiceField(choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
+    speed = serializers.ChoiceField(choices=SPEEDS, default=1)
+    conditions = ConditionsField(default="calm", help_text=CONDITIONS_TOLD)
+    faults = FaultsSerializer(required=False)
+    first_system_id = serializers.IntegerField(min_value=1, max_value=HIGHEST_SYSTEM, default=1, help_text="the others' follow")
+    seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7)
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs["first_system_id"] + len(attrs["uavs"]) - 1 > HIGHEST_SYSTEM:
+            raise serializers.ValidationError({"first_system_id": f"System ids end at {HIGHEST_SYSTEM}."})
+        return attrs
+
+
+class SimulatedUavSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+
+
+class ExampleSerializer(serializers.Serializer):
+    program = serializers.CharField()
+    command = serializers.CharField(help_text="or what to enter")
+
+
+class ConnectSerializer(serializers.Serializer):
+    protocol = serializers.CharField(help_text="udp: the UAV listens, and talks to whoever talked to it")
+    host = serializers.CharField()
+    port = serializers.IntegerField()
+    examples = ExampleSerializer(many=True)
+
+
+class ToldSerializer(serializers.Serializer):
+    at = serializers.DateTimeField()
+    at_s = serializers.FloatField(help_text="simulated seconds since it was put on the ground")
+    position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="where it truly is")
+    altitude_relative_m = serializers.FloatField()
+    battery_percent = serializers.FloatField()
+    mode = serializers.CharField()
+    is_armed = serializers.BooleanField()
+    is_in_air = serializers.BooleanField()
+    is_crashed = serializers.BooleanField()
+    is_link_lost = serializers.BooleanField(help_text="by a fault that was asked for")
+
+
+class SimulatedVehicleSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    simulation = serializers.UUIDField()
+    is_simulated = serializers.BooleanField(help_text="always true")
+    sequence = serializers.IntegerField(help_text="of a mission's: the UAV's place in it")
+    uav = SimulatedUavSerializer(allow_null=True, help_text="of the fleet, that it stands in for")
+    name = serializers.CharField()
+    system_id = serializers.IntegerField()
+    flavour = serializers.ChoiceField(choices=VehicleFlavour.choices)
+    airframe = serializers.CharField()
+    battery_wh = serializers.FloatField(help_text="of a full battery")
+    position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="where it was put")
+    state = serializers.ChoiceField(choices=SimulationState.choices)
+    reason = serializers.CharField(help_text="why it has ended or failed, for programs")
+    message = serializers.CharField(help_text="the reason in words")
+    restarts = serializers.IntegerField(help_text="how often it was put on the ground anew because its simulator was lost")
+    conditions = RehearsalConditionsSerializer()
+    told = ToldSerializer(allow_null=True, help_text="how it does, to the second")
+    connect = ConnectSerializer(allow_null=True, help_text="of the pool's: how ground stations reach it; others talk to the gateway")
+
+
+class PaceSerializer(serializers.Serializer):
+    simulated_s = serializers.FloatField()
+    steps = serializers.IntegerField()
+    late_steps = serializers.IntegerField(help_text="that began more than a step too late")
+    latest_s = serializers.FloatField()
+    slipped_s = serializers.FloatField(help_text="of real time, never made up for: too many UAVs, or too fast, for this machine")
+
+
+class SimulationSerializer(serializers.Serializer):
+    id = serializers.UUIDField()
+    is_simulated = serializers.BooleanField(help_text="always true: nothing of this is flown by an aircraft")
+    mission = serializers.UUIDField(allow_null=True, help_text="whose UAVs are stood in for; null: of the pool")
+    state = serializers.ChoiceField(choices=SimulationState.choices)
+    reason = serializers.CharField()
+    message = serializers.CharField()
+    speed = serializers.FloatField(help_text="times real time")
+    seed = serializers.IntegerField()
+    created_at = serializers.DateTimeField()
+    created_by = serializers.CharField(allow_null=True)
+    lifetime_ends_at = serializers.DateTimeField()
+    ended_at = serializers.DateTimeField(allow_null=True)
+    restarts = serializers.IntegerField(help_text="how often its simulator was lost")
+    pace = PaceSerializer(allow_null=True)
+    vehicles = SimulatedVehicleSerializer(many=True)
+
+
+class SimulationPageSerializer(serializers.Serializer):
+    results = SimulationSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+def simulation_json(simulation: Simulation) -> dict[str, Any]:
+    return {
+        "id": str(simulation.pk),
+        "is_simulated": True,
+        "mission": None if simulation.mission_id is None else str(simulation.mission_id),
+        "state": simulation.state,
+        "reason": simulation.reason,
+        "message": str(REASONS.get(simulation.reason, simulation.reason)),
+        "speed": simulation.speed,
+        "seed": simulation.seed,
+        "created_at": simulation.created_at,
+        "created_by": simulation.created_by.username if simulation.created_by else None,
+        "lifetime_ends_at": simulation.lifetime_ends_at,
+        "ended_at": simulation.ended_at,
+        "restarts": simulation.restarts,
+        "pace": simulation.pace or None,
+        "vehicles": [vehicle_json(vehicle) for vehicle in simulation.vehicles.all()],
+    }
+
+
+def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
+    told = {name: value for name, value in vehicle.told.items() if name in ToldSerializer().fields}
+    airframe = AIRFRAMES.get(vehicle.airframe)
+    own_wh = 0.0 if airframe is None else airframe.battery_wh
+    return {
+        "id": str(vehicle.pk),
+        "simulation": str(vehicle.simulation_id),
+        "is_simulated": True,
+        "sequence": vehicle.sequence,
+        "uav": None if vehicle.uav is None else {"id": vehicle.uav_id, "name": vehicle.uav.name},
+        "name": vehicle.name,
+        "system_id": vehicle.system_id,
+        "flavour": vehicle.flavour,
+        "airframe": vehicle.airframe,
+        "battery_wh": own_wh if vehicle.battery_wh is None else vehicle.battery_wh,
+        "position": list(vehicle.position.coords),
+        "state": vehicle.state,
+        "reason": vehicle.reason,
+        "message": str(REASONS.get(vehicle.reason, vehicle.reason)),
+        "restarts": vehicle.restarts,
+        "conditions": vehicle.conditions,
+        "told": {"at": vehicle.told_at, **told} if told else None,
+        "connect": None if vehicle.port is None else connection_json(settings.SIMULATOR_HOST, vehicle.port),
+    }
+
+
+def connection_json(host: str, port: int) -> dict[str, Any]:
+    """The UAV listens: whoever wants to talk to it talks first."""
+    examples = {
+        "QGroundControl": f"Application Settings > Comm Links > Add: type UDP, server address {host}:{port}",
+        "MAVProxy": f"mavproxy.py --master=udpout:{host}:{port} --source-system=255",
+        "MAVSDK": f"udpout://{host}:{port}",
+    }
+    return {
+        "protocol": "udp", "host": host, "port": port,
+        "examples": [{"program": program, "command": command} for program, command in examples.items()],
+    }  # fmt: skip

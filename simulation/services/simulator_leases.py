@@ -1,0 +1,161 @@
+"""Which simulator flies which simulation, and what it writes down.
+
+A simulator holds simulations by leases. Another may take one when its lease is out, or when it bears the same name: it is the same
+simulator, started again. What the lost one had in the air is lost with it, as a real UAV that is gone: nothing goes on in mid-air.
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Any
+from uuid import UUID
+
+from django.db import transaction
+from django.db.models import F, Q
+from django.db.models.functions import Now
+from django.utils import timezone
+
+from missions.models import LinkKind, MissionState
+from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState
+from simulation.services.simulations import end_now, note
+from simulation.vehicle_models import PRESENT
+
+AFTER_MISSION = timedelta(minutes=10)  # what stands in for a mission's UAVs stays so long after it is over
+OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
+
+
+@dataclass(frozen=True)
+class Held:
+    """A simulation that was taken, with those of its vehicles that are to be flown."""
+
+    simulation: Simulation
+    vehicles: tuple[SimulatedVehicle, ...]
+
+
+def take_simulation(*, holder: str, lease_s: float, most_load: float, has_others: bool) -> Held | None:
+    """The one that has waited longest, if its UAVs times its speed are no more than most_load; anything where nothing else is held.
+
+    Those whose time is over are ended on the way.
+    """
+    with transaction.atomic():
+        now = timezone.now()
+        free = Q(lease_expires_at=None) | Q(lease_expires_at__lt=now) | Q(holder__startswith=f"{_name(holder)}/")
+        waiting = Simulation.objects.filter(free, state__in=PRESENT).exclude(holder=holder)
+        for simulation in waiting.select_for_update(skip_locked=True, of=("self",)).order_by("created_at"):
+            if (reason := _why_over(simulation)) is not None:
+                _end(simulation, reason)
+                continue
+            if has_others and simulation.vehicles.filter(state__in=PRESENT).count() * simulation.speed > most_load:
+                continue
+            vehicles = _to_fly(simulation)
+            if not vehicles:
+                continue
+            Simulation.objects.filter(pk=simulation.pk).update(
+                state=SimulationState.FLYING, holder=holder, lease_expires_at=Now() + timedelta(seconds=lease_s)
+            )
+            # The air is stored with each vehicle, the speed with the simulation; the faults of a lost flight went with it.
+            is_first = simulation.restarts == 0
+            if not is_first:
+                SimulationChange.objects.filter(simulation=simulation, done_at=None).update(done_at=now)
+            return Held(simulation, tuple(vehicles))
+    return None
+
+
+def renew_simulations(*, holder: str, ids: Collection[UUID], lease_s: float) -> set[UUID]:
+    """Those that are still held."""
+    held = Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT)
+    held.update(lease_expires_at=Now() + timedelta(seconds=lease_s))
+    return set(held.values_list("pk", flat=True))
+
+
+def release_simulations(*, holder: str) -> None:
+    """Whoever takes them finds them as if this simulator had been lost: there is no going on in mid-air."""
+    Simulation.objects.filter(holder=holder).update(holder="", lease_expires_at=None)
+
+
+def end_those_over(*, holder: str, ids: Collection[UUID]) -> set[UUID]:
+    """Of those that are held: whose end is wanted, whose time or mission is over, or that no longer may be flown."""
+    ended = set()
+    with transaction.atomic():
+        for simulation in Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT).select_for_update(of=("self",)):
+            reason = _why_over(simulation)
+            if reason is not None:
+                _end(simulation, reason)
+                ended.add(simulation.pk)
+    return ended
+
+
+def fail_simulation(*, simulation: Simulation, reason: str) -> None:
+    """It cannot be flown."""
+    with transaction.atomic():
+        end_now(simulation, reason, state=SimulationState.FAILED)
+        note(simulation, None, "fail", {"reason": reason})
+
+
+def take_changes(*, ids: Collection[UUID]) -> list[SimulationChange]:
+    """What is to be different, in the order in which it was said; each is given out once."""
+    with transaction.atomic():
+        found = SimulationChange.objects.filter(simulation__in=ids, done_at=None).select_for_update(of=("self",))
+        changes = list(found.select_related("vehicle"))
+        SimulationChange.objects.filter(pk__in=[change.pk for change in changes]).update(done_at=Now())
+    return changes
+
+
+def tell(*, simulation_id: UUID, holder: str, pace: Mapping[str, Any], vehicles: Mapping[UUID, Mapping[str, Any]]) -> None:
+    """How the clock is kept, and how each vehicle does; nothing once another one holds it."""
+    with transaction.atomic():
+        if not Simulation.objects.filter(pk=simulation_id, holder=holder).update(pace=dict(pace)):
+            return
+        rows = [SimulatedVehicle(pk=pk, told=dict(told), told_at=timezone.now()) for pk, told in vehicles.items()]
+        SimulatedVehicle.objects.bulk_update(rows, ["told", "told_at"])
+
+
+def _why_over(simulation: Simulation) -> str | None:
+    if simulation.end_wanted_at is not None:
+        return "ended-by-hand"
+    if simulation.lifetime_ends_at <= timezone.now():
+        return "lifetime-over"
+    vehicles = simulation.vehicles.filter(state__in=PRESENT, uav__isnull=False)
+    if vehicles.exclude(uav__is_simulated=True, uav__link=LinkKind.MAVLINK, uav__mavlink_system_id=F("system_id")).exists():
+        return "uav-changed"
+    mission = simulation.mission
+    if mission is not None and (mission.deleted_at is not None or _is_long_over(mission.state, mission.ended_at)):
+        return "mission-over"
+    return None
+
+
+def _is_long_over(state: str, ended_at: Any) -> bool:
+    return state in OVER and (ended_at is None or ended_at + AFTER_MISSION <= timezone.now())
+
+
+def _end(simulation: Simulation, reason: str) -> None:
+    end_now(simulation, reason)
+    if reason != "ended-by-hand":  # that is in the history already
+        note(simulation, None, "end", {"reason": reason})
+
+
+def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
+    """All at first. After a lost simulator those that were on the ground, and of the pool also those that were in the air: each stands
+    where it stood at first. A mission's UAV that was in the air is gone, and so is the simulation once all of them are.
+    """
+    vehicles = list(simulation.vehicles.filter(state__in=PRESENT).select_related("uav"))
+    if simulation.state == SimulationState.FLYING:
+        lost = [vehicle for vehicle in vehicles if simulation.mission_id is not None and vehicle.told.get("is_in_air")]
+        vehicles = [vehicle for vehicle in vehicles if vehicle not in lost]
+        keys = [vehicle.pk for vehicle in lost]
+        SimulatedVehicle.objects.filter(pk__in=keys).update(state=SimulationState.FAILED, reason="simulator-lost")
+        simulation.restarts += 1
+        Simulation.objects.filter(pk=simulation.pk).update(restarts=simulation.restarts)
+        note(simulation, None, "restart", {"lost": [vehicle.name for vehicle in lost], "again": [vehicle.name for vehicle in vehicles]})
+        if not vehicles:
+            end_now(simulation, "simulator-lost", state=SimulationState.FAILED)
+            return []
+    again = F("restarts") + (1 if simulation.state == SimulationState.FLYING else 0)
+    SimulatedVehicle.objects.filter(pk__in=[vehicle.pk for vehicle in vehicles]).update(
+        state=SimulationState.FLYING, restarts=again, told={}
+    )
+    return vehicles
+
+
+def _name(holder: str) -> str:
+    return holder.rsplit("/", 1)[0]

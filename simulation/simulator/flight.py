@@ -1,0 +1,87 @@
+"""One simulation in the air: its fleet in a thread of its own, at its own pace."""
+
+import logging
+import threading
+from dataclasses import dataclass, field
+from typing import Any
+from uuid import UUID
+
+from simulation.models import SimulatedVehicle, Simulation
+from simulation.vehicle_endpoint.fleet import Change, Fleet
+from simulation.vehicle_endpoint.flying_uav import FlyingUav
+from simulation.vehicle_endpoint.launch import Launch, fleet_of
+
+logger = logging.getLogger(__name__)
+
+ENDS_WITHIN_S = 5.0
+
+
+@dataclass
+class Flight:
+    """`vehicles` and the fleet's UAVs stand in the same order."""
+
+    simulation: Simulation
+    vehicles: tuple[SimulatedVehicle, ...]
+    fleet: Fleet
+    speed: float
+    _thread: threading.Thread = field(init=False, repr=False)
+    has_fallen: bool = False
+
+    def __post_init__(self) -> None:
+        self._thread = threading.Thread(target=self._run, name=f"simulation {self.simulation.pk}", daemon=True)
+        self._thread.start()
+
+    def post(self, change: Change) -> None:
+        """At the next step."""
+        self.speed = change.speed or self.speed
+        self.fleet.post(change)
+
+    def end(self) -> None:
+        self.fleet.end()
+        self._thread.join(ENDS_WITHIN_S)
+        self.fleet.close()
+
+    @property
+    def load(self) -> float:
+        """Simulated seconds a second, over all UAVs."""
+        return len(self.vehicles) * self.speed
+
+    def pace(self) -> dict[str, Any]:
+        report = self.fleet.report()
+        return {
+            "simulated_s": report.simulated_s, "steps": report.steps, "late_steps": report.late_steps, "latest_s": report.latest_s,
+            "slipped_s": report.slipped_s,
+        }  # fmt: skip
+
+    def told(self) -> dict[UUID, dict[str, Any]]:
+        """By vehicle. A step may be under way: each state is a value of its own."""
+        return {vehicle.pk: _told(flying) for vehicle, flying in zip(self.vehicles, self.fleet.uavs, strict=True)}
+
+    def _run(self) -> None:
+        try:
+            self.fleet.run()
+        except Exception:
+            self.has_fallen = True
+            logger.exception("simulation %s fell", self.simulation.pk)
+
+
+def flight_of(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch]) -> Flight:
+    """Raises OSError where a socket cannot be had."""
+    return Flight(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed)
+
+
+def _told(flying: FlyingUav) -> dict[str, Any]:
+    state = flying.uav.state
+    return {
+        "at_s": round(state.at_s, 2),
+        "position": [round(state.true_position.lon, 7), round(state.true_position.lat, 7)],
+        "altitude_relative_m": round(state.altitude_relative_m, 2),
+        "battery_percent": round(state.battery_percent, 1),
+        "mode": str(state.mode),
+        "is_armed": state.is_armed,
+        "is_in_air": state.is_in_air,
+        "is_crashed": state.is_crashed,
+        "is_link_lost": flying.uav.faults.is_link_lost(flying.uav.now_s),
+        "heard": flying.heard,
+        "refused": flying.refused,
+    }

@@ -1,0 +1,145 @@
+"""The simulator as a whole: it takes simulations by leases, flies each at its pace, passes changes on, and writes down how they do."""
+
+import logging
+import threading
+import time
+from dataclasses import dataclass, field
+from uuid import UUID
+
+from django.db import close_old_connections, connection
+
+from simulation.flight.faults_told import WrongFaults, faults_told
+from simulation.models import SimulationChange
+from simulation.rehearsing.sky import sky_from_json
+from simulation.rehearsing.sky_weather import weather_of
+from simulation.services.simulator_leases import (
+    end_those_over,
+    fail_simulation,
+    release_simulations,
+    renew_simulations,
+    take_changes,
+    take_simulation,
+    tell,
+)
+from simulation.simulator.flight import Flight, flight_of
+from simulation.simulator.launches import launch_of
+from simulation.simulator.options import Options
+from simulation.vehicle_endpoint.fleet import Change, WrongPace
+from workspace.errors import DATABASE_AWAY
+
+logger = logging.getLogger(__name__)
+
+EVERY_S = 0.5
+TELL_EVERY_S = 1.0
+AWAY_EVERY_S = 60.0  # one line of log
+
+
+@dataclass
+class Simulator:
+    """`run` until `stop`. The database is this thread's alone; a simulation's own thread knows its UAVs and their sockets."""
+
+    options: Options
+    flights: dict[UUID, Flight] = field(default_factory=dict)
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _renewed_s: float = field(default_factory=time.monotonic)
+    _told_s: float = 0.0
+    _quiet_until_s: float = -AWAY_EVERY_S
+
+    def run(self) -> None:
+        logger.info("simulator %s has begun", self.options.holder)
+        while not self._stop.is_set():
+            try:
+                close_old_connections()
+                self.round()
+            except DATABASE_AWAY as error:
+                self._go_on_without_database(error)
+            self._stop.wait(EVERY_S)
+        self._give_back()
+
+    def stop(self) -> None:
+        self._stop.set()
+
+    def round(self) -> None:
+        """Raises what the database raises; the next round begins anew."""
+        self._hold()
+        self._take()
+        for change in take_changes(ids=list(self.flights)):
+            self._pass_on(change)
+        if time.monotonic() - self._told_s >= TELL_EVERY_S:
+            self._told_s = time.monotonic()
+            for key, flight in self.flights.items():
+                tell(simulation_id=key, holder=self.options.holder, pace=flight.pace(), vehicles=flight.told())
+
+    @property
+    def load(self) -> float:
+        return sum(flight.load for flight in self.flights.values())
+
+    def _hold(self) -> None:
+        options, fallen = self.options, [flight for flight in self.flights.values() if flight.has_fallen]
+        for flight in fallen:
+            fail_simulation(simulation=flight.simulation, reason="simulator-fault")
+        ended = end_those_over(holder=options.holder, ids=list(self.flights))
+        still = renew_simulations(holder=options.holder, ids=self.flights.keys() - ended, lease_s=options.lease_s)
+        self._renewed_s = time.monotonic()
+        for key in self.flights.keys() - still:
+            self.flights.pop(key).end()
+
+    def _take(self) -> None:
+        options = self.options
+        while True:
+            room = options.most_load - self.load
+            held = take_simulation(holder=options.holder, lease_s=options.lease_s, most_load=room, has_others=bool(self.flights))
+            if held is None:
+                return
+            try:
+                launches = [launch_of(vehicle, held.simulation, options) for vehicle in held.vehicles]
+                self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches)
+            except DATABASE_AWAY:
+                raise
+            except OSError:
+                logger.exception("no socket for simulation %s", held.simulation.pk)
+                fail_simulation(simulation=held.simulation, reason="no-socket")
+            except Exception:
+                logger.exception("simulation %s cannot be flown", held.simulation.pk)
+                fail_simulation(simulation=held.simulation, reason="simulator-fault")
+            else:
+                logger.info("flies simulation %s, %s UAVs", held.simulation.pk, len(held.vehicles))
+
+    def _pass_on(self, change: SimulationChange) -> None:
+        flight = self.flights.get(change.simulation_id)
+        if flight is None:
+            return
+        try:
+            flight.post(
+                Change(
+                    system=None if change.vehicle is None else change.vehicle.system_id,
+                    weather=None if change.conditions is None else weather_of(sky_from_json(change.conditions)),
+                    faults=None if change.faults is None else faults_told(change.faults),
+                    speed=change.speed,
+                )
+            )
+        except (WrongFaults, WrongPace, KeyError, ValueError):
+            logger.exception("a change of simulation %s cannot be made", change.simulation_id)
+
+    def _go_on_without_database(self, error: Exception) -> None:
+        """They fly on until the lease is out: then another simulator may have them, and two of one UAV would be one too many."""
+        connection.close()
+        if time.monotonic() >= self._quiet_until_s:
+            self._quiet_until_s = time.monotonic() + AWAY_EVERY_S
+            logger.warning("the database is away, no simulation is taken or changed: %s", type(error).__name__)
+        if time.monotonic() - self._renewed_s > self.options.lease_s and self.flights:
+            logger.warning("the leases are out: %s simulations are given up", len(self.flights))
+            self._end_all()
+
+    def _give_back(self) -> None:
+        self._end_all()
+        try:
+            release_simulations(holder=self.options.holder)
+        except DATABASE_AWAY:
+            logger.warning("the database is away: leases run out by themselves")
+
+    def _end_all(self) -> None:
+        for flight in self.flights.values():
+            flight.fleet.end()
+        while self.flights:
+            self.flights.popitem()[1].end()

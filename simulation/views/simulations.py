@@ -1,0 +1,233 @@
+"""Simulated UAVs in real time: those of missions and those of the pool, started, changed in flight, ended."""
+
+from typing import Any
+from uuid import UUID
+
+from django.conf import settings
+from django.db import transaction
+from django.shortcuts import get_object_or_404
+from django.urls import reverse
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.request import Request
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from inspection.views.parameters import invalid
+from missions.flight_plan.conditions import Conditions, conditions_from_json
+from missions.views.missions import mission_or_404
+from missions.views.problems import refusals
+from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
+from simulation.serializers import simulations as shapes
+from simulation.services.simulated_flights import start_simulated_flights
+from simulation.services.simulations import IsOver, NoPortFree, PoolUav, QuotaReached, change_simulation, end_simulation, start_pool
+from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
+from simulation.vehicle_models import PRESENT
+from simulation.views.skies import sky_of
+from workspace.errors import ApiProblem
+from workspace.idempotency import idempotent
+from workspace.models import User
+from workspace.paging import page_of
+from workspace.schema import PAGE_PARAMETERS
+
+NEWEST_FIRST = ("-created_at", "-pk")
+CALM = Conditions()
+WHICH = ("present", "all")
+RETRY_AFTER_S = 60
+QUOTA = {429: OpenApiResponse(description="The organisation has as many simulated UAVs as it may.")}
+OVER = {409: OpenApiResponse(description="The simulation has ended.")}
+FLIGHT_REFUSED = {
+    409: OpenApiResponse(description="The mission is not approved, or one of its UAVs is real: `details.reasons` has each reason.")
+}
+STATE = OpenApiParameter("state", str, enum=WHICH, description="those that wait or fly (present, unless told), or also those that are over")
+
+
+class MissionSimulatedFlights(APIView):
+    @extend_schema(
+        operation_id="list_simulated_flights",
+        summary="Simulations that stand in for a mission's UAVs, the newest first",
+        parameters=[STATE, *PAGE_PARAMETERS],
+        responses=shapes.SimulationPageSerializer,
+    )
+    def get(self, request: Request, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        return _listed(request, simulations_of_mission(request.user.organisation, mission.pk))
+
+    @extend_schema(
+        operation_id="start_simulated_flights",
+        summary="Fly an approved mission by simulated UAVs, through the gateway",
+        description=(
+            "For each of its UAVs a simulated one connects to the gateway with that UAV's system id and key, and stands where its route "
+            "begins. From there on it is sent, started, held and called back like any UAV. Only UAVs that the fleet marks as simulated are "
+            "stood in for; one without a key or a system id is given one, which is shown to nobody."
+        ),
+        request=shapes.SimulatedFlightsInputSerializer,
+        responses={201: shapes.SimulationSerializer, **FLIGHT_REFUSED, **QUOTA},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        body = shapes.SimulatedFlightsInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        values = body.validated_data
+        try:
+            with refusals(), transaction.atomic():
+                simulation = start_simulated_flights(
+                    mission=mission,
+                    actor=request.user,
+                    sky=sky_of(values["conditions"], conditions_from_json(mission.conditions or None)),
+                    speed=float(values["speed"]),
+                    flavour=VehicleFlavour(values["flavour"]),
+                    seed=values["seed"],
+                    faults=values.get("faults"),
+                )
+        except QuotaReached as error:
+            raise _too_many(error) from error
+        return _answer(request.user, simulation.pk, status=201)
+
+
+class Simulations(APIView):
+    @extend_schema(
+        operation_id="list_simulations",
+        summary="Simulated UAVs of one's organisation that wait or fly, the newest first",
+        parameters=[STATE, *PAGE_PARAMETERS],
+        responses=shapes.SimulationPageSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        return _listed(request, simulations_of_organisation(request.user.organisation))
+
+    @extend_schema(
+        operation_id="start_simulation",
+        summary="Start simulated UAVs for a ground station or a program of one's own",
+        description=(
+            "Each listens at a UDP port of its own until its lifetime ends: `connect` says where, with commands for QGroundControl, "
+            "MAVProxy and MAVSDK. They are not of the fleet, and no gateway hears them. One whose simulator is lost begins anew."
+        ),
+        request=shapes.SimulationInputSerializer,
+        responses={201: shapes.SimulationSerializer, **QUOTA},
+    )
+    @idempotent
+    def post(self, request: Request) -> Response:
+        body = shapes.SimulationInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        values = body.validated_data
+        if values["lifetime_s"] > settings.LONGEST_SIMULATION_H * 3_600:
+            raise invalid("lifetime_s", _("At most %(hours)g hours.") % {"hours": settings.LONGEST_SIMULATION_H})
+        try:
+            simulation = start_pool(
+                organisation=request.user.organisation,
+                actor=request.user,
+                uavs=[PoolUav(**uav) for uav in values["uavs"]],
+                lifetime_s=values["lifetime_s"],
+                sky=sky_of(values["conditions"], CALM),
+                airframe=values["airframe"],
+                flavour=VehicleFlavour(values["flavour"]),
+                speed=float(values["speed"]),
+                first_system_id=values["first_system_id"],
+                seed=values["seed"],
+                faults=values.get("faults"),
+            )
+        except QuotaReached as error:
+            raise _too_many(error) from error
+        except NoPortFree as error:
+            raise ApiProblem(503, "no_port_free", _("All ports of the pool are taken."), retry_after_s=RETRY_AFTER_S) from error
+        return _answer(request.user, simulation.pk, status=201)
+
+
+class SimulationDetail(APIView):
+    @extend_schema(operation_id="get_simulation", summary="A simulation with each of its UAVs", responses=shapes.SimulationSerializer)
+    def get(self, request: Request, simulation_id: UUID) -> Response:
+        return _answer(request.user, simulation_id)
+
+    @extend_schema(
+        operation_id="change_simulation",
+        summary="Speed, air and faults of all UAVs of a simulation, in flight",
+        description="Done within a second. Its UAVs share a clock: the speed is always everybody's.",
+        request=shapes.SimulationChangeSerializer,
+        responses={200: shapes.SimulationSerializer, **OVER},
+    )
+    def patch(self, request: Request, simulation_id: UUID) -> Response:
+        simulation = _simulation_or_404(request.user, simulation_id)
+        body = shapes.SimulationChangeSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        _change(request.user, simulation, None, body.validated_data)
+        return _answer(request.user, simulation_id)
+
+    @extend_schema(
+        operation_id="end_simulation",
+        summary="End a simulation",
+        description="Its UAVs are gone within a second, wherever they are; of one in the air the gateway loses the link.",
+        responses={204: None},
+    )
+    def delete(self, request: Request, simulation_id: UUID) -> Response:
+        end_simulation(simulation=_simulation_or_404(request.user, simulation_id), actor=request.user)
+        return Response(status=204)
+
+
+class SimulatedVehicleDetail(APIView):
+    @extend_schema(operation_id="get_simulated_vehicle", summary="One simulated UAV", responses=shapes.SimulatedVehicleSerializer)
+    def get(self, request: Request, vehicle_id: UUID) -> Response:
+        return Response(shapes.vehicle_json(_vehicle_or_404(request.user, vehicle_id)))
+
+    @extend_schema(
+        operation_id="change_simulated_vehicle",
+        summary="Air and faults of one simulated UAV, in flight",
+        description="Done within a second. The speed is changed with its simulation.",
+        request=shapes.VehicleChangeSerializer,
+        responses={200: shapes.SimulatedVehicleSerializer, **OVER},
+    )
+    def patch(self, request: Request, vehicle_id: UUID) -> Response:
+        vehicle = _vehicle_or_404(request.user, vehicle_id)
+        body = shapes.VehicleChangeSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        _change(request.user, vehicle.simulation, vehicle, body.validated_data)
+        return Response(shapes.vehicle_json(_vehicle_or_404(request.user, vehicle_id)))
+
+
+def _listed(request: Request, found: Any) -> Response:
+    which = request.query_params.get("state", WHICH[0])
+    if which not in WHICH:
+        raise invalid("state", f"One of {', '.join(WHICH)}.")
+    page = page_of(request, found.filter(state__in=PRESENT) if which == WHICH[0] else found, order=NEWEST_FIRST, default_limit=20)
+    return Response({"results": [shapes.simulation_json(simulation) for simulation in page.rows], "next": page.next})
+
+
+def _answer(user: User, simulation_id: UUID, *, status: int = 200) -> Response:
+    headers = {"Location": reverse("api-simulation", args=[simulation_id])} if status == 201 else {}
+    return Response(shapes.simulation_json(_simulation_or_404(user, simulation_id)), status=status, headers=headers)
+
+
+def _simulation_or_404(user: User, simulation_id: UUID) -> Simulation:
+    return get_object_or_404(simulations_of_organisation(user.organisation), pk=simulation_id)
+
+
+def _vehicle_or_404(user: User, vehicle_id: UUID) -> SimulatedVehicle:
+    return get_object_or_404(vehicles_of_organisation(user.organisation), pk=vehicle_id)
+
+
+def _change(user: User, simulation: Simulation, vehicle: SimulatedVehicle | None, values: dict[str, Any]) -> None:
+    planned = CALM if simulation.mission is None else conditions_from_json(simulation.mission.conditions or None)
+    speed = values.get("speed")
+    if vehicle is not None and vehicle.state not in PRESENT:
+        raise _is_over()
+    try:
+        change_simulation(
+            simulation=simulation,
+            actor=user,
+            vehicle=vehicle,
+            speed=None if speed is None else float(speed),
+            sky=sky_of(values["conditions"], planned) if "conditions" in values else None,
+            faults=values.get("faults"),
+        )
+    except IsOver as error:
+        raise _is_over() from error
+
+
+def _is_over() -> ApiProblem:
+    return ApiProblem(409, "simulation_over", _("This simulation has ended."))
+
+
+def _too_many(error: QuotaReached) -> ApiProblem:
+    words = _("Your organisation may have %(most)s simulated UAVs at once; %(free)s are free.")
+    values = {"most": settings.MOST_SIMULATED_UAVS, "free": error.free}
+    return ApiProblem(429, "too_many_simulated_uavs", words % values, retry_after_s=RETRY_AFTER_S)

@@ -1,0 +1,44 @@
+"""Simulated UAVs in real time, for tests: started, and a simulator in this process."""
+
+from datetime import timedelta
+from typing import Any
+
+from django.utils import timezone
+
+from inspection.geodesy import LonLat
+from missions.flight_plan.conditions import Conditions
+from missions.models import Mission
+from missions.selectors import mission_of_organisation
+from simulation.models import Simulation
+from simulation.rehearsing.sky import Named, Sky, named_sky
+from simulation.services.simulated_flights import start_simulated_flights
+from simulation.services.simulations import PoolUav, start_pool
+from simulation.services.simulator_leases import Held, take_simulation
+from workspace.models import User
+
+HERE = LonLat(10.0, 56.0)
+CALM: Sky = named_sky(Named.CALM, Conditions())
+LONG_AGO = timezone.now() - timedelta(hours=1)
+
+
+def pool(actor: User, count: int = 2, **more: Any) -> Simulation:
+    values = {"lifetime_s": 600.0, "sky": CALM, "airframe": "iris"} | more
+    return start_pool(organisation=actor.organisation, actor=actor, uavs=[PoolUav(HERE) for _ in range(count)], **values)
+
+
+def stand_ins(mission: Mission, actor: User, **more: Any) -> Simulation:
+    return start_simulated_flights(mission=mission_of_organisation(mission.organisation, mission.pk), actor=actor, sky=CALM, **more)
+
+
+def taken(holder: str = "one/a", *, most_load: float = 60.0, has_others: bool = False) -> Held | None:
+    return take_simulation(holder=holder, lease_s=5.0, most_load=most_load, has_others=has_others)
+
+
+def lose(simulation: Simulation, *, in_air: bool = False) -> None:
+    """Its simulator is dead: the lease runs out."""
+    Simulation.objects.filter(pk=simulation.pk).update(lease_expires_at=LONG_AGO)
+    simulation.vehicles.update(told={"is_in_air": in_air})
+
+
+def fresh(simulation: Simulation) -> Simulation:
+    return Simulation.objects.get(pk=simulation.pk)
