@@ -102,3 +102,14 @@ def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, planned: str
     assert page.request.patch(f"/api/v1/missions/{planned}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"}).ok
     opened(page, planned)
     expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Out of date.")
+
+
+def test_an_administrator_asks_for_rehearsals_before_approval(visitor: Visitor) -> None:
+    page = visitor.signs_in("ada")
+    page.goto("/administration?tab=rules")
+    page.locator("html[data-loaded]").wait_for(state="attached")
+    rule = page.get_by_role("switch", name="Approve only what has passed a rehearsal")
+    for wanted in (True, False):  # other tests approve without one
+        rule.set_checked(wanted)
+        expect(rule).to_be_enabled()
+        assert asks(page, "/rehearsal-rule") == {"requires_green": wanted}
