@@ -31,6 +31,7 @@ class Axis(StrEnum):
 
 AXES = {"upload-mission": Axis.MISSION, "clear-mission": Axis.MISSION, "change-speed": Axis.SPEED}
 SAFETY_RANKS = {"hold": 1, "return": 2, "land": 3, "abort": 4}
+HAND_OVER = "hand_over"  # a command's parameter: a step of giving its UAV another route
 SETS_IN_MOTION = frozenset({"arm", "take-off", "start", "resume"})
 
 

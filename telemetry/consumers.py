@@ -5,7 +5,6 @@ from uuid import UUID
 
 import orjson
 from channels.db import database_sync_to_async
-from django.conf import settings
 
 from missions.models import Mission
 from telemetry.live.feed import Feed
@@ -14,6 +13,7 @@ from telemetry.live.messages import message
 from telemetry.live.reader import Reader, SaysNonsense
 from workspace.models import User
 from workspace.sockets import NOTHING_TO_SAY, STILL_THERE_EVERY_S, SignedInSocket
+from workspace.spoken import language_of_socket
 
 LONGEST_WORD = 4_096  # characters that a page may say at once
 STALLED_S = 60.0  # a page that confirms nothing for so long is not there any more
@@ -46,7 +46,7 @@ class LiveConsumer(SignedInSocket):
             return
         await self.accept()
         self._hub = hub_here()
-        reader = self._reader = Reader(user.organisation_id, mission, user.language or settings.LANGUAGE_CODE)
+        reader = self._reader = Reader(user.organisation_id, mission, language_of_socket(user, self.scope))
         self._start(self._speak(reader, self._hub.join(reader)))
         self._start(self._watch_person(user))
 

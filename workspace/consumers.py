@@ -7,7 +7,6 @@ from uuid import UUID
 
 from channels.db import database_sync_to_async
 from channels.layers import get_channel_layer
-from django.conf import settings
 from django.core.serializers.json import DjangoJSONEncoder
 from django.db import Error as DatabaseError
 from django.utils import translation
@@ -18,6 +17,7 @@ from workspace.live import job_group
 from workspace.models import Job, User
 from workspace.serializers import JobSerializer
 from workspace.sockets import CHECK_PERSON_EVERY_S, ENDED, NOTHING_TO_SAY, SIGNED_OUT, STILL_THERE_EVERY_S, SignedInSocket
+from workspace.spoken import language_of_socket
 
 LOOK_EVERY_S = 1.0  # at the row, whether a word has come or not
 WORD_PAUSE_S = 0.1  # words that come close together are one look
@@ -101,5 +101,5 @@ class JobConsumer(SignedInSocket):
     @database_sync_to_async
     def _message(self, user: User) -> tuple[str, bool]:
         job = selectors.jobs_of_organisation(user.organisation).get(pk=self._job_id)
-        with translation.override(user.language or settings.LANGUAGE_CODE):
+        with translation.override(language_of_socket(user, self.scope)):
             return _encode({"type": "job", "job": JobSerializer(job).data}), job.is_open

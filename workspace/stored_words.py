@@ -59,6 +59,13 @@ TEMPLATES = (
     gettext_noop("The file could not be read."),
     gettext_noop("polygon is not closed"),
     gettext_noop("the border crosses itself"),
+    # of rehearsals in simulation
+    gettext_noop("Waiting for a worker"),
+    gettext_noop("Flying %(number)s of %(all)s"),
+    gettext_noop("Rehearsed"),
+    gettext_noop("The mission was changed while it was being rehearsed. Rehearse it again."),
+    gettext_noop("Not flown within %(minutes)s min. Rehearse fewer conditions at once, or split the mission."),
+    gettext_noop("The rehearsal failed inside Spanwise; the error is in the log."),
     # of offers of another plan while a mission flies
     gettext_noop("Working out what is left"),
     gettext_noop("Looking up what is left"),

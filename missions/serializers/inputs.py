@@ -394,6 +394,10 @@ class MissionCopySerializer(KnownFieldsSerializer):
     name = serializers.CharField(max_length=200, required=False, allow_blank=True, help_text="without one: the name with (copy)")
 
 
+class FollowUpSerializer(KnownFieldsSerializer):
+    name = serializers.CharField(max_length=200, required=False, allow_blank=True, help_text="without one: the name with “follow-up”")
+
+
 class MissionsInputSerializer(KnownFieldsSerializer):
     missions = serializers.ListField(child=serializers.UUIDField(), allow_empty=False, max_length=200)
 

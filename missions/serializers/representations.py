@@ -50,7 +50,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
         "targets": [_target(row) for row in mission.targets.all()],
         "plan": _plan(mission),
-        "last_plan": mission.last_plan,
+        "last_plan": mission.last_plan and {name: value for name, value in mission.last_plan.items() if name != "by_hand"},
         "planning_job": open_plan_of_mission(mission),
         "approval": _approval(mission),
     }

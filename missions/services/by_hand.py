@@ -8,9 +8,7 @@ from django.db import transaction
 from django.db.models import Q
 from django.utils.translation import gettext as _
 
-from inspection.geodesy import LonLat
-from inspection.models import Asset
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints
 from missions.models import Mission, Route, Waypoint
 from missions.services.hand_checks import (
     HIGHER_M,
@@ -21,11 +19,12 @@ from missions.services.hand_checks import (
     obstacle_faults,
     point_faults,
 )
+from missions.services.hand_legs import step_points, step_row
 from missions.services.hand_points import HandPoint, are_moved, list_faults, route_points
 from missions.services.kept_route import KeptWaypoint, kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.plan_json import PlannedRoute
-from missions.services.requests import InvalidRequest, task_from_json
+from missions.services.requests import InvalidRequest
 from missions.services.still_apart import separation_of_stored
 from workspace.models import User
 
@@ -46,10 +45,10 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
         _refuse(list_faults(points, until_now) or point_faults(points, until_now, ground))
         if len(route.before_hand) == MOST_STEPS:  # the route as planned is forgotten, and with it what was proven of it
             locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
-        route.before_hand = [*route.before_hand, [_step_row(row) for row in rows]][-MOST_STEPS:]
+        route.before_hand = [*route.before_hand, [step_row(row) for row in rows]][-MOST_STEPS:]
         moved = zip(points, are_moved(points, until_now), strict=True)
-        by_hand = {_place(point.position, point.agl_m) for point, is_moved in moved if is_moved or _is_by_hand(point, until_now)}
-        _fly(locked, route, uav, route_points(points, until_now), by_hand, ground)
+        by_hand = {place_of(point.position, point.agl_m) for point, is_moved in moved if is_moved or _is_by_hand(point, until_now)}
+        _fly(locked, route, route_points(points, until_now), by_hand, ground)
         note(locked, actor, "by-hand", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
 
@@ -61,9 +60,9 @@ def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revisi
         if not route.before_hand:
             raise InvalidRequest({"uav": _("No change by hand of this route can be taken back.")})
         *route.before_hand, rows = route.before_hand
-        points = _step_points(rows)
-        by_hand = {_place(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
-        _fly(locked, route, uav, RoutePoints.of(points), by_hand, hand_ground())
+        points = step_points(rows)
+        by_hand = {place_of(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
+        _fly(locked, route, RoutePoints.of(points), by_hand, hand_ground())
         note(locked, actor, "by-hand-undone", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
 
@@ -78,16 +77,26 @@ def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> 
     return locked, route
 
 
-def _fly(
-    locked: Mission, route: Route, uav: int, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: HandGround
-) -> None:
-    """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
+def checked_by_hand(locked: Mission, route: Route, wished: RoutePoints, ground: HandGround) -> PlannedRoute:
+    """The route over these points as it is flown. Raises InvalidRequest with the first thing that is wrong."""
     _refuse(obstacle_faults(wished, ground))
-    request = request_of_mission(mission=locked)
+    request, uav = request_of_mission(mission=locked), route.mission_uav.sequence
     flown = flown_by_hand(request, uav, wished, route.departs_s, ground)
     for faults in faults_as_flown(flown, wished, locked, request, uav, ground):
         _refuse(faults)
-    _store(locked, route, flown, by_hand)
+    return flown
+
+
+def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: HandGround) -> None:
+    """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
+    store_by_hand(locked, route, checked_by_hand(locked, route, wished, ground), by_hand)
+    settle_by_hand(locked)
+    locked.revision += 1
+    locked.save()
+
+
+def settle_by_hand(locked: Mission) -> None:
+    """What follows from changed routes on the mission; the caller saves it."""
     locked.total_length_m = round(sum(own.length_m for own in locked.routes.all()), 3)
     locked.longest_route_m = max(own.length_m for own in locked.routes.all())
     counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
@@ -95,8 +104,6 @@ def _fly(
     locked.separation = separation_of_stored(locked)
     check_lost_link(mission=locked)
     locked.plan_quality = _quality(locked)
-    locked.revision += 1
-    locked.save()
 
 
 def _quality(mission: Mission) -> dict[str, Any]:
@@ -109,42 +116,13 @@ def _quality(mission: Mission) -> dict[str, Any]:
     return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
 
 
-def _step_row(waypoint: Waypoint) -> dict[str, Any]:
-    """A waypoint as it is kept to be taken back to; its target by its place in the mission, which a copy shares."""
-    return {
-        "position": list(waypoint.position.coords),
-        "agl_m": waypoint.altitude_agl_m,
-        "kind": waypoint.kind,
-        "asset": waypoint.asset_id,
-        "target": None if waypoint.target is None else waypoint.target.sequence,
-        "task": waypoint.task,
-        "speed_mps": waypoint.speed_mps,
-        "is_by_hand": waypoint.is_by_hand,
-    }
-
-
-def _step_points(rows: Sequence[dict[str, Any]]) -> list[RoutePoint]:
-    there = set(Asset.objects.filter(pk__in={row["asset"] for row in rows} - {None}).values_list("pk", flat=True))
-    return [
-        RoutePoint(
-            LonLat(*row["position"]),
-            WaypointKind(row["kind"]),
-            row["agl_m"],
-            row["asset"] if row["asset"] in there else None,
-            row["target"],
-            task_from_json(row["task"]),
-            row["speed_mps"],
-        )
-        for row in rows
-    ]
-
-
 def _refuse(faults: dict[str, str]) -> None:
     if faults:
         raise InvalidRequest(faults)
 
 
-def _store(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
+def store_by_hand(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
+    """by_hand: places of the waypoints that a person changed, as `place_of` has them."""
     assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - just drawn
     targets: dict[int, int] = dict(mission.targets.values_list("sequence", "pk"))
     clock = flown.timing
@@ -171,7 +149,7 @@ def _store(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tup
                 used_wh=None if clock.used_wh is None else round(float(clock.used_wh[number]), 2),
                 battery_left_percent=None if clock.battery_left_percent is None else round(float(clock.battery_left_percent[number]), 1),
                 speed_mps=waypoint.point.speed_mps,
-                is_by_hand=waypoint.point.speed_mps is not None or _place(waypoint.point.position, waypoint.point.agl_m) in by_hand,
+                is_by_hand=waypoint.point.speed_mps is not None or place_of(waypoint.point.position, waypoint.point.agl_m) in by_hand,
             )
             for number, waypoint in enumerate(flown.waypoints)
         ),
@@ -198,5 +176,5 @@ def _is_same_speed(one_mps: float | None, other_mps: float | None) -> bool:
     return abs(one_mps - other_mps) < SAME_SPEED_MPS
 
 
-def _place(position: LonLat, agl_m: float) -> tuple[float, float, float]:
-    return round(position.lon, 9), round(position.lat, 9), round(agl_m, 2)
+def place_of(position: Sequence[float], agl_m: float) -> tuple[float, float, float]:
+    return round(position[0], 9), round(position[1], 9), round(agl_m, 2)

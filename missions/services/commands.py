@@ -7,11 +7,12 @@ from uuid import UUID
 
 from django.db import transaction
 
+from missions.command_rules import HAND_OVER
 from missions.models import CommandKind, Mission, UavCommand
 from missions.services import outbox
 from missions.services.approval import finish_revocation
 from missions.services.flying import mark_started
-from missions.services.handover import HAND_OVER, go_on_after
+from missions.services.handover import go_on_after
 from missions.services.outbox import (
     CHANNEL,
     claim_commands,

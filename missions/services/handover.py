@@ -4,11 +4,11 @@ Each step is given when the one before was seen to be done, in the same transact
 flight meanwhile ends it: that command counts. Where a step fails the UAV stays where it is held.
 """
 
+from missions.command_rules import HAND_OVER
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Route, Uav, UavCommand
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import SUPERSEDED, queue_command
 
-HAND_OVER = "hand_over"  # a command's parameter: a step of this
 NEXT = {CommandKind.HOLD: CommandKind.UPLOAD_MISSION, CommandKind.UPLOAD_MISSION: CommandKind.START}
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from inspection.geodesy import distance_m
 from missions.models import EndAction, InspectionTarget, Mission, Route, Waypoint, WaypointKind
+from missions.services.hand_legs import hand_legs_json
 
 OFF_NETWORK = {WaypointKind.START, WaypointKind.END}
 
@@ -28,6 +29,7 @@ def summary_of_plan(*, mission: Mission) -> dict[str, Any] | None:
         "duration_s": max((route["duration_s"] for route in summaries), default=0.0),
         "routes": summaries,
         "unassigned": [_target(target) for target in targets.values() if target.unassigned_reason],
+        "by_hand": hand_legs_json(mission),
     }
 
 

@@ -12,6 +12,7 @@ from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.routing.solver import Stop
 from missions.services.best_so_far import OnPlanProgress
+from missions.services.kept_by_hand import keep_by_hand
 from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission
 from missions.services.plan_json import NO_SHORTFALL
 from missions.services.planning import make_plan
@@ -128,6 +129,8 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
         locked.save()
         _store_routes(locked, plan)
         _store_left_out(locked, plan)
+        kept_by_hand = keep_by_hand(locked)
+        locked.save()
         record_change(
             organisation=locked.organisation,
             actor=actor,
@@ -140,6 +143,7 @@ def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dic
                 "total_length_m": locked.total_length_m,
                 "graph_version": locked.graph_version,
                 "unassigned": len(plan["unassigned"]),
+                "by_hand": kept_by_hand,
             },
         )
     return locked

@@ -2,7 +2,14 @@
 
 from missions.views.credentials import UavCredentialDetail, UavCredentials
 from missions.views.fleet import BaseDetail, BaseList, BaseRestore, UavTypeDetail, UavTypeList, UavTypeRestore
-from missions.views.mission_sets import MissionDuplicate, MissionFilterChoices, MissionPresence, MissionsDelete, MissionsRestore
+from missions.views.mission_sets import (
+    MissionDuplicate,
+    MissionFilterChoices,
+    MissionFollowUp,
+    MissionPresence,
+    MissionsDelete,
+    MissionsRestore,
+)
 from missions.views.missions import MissionDetail, MissionHistory, MissionList, MissionPlan, MissionRestore
 from missions.views.plans import PlanList
 from missions.views.uavs import UavDetail, UavList, UavMissions, UavRestore
@@ -14,6 +21,7 @@ __all__ = [
     "MissionDetail",
     "MissionDuplicate",
     "MissionFilterChoices",
+    "MissionFollowUp",
     "MissionHistory",
     "MissionList",
     "MissionPlan",

@@ -15,9 +15,11 @@ from missions.list_selectors import choices_of_filters
 from missions.models import Mission
 from missions.presence import report_presence
 from missions.serializers import inputs, shapes
+from missions.services.follow_ups import draft_follow_up
 from missions.uav_change_selectors import uav_change_json, uav_changes
+from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404
-from missions.views.problems import api_problems
+from missions.views.problems import api_problems, refusals
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Role
@@ -47,6 +49,24 @@ class MissionDuplicate(APIView):
         serializer.is_valid(raise_exception=True)
         copy = services.duplicate_mission(mission=mission, author=request.user, name=serializer.validated_data.get("name", ""))
         return answer_mission(request.user, copy.pk, status=201)
+
+
+class MissionFollowUp(APIView):
+    @extend_schema(
+        operation_id="draft_follow_up",
+        summary="A draft with the targets that a mission missed",
+        description="With its UAVs and wishes, and no departure. Only of a mission that is over; what another one took over stays there.",
+        request=inputs.FollowUpSerializer,
+        responses={201: shapes.MissionSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: Request, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        serializer = inputs.FollowUpSerializer(data=request.data)
+        serializer.is_valid(raise_exception=True)
+        with api_problems(), refusals():
+            draft = draft_follow_up(mission=mission, author=request.user, name=serializer.validated_data.get("name", ""))
+        return answer_mission(request.user, draft.pk, status=201)
 
 
 def _each(request: Request, do: Callable[[Mission], object], *, deleted: bool) -> Response:

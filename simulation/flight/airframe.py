@@ -7,7 +7,7 @@ from dataclasses import dataclass
 class Airframe:
     """What the autopilot has to know of a model file; the file has the physics, and names the source of each figure.
 
-    max_airspeed_mps       flown by the governor; the tilt limit leaves some more
+    max_airspeed_mps       what plans may count on; the tilt limit leaves some more, for gusts
     max_speed_mps          over ground, whatever a mission asks for
     acceleration_mps2      along a straight leg, speeding up and slowing down
     corner_mps2            across, in the rounded corner before a waypoint that is passed

@@ -94,11 +94,11 @@ class Guidance:
         """The reference stands where the course ends."""
         return self._reference is None or (self._reference.is_at_end and not self._pending)
 
-    def step(self, dt_s: float, here: Vector, *, agl_m: float, effort: float) -> Command:
+    def step(self, dt_s: float, here: Vector, *, above_m: float, effort: float) -> Command:
         rules, reference = self._rules, self._reference
         self.marks = []
         if reference is None:
-            command = self._to_place(here, agl_m)
+            command = self._to_place(here, above_m)
             self._governor.step(dt_s, lag_m=0.0, beside_m=0.0, effort=effort)
             return command
         away = (reference.place[0] - here[0], reference.place[1] - here[1], reference.place[2] - here[2])
@@ -134,11 +134,11 @@ class Guidance:
             east, north = east * rules.most_pull_mps / strength, north * rules.most_pull_mps / strength
         return east, north, min(max(rules.lift_per_s * up_m, -rules.most_lift_mps), rules.most_lift_mps)
 
-    def _to_place(self, here: Vector, agl_m: float) -> Command:
+    def _to_place(self, here: Vector, above_m: float) -> Command:
         away = (self._place[0] - here[0], self._place[1] - here[1], self._place[2] - here[2])
         east, north, up = self._pull(*away)
         self.off_m = math.sqrt(away[0] ** 2 + away[1] ** 2 + away[2] ** 2)
         if self._is_descending:
             rules = self._rules
-            up = -min(self._airframe.descent_mps, max(rules.slow_landing_mps, rules.landing_slope_per_s * agl_m))
+            up = -min(self._airframe.descent_mps, max(rules.slow_landing_mps, rules.landing_slope_per_s * above_m))
         return Command((east, north, up), STILL, STILL)

@@ -33,8 +33,11 @@ class Mission:
         return self._part is not None and self._part.is_landing
 
     def begin(self, cockpit: Cockpit) -> None:
-        """From where the UAV is; what was under way before is begun again."""
+        """From where the UAV is; what was under way before is begun again, looking where the items before it had it look."""
         self._part, self._waits_until_s, self._run_end = None, None, None
+        looks = [order for order in self.orders[: self.index] if isinstance(order, flown.LookAt)]
+        if looks:
+            self._do(cockpit, looks[-1])
         if cockpit.is_in_air:
             cockpit.stand()
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from django.utils.formats import get_format
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
@@ -14,6 +15,7 @@ SENTENCES = {
     "unfinished": gettext_noop("%(name)s did not come to the end of its flight%(flight)s. %(said)s"),
     "refused": gettext_noop("%(name)s did not take off%(flight)s. %(said)s"),
     "not-begun": gettext_noop("%(name)s did not begin flight %(number)s: the one before it did not end well."),
+    "wind": gettext_noop("wind of %(wind)s m/s at %(agl)s m, the simulated airframe flies %(limit)s m/s"),
     "reserve": gettext_noop("%(percent)s %% battery at return%(flight)s, limit %(limit)s %%"),
     "reserve-near": gettext_noop("%(percent)s %% battery at return%(flight)s, little above the limit of %(limit)s %%"),
     "across": gettext_noop("%(metres)s m off its line on the way to waypoint %(waypoint)s, limit %(limit)s m"),
@@ -31,8 +33,8 @@ SENTENCES = {
     "obstacle-column": gettext_noop("takes off or lands %(metres)s m from a tower or wire, limit %(limit)s m"),
     "apart": gettext_noop("%(metres)s m from %(other)s in the air, limit %(limit)s m"),
 }
-DIGITS = {"metres": 1, "limit": 0, "percent": 0, "seconds": 0, "held": 0, "hold": 0}
-LIMITS = ("limit_m", "limit_percent", "limit_s")
+DIGITS = {"metres": 1, "limit": 0, "percent": 0, "seconds": 0, "held": 0, "hold": 0, "wind": 1, "agl": 0}
+LIMITS = ("limit_m", "limit_percent", "limit_s", "limit_mps")
 
 
 def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
@@ -40,6 +42,7 @@ def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
     facts = dict(finding["facts"])
     facts["limit"] = next((facts[name] for name in LIMITS if name in facts), None)
     facts["held"], facts["hold"] = facts.get("held_s"), facts.get("hold_s")
+    facts["wind"], facts["agl"] = facts.get("wind_mps"), facts.get("agl_m")
     facts["number"] = facts.get("flight")
     facts["other"] = names.get(facts.get("other", -1), "")
     facts["said"] = in_words(str(facts.get("said") or ""))
@@ -71,5 +74,5 @@ def _number_of(waypoint: int | None) -> str:
 def _shown(name: str, value: Any) -> Any:
     if isinstance(value, float) and name in DIGITS:
         text = f"{value:.{DIGITS[name]}f}"
-        return text.replace(".", _(".")) if "." in text else text
+        return text.replace(".", get_format("DECIMAL_SEPARATOR"))
     return value

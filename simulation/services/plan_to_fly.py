@@ -5,7 +5,10 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 
+from inspection.geodesy import LonLat
+from inspection.models import AssetKind
 from missions.flight_plan.conditions import Conditions, conditions_from_json
+from missions.flight_plan.heights import asset_height_m
 from missions.flight_plan.performance import performance_from_json
 from missions.mavlink.content import FlightLoad, load_from_json
 from missions.mavlink.frozen import FrozenRoute, NotARoute, route_from_json
@@ -28,6 +31,7 @@ class PlanToFly:
     conditions: Conditions
     departs_s: float | None
     content_sha256: str
+    inspected: tuple[tuple[LonLat, float], ...] = ()  # towers that are targets, and how tall they are taken to be there [m]
 
 
 def plan_to_fly(mission: Mission) -> PlanToFly:
@@ -54,7 +58,19 @@ def plan_to_fly(mission: Mission) -> PlanToFly:
         raise Refused(reasons)
     departs_s = departure_s(mission)
     content = content_of(routes, [one.airframe for one in stand_ins], [one.battery_wh for one in stand_ins], departs_s)
-    return PlanToFly(tuple(routes), tuple(stand_ins), conditions_from_json(mission.conditions or None), departs_s, content)
+    conditions = conditions_from_json(mission.conditions or None)
+    return PlanToFly(tuple(routes), tuple(stand_ins), conditions, departs_s, content, _inspected(mission))
+
+
+def _inspected(mission: Mission) -> tuple[tuple[LonLat, float], ...]:
+    towers = [target.asset for target in mission.targets.all() if target.asset is not None and target.asset.kind == AssetKind.TOWER]
+    return tuple(
+        (
+            LonLat(*tower.centre.coords[:2]),
+            asset_height_m(kind=tower.kind, subtype=tower.subtype, tagged_m=tower.height_m, voltage_v=tower.max_voltage_v),
+        )
+        for tower in towers
+    )
 
 
 def _made(route: FrozenRoute) -> tuple[FrozenRoute, tuple[FlightLoad, ...]]:

@@ -13,6 +13,7 @@ from inspection.selectors.planning import PlanningGround, heights_at, planning_r
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
 from missions.services.missions import note
+from simulation.flight.airframe import AIRFRAMES
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from simulation.rehearsing.flying import fly
 from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
@@ -20,11 +21,12 @@ from simulation.services.fleet import stand_in_to_json
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import surroundings_of
 from simulation.services.vehicles import vehicle_maker
-from simulation.verdict.finding import Level, worst
+from simulation.verdict.finding import Finding, Level, worst
 from simulation.verdict.flown import FlownRoute
 from simulation.verdict.judging import Verdict, judge
 from simulation.verdict.limits import Limits, limits_to_json
 from simulation.verdict.stored import track_to_json, verdict_to_json
+from simulation.verdict.wind import wind_finding
 from workspace.models import Job, User
 from workspace.services import cancel_job, create_job_within, finish_job
 
@@ -88,7 +90,7 @@ def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
     runs = list(rehearsal.runs.all())
     for number, run in enumerate(runs):
         if run.finished_at is None:
-            share = _shares(progress, number, len(runs), str(run.conditions["code"]))
+            share = _shares(progress, number, len(runs))
             _fly_run(run, plan, planning_read().ground(), rehearsal.seed, share)
     _finish(rehearsal.pk, job)
 
@@ -97,9 +99,9 @@ def limits_of_settings() -> Limits:
     return Limits.of(settings.FLIGHT_RULES, settings.SEPARATION_RULES, zone_height_m=settings.ZONE_RULES.height_margin_m)
 
 
-def _shares(progress: OnProgress, number: int, runs: int, code: str) -> Callable[[float], None]:
+def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], None]:
     def told(share: float) -> None:
-        progress(f"Flying {number + 1} of {runs}: {code}", (number + share) / runs)
+        progress(f"Flying {number + 1} of {runs}", (number + share) / runs)
 
     return told
 
@@ -110,8 +112,17 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
     maker = vehicle_maker(plan.stand_ins, sky, heights_at(ground.edition))
     on_progress(0.0)
     flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
-    verdict = judge(flown, surroundings_of(plan.routes, ground, plan.departs_s), limits_of_settings())
+    around = surroundings_of(plan, ground)
+    verdict = judge(flown, around, limits_of_settings(), known=_too_windy(plan, sky))
     _store(run, flown, verdict, time.monotonic() - began_s)
+
+
+def _too_windy(plan: PlanToFly, sky: Sky) -> list[Finding]:
+    found = (
+        wind_finding(route.uav, route.route, sky.conditions, AIRFRAMES[stand_in.airframe].max_airspeed_mps)
+        for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
+    )
+    return [finding for finding in found if finding is not None]
 
 
 def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, took_s: float) -> None:

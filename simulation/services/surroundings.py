@@ -5,42 +5,51 @@ import numpy as np
 from inspection.graph.spans import Spans, spans_of
 from inspection.selectors import NoGraph
 from inspection.selectors.planning import PlanningGround, heights_at
-from simulation.rehearsing.flying import RouteToFly
 from simulation.rehearsing.ground import Heights
+from simulation.services.plan_to_fly import PlanToFly
 from simulation.verdict.flown import FloatArray
 from simulation.verdict.judging import Surroundings
 from simulation.verdict.obstacles import Standing
 
+SAME_DEG = 1e-6
 BESIDE_DEG = 0.01  # some kilometre beside the waypoints: flights that stray farther have failed by then
 NO_PLACES = np.zeros((0, 2))
 NOTHING_STANDS = Standing(NO_PLACES, NO_PLACES, np.zeros(0), np.zeros(0))
 
 
-def surroundings_of(routes: tuple[RouteToFly, ...], ground: PlanningGround, departs_s: float | None) -> Surroundings:
+def surroundings_of(plan: PlanToFly, ground: PlanningGround) -> Surroundings:
     terrain = heights_at(ground.edition)
-    return Surroundings(ground.table, _standing(routes, ground, terrain), _flat if terrain is None else terrain, departs_s)
-
-
-def take_off_amsl_m(amsl_m: float | None) -> float:
-    """Of a plan over assumed flat ground, heights count from 0."""
-    return 0.0 if amsl_m is None else amsl_m
+    return Surroundings(ground.table, _standing(plan, ground, terrain), _flat if terrain is None else terrain, plan.departs_s)
 
 
 def _flat(positions: FloatArray) -> FloatArray:
     return np.zeros(len(positions))
 
 
-def _standing(routes: tuple[RouteToFly, ...], ground: PlanningGround, terrain: Heights | None) -> Standing:
-    """Near the routes, with tops above sea level; without a network nothing is known to stand."""
+def _standing(plan: PlanToFly, ground: PlanningGround, terrain: Heights | None) -> Standing:
+    """Near the routes, with tops above sea level; without a network nothing is known to stand.
+
+    The network takes every support without a height for a tall one. What is inspected is taken to be as tall as the plan flies over it.
+    """
     try:
         spans = spans_of(ground.network())
     except NoGraph:
         return NOTHING_STANDS
-    places = np.array([waypoint.position for route in routes for waypoint in route.route.waypoints])
+    places = np.array([waypoint.position for route in plan.routes for waypoint in route.route.waypoints])
     near = _near(spans, places)
     start, end = spans.start[near], spans.end[near]
     at_start, at_end = (_flat(start), _flat(end)) if terrain is None else (terrain(start), terrain(end))
-    return Standing(start, end, at_start + spans.start_height_m[near], at_end + spans.end_height_m[near])
+    start_m, end_m = _as_planned(start, spans.start_height_m[near], plan), _as_planned(end, spans.end_height_m[near], plan)
+    return Standing(start, end, at_start + start_m, at_end + end_m)
+
+
+def _as_planned(places: FloatArray, heights_m: FloatArray, plan: PlanToFly) -> FloatArray:
+    """Heights above ground, (k,), of what stands at places, (k, 2)."""
+    found = heights_m.copy()
+    for position, height_m in plan.inspected:
+        is_there = (np.abs(places - np.array(position)) <= SAME_DEG).all(axis=1)
+        found[is_there] = np.minimum(found[is_there], height_m)
+    return found
 
 
 def _near(spans: Spans, places: FloatArray) -> np.ndarray[tuple[int, ...], np.dtype[np.intp]]:

@@ -1,5 +1,6 @@
 """A batch of simulated UAVs in one process, at one pace: a step for all of them, then the ears until the next."""
 
+import logging
 import selectors
 import time
 from collections.abc import Callable, Sequence
@@ -10,6 +11,8 @@ from simulation.flight.faults import Faults
 from simulation.flight.weather import Weather
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_protocol.pace import Pace
+
+logger = logging.getLogger(__name__)
 
 STEP_S = 0.04  # of simulated time, as SimulatedUav has it
 SLOWEST, FASTEST = 0.1, 60.0
@@ -31,7 +34,10 @@ class Change:
 
 @dataclass(frozen=True)
 class FleetReport:
-    """How the pace was kept: `latest_s` by how much the latest step began too late, `slipped_s` what was never made up for, on the wall."""
+    """How the pace was kept: `latest_s` by how much the latest step began too late, `slipped_s` what was never made up for, on the wall.
+
+    `failed` UAVs have fallen out of the batch by a fault of the program.
+    """
 
     uavs: int
     simulated_s: float
@@ -42,6 +48,7 @@ class FleetReport:
     slipped_s: float
     sent: int
     heard: int
+    failed: int
 
 
 @dataclass
@@ -50,6 +57,7 @@ class Fleet:
 
     uavs: Sequence[FlyingUav]
     speed: float = 1.0
+    _failed: set[int] = field(default_factory=set)
     _changes: SimpleQueue[Change] = field(default_factory=SimpleQueue)
     _is_ended: bool = False
 
@@ -73,17 +81,18 @@ class Fleet:
         self._began_s = time.monotonic()
         self._pace = Pace(STEP_S, self._pace.speed, self._began_s)
         with selectors.DefaultSelector() as selector:
-            for uav in self.uavs:
+            for uav in self._flying():
                 selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
             while not self._is_ended:
                 if self._pace.begin(time.monotonic()):
                     self._make_changes()
-                    for uav in self.uavs:
-                        uav.step()
+                    for uav in self._flying():
+                        self._guarded(uav, uav.step)
                     if until():
                         break
                 for key, _ in selector.select(max(self._pace.next_s - time.monotonic(), 0.0)):
-                    key.data.hear()
+                    if not self._guarded(key.data, key.data.hear):
+                        selector.unregister(key.fileobj)
         return self.report()
 
     def close(self) -> None:
@@ -102,7 +111,21 @@ class Fleet:
             slipped_s=round(pace.slipped_s, 3),
             sent=sum(uav.sent for uav in self.uavs),
             heard=sum(uav.heard for uav in self.uavs),
+            failed=len(self._failed),
         )
+
+    def _flying(self) -> list[FlyingUav]:
+        return [uav for uav in self.uavs if uav.system not in self._failed]
+
+    def _guarded(self, uav: FlyingUav, work: Callable[[], None]) -> bool:
+        """A fault of the program costs the UAV that it befell, not the batch."""
+        if uav.system not in self._failed:
+            try:
+                work()
+            except Exception:
+                logger.exception("simulated UAV %s has fallen out of its batch", uav.system)
+                self._failed.add(uav.system)
+        return uav.system not in self._failed
 
     def _make_changes(self) -> None:
         while True:
@@ -112,7 +135,7 @@ class Fleet:
                 return
             if change.speed is not None:
                 self._pace.change(change.speed, time.monotonic())
-            for uav in self.uavs:
+            for uav in self._flying():
                 if change.system in (None, uav.system):
                     faults = None if change.faults is None else change.faults(uav.uav.faults, uav.uav.now_s)
                     uav.change(weather=change.weather, faults=faults)

@@ -47,7 +47,7 @@ class Endpoint:
         self.flavour = flavour
         self.system = system
         self.unix_at_zero_s = unix_at_zero_s
-        settings = settings_at_start(flavour, vehicle.settings)
+        settings = settings_at_start(vehicle.settings)
         vehicle.settings = settings
         self.pilot = Pilot(vehicle, flavour)
         self.parameters = parameters_of(flavour, system, settings, self._configure)
@@ -93,7 +93,12 @@ class Endpoint:
         try:
             command = command_of(message)
             answer = self._requests.answer(command)
-            result, wanted = (self.pilot.carry_out(command), []) if answer is None else answer
+            if answer is not None:
+                result, wanted = answer
+            elif command.number == mavlink.MAV_CMD_DO_FENCE_ENABLE:
+                result = self._fence.switch(command.whole(1))
+            else:
+                result = self.pilot.carry_out(command)
         except NotFinite:
             result = DENIED
         except (ValueError, ArithmeticError):  # of a figure that nobody thought of
@@ -133,6 +138,7 @@ class Endpoint:
         if kind is MissionType.FENCE:
             self._fence.fence = fence_of(items)
         if kind is not MissionType.MISSION:
+            self.parameters.show(f"{kind.name}_TOTAL", float(len(items)))
             return int(mavlink.MAV_MISSION_ACCEPTED)
         is_flown = self.vehicle.state.is_armed and self.pilot.custom_mode == AUTO
         if self.flavour is Flavour.ARDUPILOT and not items and is_flown:

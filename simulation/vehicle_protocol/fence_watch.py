@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from inspection.geodesy import LonLat
 from simulation.flight.states import Mode
 from simulation.vehicle_protocol.fence import Fence
@@ -45,6 +47,15 @@ class FenceWatch:
         was_broken = self.is_broken
         self.is_broken = is_in_air and self.is_enabled and self.fence.is_broken_at(place)
         return self.action if self.is_broken and not was_broken else FenceAction.NONE
+
+    def switch(self, wanted: int | None) -> int:
+        """As DO_FENCE_ENABLE asks: a MAV_RESULT. PX4 knows no such command."""
+        if self.flavour is Flavour.PX4:
+            return int(mavlink.MAV_RESULT_UNSUPPORTED)
+        if wanted not in (0, 1):
+            return int(mavlink.MAV_RESULT_DENIED)
+        self.parameters.show("FENCE_ENABLE", float(wanted))
+        return int(mavlink.MAV_RESULT_ACCEPTED)
 
     @property
     def is_enabled(self) -> bool:

@@ -86,7 +86,7 @@ class MissionServer:
         if flown > MOST_ITEMS[self.flavour][kind]:
             return [_ack(mavlink.MAV_MISSION_NO_SPACE, kind, station)]
         if message.count == 0:
-            return [_ack(self._put(kind, ()), kind, station)]
+            return [_ack(self.put(kind, ()), kind, station)]
         self._upload = _Upload(station, kind, message.count, now_s)
         return self._ask(self._upload, now_s)
 
@@ -113,12 +113,13 @@ class MissionServer:
         self._upload = None
         items = tuple(upload.items[self._first(upload.kind) :])
         result = refusal_of_list(items, upload.kind)
-        result = self._put(upload.kind, items) if result is None else result
+        result = self.put(upload.kind, items) if result is None else result
         if result == ACCEPTED:
             self._done = (upload.station, upload.kind, upload.count - 1)
         return [_ack(result, upload.kind, upload.station)]
 
-    def _put(self, kind: MissionType, items: tuple[MissionItem, ...]) -> int:
+    def put(self, kind: MissionType, items: tuple[MissionItem, ...]) -> int:
+        """In place of the list that is held, or, with any other result than ACCEPTED, not at all."""
         result = self.replace(kind, items)
         if result == ACCEPTED:
             self.held[kind] = items
@@ -144,7 +145,7 @@ class MissionServer:
             return [_ack(mavlink.MAV_MISSION_UNSUPPORTED, mission_type, station)]
         if self._upload is not None:
             return [_ack(mavlink.MAV_MISSION_ERROR, mission_type, station)]
-        results = [self._put(kind, ()) for kind in kinds]
+        results = [self.put(kind, ()) for kind in kinds]
         return [_ack(next((result for result in results if result != ACCEPTED), ACCEPTED), mission_type, station)]
 
     # A list goes out

@@ -47,8 +47,10 @@ def fixed(name: str, value: float) -> Parameter:
 PX4 = (
     Parameter("MIS_TAKEOFF_ALT", 1.0, 80.0, "take_off_height_m"),
     Parameter("RTL_RETURN_ALT", 0.0, 150.0, "return_height_m"),
-    Parameter("RTL_MIN_DIST", 0.0, 100.0, "return_near_m"),
+    fixed("RTL_MIN_DIST", 0.0),
+    fixed("RTL_CONE_ANG", 0.0),
     fixed("RTL_TYPE", 0.0),
+    fixed("GF_AVOID_NODES", 0.0),
     fixed("MIS_DIST_1WP", 0.0),  # not limited
     fixed("MIS_DIST_WPS", 0.0),
     Parameter("NAV_ACC_RAD", 0.5, 50.0, "acceptance_m"),
@@ -62,6 +64,10 @@ ARDUPILOT = (
     fixed("RTL_CLIMB_MIN", 0.0),
     fixed("RTL_CONE_SLOPE", 0.0),
     fixed("RTL_ALT_TYPE", 0.0),
+    fixed("OA_TYPE", 0.0),
+    fixed("RALLY_INCL_HOME", 1.0),
+    fixed("RALLY_TOTAL", 0.0),
+    fixed("FENCE_TOTAL", 0.0),
     fixed("MIS_RESTART", 0.0),
     fixed("AUTO_OPTIONS", 2.0),  # takes off in AUTO without a stick being moved
     fixed("FS_GCS_ENABLE", 0.0),
@@ -69,13 +75,14 @@ ARDUPILOT = (
     Parameter("DISARM_DELAY", 1.0, 127.0, "disarm_on_ground_s"),
     Parameter("FENCE_ENABLE", 0.0, 1.0, value=1.0),
     Parameter("FENCE_ACTION", 0.0, 4.0, value=4.0),
+    fixed("FENCE_AUTOENABLE", 0.0),
     fixed("FENCE_TYPE", 4.0),  # polygons and circles
 )
 
 
-def settings_at_start(flavour: Flavour, settings: Settings) -> Settings:
-    """ArduPilot climbs to its height of return however near home it is (RTL_CONE_SLOPE 0)."""
-    return settings if flavour is Flavour.PX4 else replace(settings, return_near_m=0.0)
+def settings_at_start(settings: Settings) -> Settings:
+    """It climbs to its height of return however near home it is: RTL_CONE_ANG and RTL_CONE_SLOPE are 0."""
+    return replace(settings, return_near_m=0.0)
 
 
 def parameters_of(flavour: Flavour, system: int, settings: Settings, configure: Configure) -> "Parameters":
@@ -99,6 +106,11 @@ class Parameters:
 
     def __contains__(self, name: str) -> bool:
         return name in self._values
+
+    def show(self, name: str, value: float) -> None:
+        """What one of this name, if there is one, tells from now on; not for those that show a setting."""
+        if name in self._values:
+            self._values[name] = value
 
     def receive(self, message: Any, station: Station) -> list[Outgoing]:
         name = message.get_type()

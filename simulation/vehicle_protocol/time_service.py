@@ -14,7 +14,7 @@ def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoi
     if message.tc1 != 0:
         return []
     now_ns = min(int(now_s * 1e9), _LARGEST_NS)
-    return [Outgoing(mavlink.MAVLink_timesync_message(now_ns, message.ts1, *station.ends), station)]
+    return [Outgoing(mavlink.MAVLink_timesync_message(now_ns, message.ts1), station)]
 
 
 def ping_answer(message: Any, station: Station) -> list[Outgoing]:

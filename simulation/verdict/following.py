@@ -61,7 +61,7 @@ def errors_along(flight: Flight, track: FlownTrack) -> tuple[FloatArray, FloatAr
     flown, relative_m, to = frame.to_metres(track.position[counted]), track.relative_m[counted], place[counted]
     across_m, height_m = _from_leg(flown, relative_m, line, level_m, to)
     before_across, before_height = _from_leg(flown, relative_m, line, level_m, np.maximum(to - 1, 1))
-    is_cut = before_across < across_m
+    is_cut = np.hypot(before_across, before_height) < np.hypot(across_m, height_m)
     sequences = np.array([waypoint.sequence for waypoint in flight.waypoints], dtype=np.float64)
     return np.where(is_cut, before_across, across_m), np.where(is_cut, before_height, height_m), sequences[to]
 

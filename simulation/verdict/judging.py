@@ -80,9 +80,10 @@ class Verdict:
     meetings: tuple[Meeting, ...]
 
 
-def judge(routes: Sequence[FlownRoute], around: Surroundings, limits: Limits) -> Verdict:
+def judge(routes: Sequence[FlownRoute], around: Surroundings, limits: Limits, *, known: Sequence[Finding] = ()) -> Verdict:
+    """known: findings that were there before the flight, such as a wind that the airframe cannot fly in."""
     meetings = meetings_of(routes, step_s=MEETING_STEP_S)
-    findings = list(_of_meetings(meetings, limits))
+    findings = [*known, *_of_meetings(meetings, limits)]
     verdicts = []
     for route in routes:
         told, verdict = _of_route(route, around, limits, [finding for finding in findings if finding.uav == route.uav])

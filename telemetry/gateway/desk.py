@@ -14,7 +14,7 @@ from uuid import UUID
 from django.conf import settings
 
 from missions.command_rules import SETS_IN_MOTION
-from missions.models import CommandAxis, CommandPriority, LinkKind, UavCommand
+from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
@@ -78,7 +78,7 @@ class Desk:
             await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
             await self._claim(served, CommandAxis.SPEED, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
         if unheard:
-            await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), at_least=CommandPriority.SAFETY, is_blind=True)
+            await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), is_blind=True)
         self._begin()
 
     async def _claim(
@@ -87,7 +87,6 @@ class Desk:
         axis: CommandAxis,
         room: int,
         *,
-        at_least: CommandPriority | None = None,
         is_blind: bool = False,
     ) -> None:
         """Uploads no more than may begin; what stops a UAV never waits for room."""
@@ -96,7 +95,7 @@ class Desk:
         asked_s = time.monotonic()
         claimed = await self.database.run(
             claim_commands, uav_ids=list(sessions), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK,
-            axes=[axis], at_least=at_least,
+            axes=[axis], to_unheard=is_blind,
         )  # fmt: skip
         for command in claimed:
             session, until_s = sessions[command.uav_id], held_until_s(asked_s, self.lease_s)

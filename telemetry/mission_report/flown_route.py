@@ -1,7 +1,7 @@
 """How a route was flown: beside which leg, how far off it and how much too high or too low."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -36,10 +36,20 @@ class FlownLeg:
 
 
 @dataclass(frozen=True, slots=True)
+class FlownStage:
+    """All legs of one flight from a target, or its take-off, to the next; without a target the rest. `flight` counts from 1."""
+
+    flight: int
+    target: int | None
+    whole: FlownLeg
+
+
+@dataclass(frozen=True, slots=True)
 class FlownRoute:
     """A whole route. flown_m is the length of the track as it was reported; reports are those in the air."""
 
     legs: tuple[FlownLeg, ...]
+    stages: tuple[FlownStage, ...]
     reports: int
     began_s: float | None
     ended_s: float | None
@@ -63,16 +73,20 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
     """fixes: of its UAV in this mission, in order."""
     in_air = [fix for fix in fixes if fix.is_in_air is not False]
     legs: list[FlownLeg] = []
+    stages: list[FlownStage] = []
     seen: list[_Seen] = []
     for flight, own in zip(route.flights, _by_flight(route.flights, in_air), strict=True):
         line = RouteLine(flight, route.charging_stops)
         on_line = _on_line(line, own)
         seen += on_line
-        legs += [_leg(line, number, on_line) for number in range(len(line.vertices) - 1)]
+        by_leg = [[one for one in on_line if one.place.leg == number] for number in range(len(line.vertices) - 1)]
+        legs += [_between(line, number, number + 1, own) for number, own in enumerate(by_leg)]
+        stages += _stages(flight, line, by_leg)
     across_m, height_m = _errors(seen)
     batteries = [fix.battery_percent for fix in fixes if fix.battery_percent is not None]
     return FlownRoute(
         legs=tuple(legs),
+        stages=tuple(stages),
         reports=len(in_air),
         began_s=in_air[0].at_s if in_air else None,
         ended_s=in_air[-1].at_s if in_air else None,
@@ -118,16 +132,25 @@ def _height_error_m(line: RouteLine, place: Place, altitude_m: float | None) -> 
     return max(lowest_m - altitude_m, altitude_m - highest_m, 0.0)
 
 
-def _leg(line: RouteLine, number: int, seen: Sequence[_Seen]) -> FlownLeg:
-    own = [one for one in seen if one.place.leg == number]
+def _stages(flight: Flight, line: RouteLine, by_leg: Sequence[Sequence[_Seen]]) -> Iterator[FlownStage]:
+    begin, last = 0, len(flight.waypoints) - 1
+    for end, waypoint in enumerate(flight.waypoints):
+        if end > begin and (waypoint.target is not None or end == last):
+            own = [one for leg in by_leg[begin:end] for one in leg]
+            yield FlownStage(flight.number + 1, waypoint.target, _between(line, begin, end, own))
+            begin = end
+
+
+def _between(line: RouteLine, begin: int, end: int, own: Sequence[_Seen]) -> FlownLeg:
+    """The way between two vertices of the line; own: what was seen on it."""
     across_m, height_m = _errors(own)
     return FlownLeg(
-        from_sequence=line.sequences[number],
-        to_sequence=line.sequences[number + 1],
-        length_m=line.along_m[number + 1] - line.along_m[number],
+        from_sequence=line.sequences[begin],
+        to_sequence=line.sequences[end],
+        length_m=line.along_m[end] - line.along_m[begin],
         reports=len(own),
-        began_s=own[0].fix.at_s if own else None,
-        ended_s=own[-1].fix.at_s if own else None,
+        began_s=min((one.fix.at_s for one in own), default=None),
+        ended_s=max((one.fix.at_s for one in own), default=None),
         across_rms_m=_rms(across_m),
         across_max_m=max(across_m, default=None),
         height_rms_m=_rms(height_m),

@@ -1,9 +1,7 @@
 """Reads of estimates, always within one mission."""
 
-from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterator
 from datetime import datetime
-from typing import Any
 from uuid import UUID
 
 from django.db.models import QuerySet
@@ -13,12 +11,9 @@ from missions.models import Mission
 from telemetry.estimation.estimate import Ellipse
 from telemetry.mission_report.estimate_quality import Compared, Estimated, EstimateQuality, Measured, compare, quality_of
 from telemetry.models import PositionEstimate, TelemetryRecord
+from telemetry.selectors.columns import latitude, longitude, unix_s
 
-_ESTIMATED = (
-    "uav_id", "estimated_for", "position", "bound_along_m", "bound_across_m", "bound_bearing_deg", "report_at", "altitude_relative_m",
-    "bound_height_m",
-)  # fmt: skip
-_MEASURED = ("uav_id", "measured_at", "position", "altitude_relative_m", "velocity_east_mps", "velocity_north_mps")
+ROWS_AT_ONCE = 5_000
 
 
 def estimates_of_mission(
@@ -43,33 +38,28 @@ def estimates_of_mission(
 
 
 def estimate_quality_of(mission_id: UUID) -> EstimateQuality:
-    """By all that was measured of the mission's UAVs, whenever it came."""
-    estimated: dict[int, list[Estimated]] = defaultdict(list)
-    for uav_id, *values in _rows(PositionEstimate.objects.filter(mission=mission_id).order_by("estimated_for"), _ESTIMATED):
-        estimated[uav_id].append(_estimated(*values))
-    measured: dict[int, list[Measured]] = defaultdict(list)
-    in_time = TelemetryRecord.objects.filter(mission=mission_id, uav__in=list(estimated), is_from_future=False, position__isnull=False)
-    for uav_id, *values in _rows(in_time.order_by("measured_at"), _MEASURED):
-        measured[uav_id].append(_measured(*values))
+    """By all that was measured of the mission's UAVs, whenever it came. One UAV after the other is in memory."""
     compared: list[Compared] = []
     untold = 0
-    for uav_id, of_uav in estimated.items():
-        found, missed = compare(of_uav, measured[uav_id])
+    for uav_id in PositionEstimate.objects.filter(mission=mission_id).order_by("uav").values_list("uav", flat=True).distinct():
+        found, missed = compare(_estimated(mission_id, uav_id), _measured(mission_id, uav_id))
         compared += found
         untold += missed
     return quality_of(compared, untold)
 
 
-def _rows(rows: QuerySet[Any], columns: tuple[str, ...]) -> Iterable[tuple[Any, ...]]:
-    return rows.values_list(*columns).iterator(chunk_size=2_000)
+def _estimated(mission_id: UUID, uav_id: int) -> Iterator[Estimated]:
+    rows = PositionEstimate.objects.filter(mission=mission_id, uav=uav_id).order_by("estimated_for").values_list(
+        unix_s("estimated_for"), longitude(), latitude(), unix_s("report_at"), "bound_along_m", "bound_across_m", "bound_bearing_deg",
+        "altitude_relative_m", "bound_height_m",
+    )  # fmt: skip
+    for at_s, lon, lat, report_s, along_m, across_m, bearing_deg, *heights_m in rows.iterator(chunk_size=ROWS_AT_ONCE):
+        yield Estimated(at_s, LonLat(lon, lat), Ellipse(along_m, across_m, bearing_deg), report_s, *heights_m)
 
 
-def _estimated(at: datetime, position: Any, *values: Any) -> Estimated:
-    along_m, across_m, bearing_deg, report_at, height_m, bound_height_m = values
-    report_s = None if report_at is None else report_at.timestamp()
-    bound = Ellipse(along_m, across_m, bearing_deg)
-    return Estimated(at.timestamp(), LonLat(position.x, position.y), bound, report_s, height_m, bound_height_m)
-
-
-def _measured(at: datetime, position: Any, height_m: float | None, east_mps: float | None, north_mps: float | None) -> Measured:
-    return Measured(at.timestamp(), LonLat(position.x, position.y), height_m, east_mps, north_mps)
+def _measured(mission_id: UUID, uav_id: int) -> list[Measured]:
+    in_time = TelemetryRecord.objects.filter(mission=mission_id, uav=uav_id, is_from_future=False, position__isnull=False)
+    rows = in_time.order_by("measured_at").values_list(
+        unix_s("measured_at"), longitude(), latitude(), "altitude_relative_m", "velocity_east_mps", "velocity_north_mps"
+    )
+    return [Measured(at_s, LonLat(lon, lat), *told) for at_s, lon, lat, *told in rows.iterator(chunk_size=ROWS_AT_ONCE)]

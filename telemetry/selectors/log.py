@@ -6,13 +6,14 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from django.db.models import F, FloatField, Func, QuerySet
+from django.db.models import QuerySet
 
 from inspection.selectors import Box
 from inspection.selectors.assets import area_of
 from missions.models import Uav
 from telemetry.exports.logged_record import FLAGS, REPORTED, LoggedRecord
 from telemetry.models import TelemetryRecord
+from telemetry.selectors.columns import latitude, longitude
 from workspace.models import Organisation
 
 ROWS_AT_ONCE = 2_000
@@ -61,16 +62,12 @@ def newest_of(uav_id: int, *related: str) -> TelemetryRecord | None:
     return (found.select_related(*related) if related else found).order_by("-measured_at", "-pk").first()
 
 
-def _coordinate(function: str) -> Func:
-    return Func(F("position"), function=function, output_field=FloatField())
-
-
 _COLUMNS = ("pk", "uav_id", "uav__name", "mission_id", "stream__key", "sequence", "measured_at", "received_at", "stored_at")
 
 
 def logged(records: QuerySet[TelemetryRecord], *order: str) -> Iterator[LoggedRecord]:
     """Row by row out of the database, in this order; never more than some thousand at once in memory."""
-    rows = records.order_by(*order).values_list(*_COLUMNS, _coordinate("ST_X"), _coordinate("ST_Y"), *REPORTED, *FLAGS)
+    rows = records.order_by(*order).values_list(*_COLUMNS, longitude(), latitude(), *REPORTED, *FLAGS)
     return (_from_columns(row) for row in rows.iterator(chunk_size=ROWS_AT_ONCE))
 
 

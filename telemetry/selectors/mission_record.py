@@ -7,7 +7,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 from uuid import UUID
 
-from django.db.models import Count, F, FloatField, Func
+from django.db.models import Count, F
 
 from inspection.geodesy import LonLat
 from missions.mavlink.frozen import FrozenRoute, route_from_json
@@ -16,10 +16,11 @@ from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.visits import Visit, visits_of
 from telemetry.models import Alert, AlertLevel, InspectionResult, TelemetryRecord
+from telemetry.selectors.columns import latitude, longitude, unix_s
 from telemetry.selectors.estimates import estimate_quality_of
 from workspace.models import Organisation
 
-_FIX_COLUMNS = ("measured_at", "altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
+_FIX_COLUMNS = ("altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
 HASTE = 1.5  # so much faster than it was told may a UAV be: down the wind, or flown by hand
 
 
@@ -48,9 +49,8 @@ def approval_on_record(mission: Mission) -> Approval | None:
 def fixes_of(mission: Mission, uav_id: int) -> list[Fix]:
     """Where a UAV was in a mission, by time; none of the future."""
     rows = TelemetryRecord.objects.filter(mission=mission, uav=uav_id, is_from_future=False, position__isnull=False).order_by("measured_at")
-    lon, lat = (Func("position", function=function, output_field=FloatField()) for function in ("ST_X", "ST_Y"))
-    columns = rows.values_list(*_FIX_COLUMNS, lon, lat)
-    return in_order([Fix(at.timestamp(), LonLat(lon, lat), *told) for at, *told, lon, lat in columns.iterator(chunk_size=5_000)])
+    columns = rows.values_list(unix_s("measured_at"), longitude(), latitude(), *_FIX_COLUMNS)
+    return in_order([Fix(at_s, LonLat(lon, lat), *told) for at_s, lon, lat, *told in columns.iterator(chunk_size=5_000)])
 
 
 def fastest_mps(route: FrozenRoute, figures: dict[str, Any]) -> float:
@@ -179,7 +179,7 @@ def _rms(values: Sequence[tuple[float | None, int]]) -> float | None:
 
 def _route(route: RouteOnRecord, mission: Mission) -> dict[str, Any]:
     flown = asdict(route.flown)
-    legs = flown.pop("legs")
+    legs, stages = flown.pop("legs"), flown.pop("stages")
     return {
         "place": route.place,
         "uav": route.uav_id,
@@ -188,6 +188,7 @@ def _route(route: RouteOnRecord, mission: Mission) -> dict[str, Any]:
         "planned": {name: route.planned[name] for name in ("length_m", "duration_s", "energy_wh")},
         "flown": _with_times(flown) | {"energy_wh": _used_wh(route)},
         "legs": [_with_times(leg) for leg in legs],
+        "stages": [{"flight": stage["flight"], "target": stage["target"], **_with_times(stage["whole"])} for stage in stages],
         "waypoints": [
             {
                 "sequence": waypoint.sequence,

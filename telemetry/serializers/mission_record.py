@@ -82,6 +82,13 @@ class FlownLegSerializer(FlownSerializer):
     length_m = serializers.FloatField()
 
 
+class FlownStageSerializer(FlownLegSerializer):
+    """All legs from a target, or the take-off, to the next."""
+
+    flight = serializers.IntegerField(help_text="from 1")
+    target = serializers.IntegerField(allow_null=True, help_text="its place in the mission; null: the way back, or down")
+
+
 class FlownRouteSerializer(FlownSerializer):
     flown_m = serializers.FloatField(help_text="length of the track as it was reported")
     battery_lowest_percent = serializers.FloatField(allow_null=True)
@@ -113,6 +120,7 @@ class RecordRouteSerializer(serializers.Serializer):
     planned = PlannedRouteSerializer()
     flown = FlownRouteSerializer()
     legs = FlownLegSerializer(many=True)
+    stages = FlownStageSerializer(many=True, help_text="the legs, taken together by target")
     waypoints = RecordWaypointSerializer(many=True)
 
 

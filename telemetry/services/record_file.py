@@ -9,13 +9,13 @@ from typing import IO, Any
 
 from django.conf import settings
 from django.core.serializers.json import DjangoJSONEncoder
-from django.db.models import FloatField, Func
 
 from missions.command_selectors import commands_of_mission
 from missions.models import Mission
 from telemetry.exports.csv_file import csv_pieces
 from telemetry.exports.geojson_file import geojson_pieces
 from telemetry.models import Alert, FlightLog, PositionEstimate
+from telemetry.selectors.columns import latitude, longitude
 from telemetry.selectors.log import LogFilter, logged, records_that_match
 from telemetry.selectors.mission_record import approval_on_record, mission_record
 from workspace.models import Organisation
@@ -75,10 +75,13 @@ def _write(packed: zipfile.ZipFile, name: str, pieces: Iterable[str]) -> None:
 
 
 def _estimates(mission: Mission) -> Iterator[str]:
-    lon, lat = (Func("position", function=function, output_field=FloatField()) for function in ("ST_X", "ST_Y"))
-    rows = PositionEstimate.objects.filter(mission=mission).order_by("estimated_for", "uav_id").values_list(*_ESTIMATED, lon, lat)
-    for *told, longitude, latitude in rows.iterator(chunk_size=5_000):
-        values = dict(zip(_ESTIMATED, told, strict=True)) | {"longitude_deg": longitude, "latitude_deg": latitude}
+    rows = (
+        PositionEstimate.objects.filter(mission=mission)
+        .order_by("estimated_for", "uav_id")
+        .values_list(*_ESTIMATED, longitude(), latitude())
+    )
+    for *told, lon, lat in rows.iterator(chunk_size=5_000):
+        values = dict(zip(_ESTIMATED, told, strict=True)) | {"longitude_deg": lon, "latitude_deg": lat}
         yield json.dumps(values, cls=DjangoJSONEncoder) + "\n"
 
 

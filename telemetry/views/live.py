@@ -2,7 +2,6 @@
 
 from uuid import UUID
 
-from django.conf import settings
 from django.http import Http404, HttpResponse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.exceptions import ValidationError
@@ -12,6 +11,7 @@ from rest_framework.views import APIView
 from telemetry.live.look import etag_of, look_once
 from telemetry.live.messages import live_text, server_time
 from telemetry.serializers.live import LiveAnswerSerializer
+from workspace.spoken import language_of_request
 
 
 class Live(APIView):
@@ -27,7 +27,7 @@ class Live(APIView):
     )
     def get(self, request: Request) -> HttpResponse:
         mission = _asked_mission(request)
-        language = request.user.language or settings.LANGUAGE_CODE
+        language = language_of_request(request.user, request)
         known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one
         seen = look_once(request.user.organisation_id, mission, language, known=known)
         if mission is not None and ("missions", str(mission)) not in seen.shown:

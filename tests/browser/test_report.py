@@ -74,7 +74,9 @@ def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: st
     expect(page.locator("#report-targets .report-target-state.complete")).to_have_count(7)
     page.locator("#report-legs > summary").click()
     page.locator(".report-route > summary").first.click()
-    page.locator(".report-leg").nth(2).hover()
+    stage = page.locator(".report-leg[aria-expanded=false]").first
+    stage.click()
+    page.locator(".report-within:visible .report-leg").nth(1).hover()
     page.locator("#report-alerts > summary").click()
     for words in ("Pintail: no report for 12 s", "Garganey: 300 m off its route"):
         expect(page.locator("#report-alerts")).to_contain_text(words)

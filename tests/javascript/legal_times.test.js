@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 globalThis.document = { documentElement: { lang: "en", dataset: { timeZone: "Europe/Berlin" } } };
-const { legalTimesOf, legsText, momentAt, shareOf, spanText, stepWithin, ticksOf, wordsOf, marginText } = await import("../../static/js/mission/legal_times.js");
+const { betterWords, legalTimesOf, legsText, mayDepartBetter, momentAt, shareOf, spanText, stepWithin, ticksOf, wordsOf, marginText } = await import("../../static/js/mission/legal_times.js");
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const at = (text) => Date.parse(`2026-11-${text}Z`);
@@ -58,4 +58,21 @@ test("spans and legs in words", () => {
 test("why a window ends sooner than a zone begins is said where there is a zone", () => {
   assert.equal(marginText({ zones: [], margin_s: 300 }), "");
   assert.equal(plain(marginText({ zones: [{}], margin_s: 300 })), "Zones count 5 min before and after their times.");
+});
+
+test("a better departure says what it brings, and that there is none until when", () => {
+  const totals = { left_out: 1, total_length_m: 3000, done_s: 600, total_duration_s: 600, total_energy_wh: null };
+  const found = { departs_at: "2026-11-22T13:00:00Z", looked_until: "2026-11-22T13:00:00Z", before: totals };
+  assert.match(plain(betterWords({ ...found, then: { ...totals, left_out: 0 } }).words), /^Departing .*14:00 reaches 1 target more\.$/);
+  assert.match(plain(betterWords({ ...found, then: { ...totals, total_length_m: 2000, done_s: 300 } }).words), /does better: 1\.0 km less, done 5 min sooner after it\.$/);
+  assert.equal(betterWords({ ...found, then: totals }).departs_at, found.departs_at);
+  assert.match(plain(betterWords({ ...found, departs_at: null, then: null }).words), /^No departure until .*14:00 does better/);
+  assert.equal(betterWords({ ...found, departs_at: null, looked_until: null, then: null }).words, "No zone near ends in the next 48 hours.");
+});
+
+test("another departure is looked for where a zone is in the way, and targets are few", () => {
+  assert.equal(mayDepartBetter({ gap_of: "all_plans", unassigned: [{ reason: "inside_zone" }] }, 12), true);
+  assert.equal(mayDepartBetter({ gap_of: "all_plans", unassigned: [{ reason: "inside_zone" }] }, 13), false);
+  assert.equal(mayDepartBetter({ gap_of: "without_timed_zones", unassigned: [] }, 3), true);
+  assert.equal(mayDepartBetter({ gap_of: "all_plans", unassigned: [{ reason: "beyond_range" }] }, 3), false);
 });

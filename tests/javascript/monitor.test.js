@@ -10,7 +10,7 @@ import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
-import { overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
+import { causeWords, overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
 import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
 import { placed } from "../../static/js/monitor/placed.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
@@ -70,6 +70,9 @@ test("a flight that was told to be over is over, whatever the last report said",
   assert.equal(inAir(down), false);
   assert.equal(stateOf(down).words, "On the ground");
   assert.equal(inAir({ ...uav(), measured: null }), true);
+  const switchedOff = uav({ age_s: 7200, is_in_air: false });
+  assert.equal(certaintyOf(switchedOff, NOW_MS), MEASURED, "it stands where it landed");
+  assert.deepEqual(ageWords(switchedOff, NOW_MS), { words: "no report for 2\u00a0h", isLate: false });
 });
 
 test("a UAV keeps its letter after its mission, until it flies another that is on the page", () => {
@@ -172,6 +175,13 @@ test("progress along the route is the estimate's, else that of the last waypoint
   assert.deepEqual(progressOf(uav({ estimated: estimate() }), [0, 100]), { at_m: 2000, within_m: 410 });
   assert.deepEqual(progressOf(uav({ waypoint_sequence: 2 }), [0, 100, 300]), { at_m: 100, within_m: 0 });
   assert.equal(progressOf(uav(), [0, 100]), null);
+});
+
+test("an offer for a zone names it, the UAV and the leg", () => {
+  const cause = { zone_name: "Air show", uav_name: "Kite", leg: ["B1", "B2"] };
+  assert.equal(causeWords({ code: "zone-active", cause }), "Air show lies across the route of Kite, B1 to B2");
+  assert.equal(causeWords({ code: "zone-active", cause: { ...cause, leg: ["", "B1"] } }), "Air show lies across the route of Kite, start to B1");
+  assert.equal(causeWords({ code: "uav-out", cause: {} }), "A UAV has dropped out");
 });
 
 test("an offer is said in a sentence, and target by target", () => {

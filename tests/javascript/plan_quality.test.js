@@ -34,6 +34,15 @@ test("the gap is what the plan is above the bound, in the unit of the objective"
   assert.equal(plain(qualityOf(result({ objective: "makespan", lower_bound_m: null, lower_bound_s: 3000 })).detail), "No plan can be done in less than 50 min.");
 });
 
+test("where zones come or go meanwhile, the gap is against the best plan without them", () => {
+  const quality = qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones" }));
+  assert.equal(plain(quality.words), "At most 25.0 % above the best plan without the zones that come or go meanwhile.");
+  assert.equal(quality.detail, "");
+  assert.equal(qualityOf(result({ gap: 0, gap_of: "without_timed_zones" })).words, "No worse than the best plan without the zones that come or go meanwhile.");
+  assert.match(qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones", wish: {} })).words, /with what is locked, without the zones/);
+  assert.equal(plain(qualityOf(result({ gap: 0.2, gap_of: "all_plans" })).words), "At most 25.0 % above what is possible.");
+});
+
 test("a bound has the unit of what the plan is best at", () => {
   assert.equal(plain(qualityOf(result({ objective: "time", lower_bound_m: null, lower_bound_s: 3000 })).detail), "No plan can be in the air for less than 50 min.");
   assert.equal(plain(qualityOf(result({ objective: "energy", lower_bound_m: null, lower_bound_wh: 812.4 })).detail), "No plan can use less than 812 Wh.");

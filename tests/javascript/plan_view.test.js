@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { firstDetail } from "../../static/js/api.js";
-import { endingOf, endingsOf, inPlanOrder, isPlanCurrent, isUnsaved, placesOf, sentenceOf, shownRoute, unreachedOf } from "../../static/js/mission/plan_view.js";
+import { endingOf, endingsOf, inPlanOrder, isPlanCurrent, isUnsaved, placesOf, pointAlong, sentenceOf, shownRoute, unreachedOf } from "../../static/js/mission/plan_view.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";
 
 const target = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [id, 50] });
@@ -99,4 +99,21 @@ test("the route that is changed by hand is shown as it would be flown, whichever
   assert.deepEqual([wished.name, wished.length_m, wished.isWished], ["Heron", 20_000, true]);
   assert.equal(wished.waypoints, flown.waypoints); // the same while the server has said nothing new
   assert.equal(shown({ sequence: 0, original, points: moved, look: { ...look, flown: null } }).length_m, 19_100);
+});
+
+test("the pointer's place is on the stored route, and on the changed one where it is on that one's profile", () => {
+  const at = (lon, lat, kind = "pass") => ({ position: [lon, lat], altitude_agl_m: 60, kind, asset: null, target: null });
+  const stored = { uav: "Heron", targets: [], length_m: 2000, duration_s: 100, geometry, end_action: "hover", waypoints: [at(10, 50, "start"), at(10.02, 50, "end")] };
+  const now = { plan: { ...plan, result: { ...plan.result, routes: [stored] } }, lookedAt: null, chosenRoute: null, hand: null };
+  const near = (place, expected) => place.forEach((degrees, index) => assert.ok(Math.abs(degrees - expected[index]) < 1e-6, `${place} is not ${expected}`));
+  near(pointAlong({ ...now, along: { sequence: 0, at_m: 1000, isWished: false } }), [10.01, 50]);
+  const original = [{ position: [10, 50], altitude_agl_m: 60, speed_mps: null, was: 0, kind: "start" }];
+  const look = { length_m: 4000, duration_s: 200, flown: { waypoints: [at(10, 50, "start"), at(10, 50.02), at(10.02, 50, "end")], arrival_s: [0] } };
+  const hand = { sequence: 0, original, points: [{ ...original[0], altitude_agl_m: 80 }], look };
+  const [lon, lat] = pointAlong({ ...now, hand, along: { sequence: 0, at_m: 500, isWished: true } });
+  assert.equal(lon, 10);
+  assert.ok(lat > 50.002);
+  near(pointAlong({ ...now, hand, along: { sequence: 0, at_m: 1000, isWished: false } }), [10.01, 50]);
+  assert.equal(pointAlong({ ...now, along: { sequence: 0, at_m: 500, isWished: true } }), null); // it is not changed any more
+  assert.equal(pointAlong({ ...now, along: null }), null);
 });

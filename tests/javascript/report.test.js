@@ -209,6 +209,7 @@ test("figures are compared where both are known, and only once it is over", () =
   assert.deepEqual([rows[2].flown, rows[2].more], ["—", ""]);
   assert.equal(rows[4].flown, "—");
   assert.deepEqual(rows[5], { words: "Estimates inside bound", planned: "95\u00a0%", flown: "96\u00a0%", more: "" });
+  assert.equal(figuresOf(record("completed", { estimates: { compared: 3, share_inside: 0, rms_m: 10.3 } })).length, 5); // too few for a share
   assert.equal(figuresOf(record("active"))[0].more, "");
   assert.equal(figuresOf(record("planned", { reports: 0 }))[0].flown, "—");
 });

@@ -283,6 +283,93 @@ def test_planning_again_ends_what_can_be_taken_back(here: World, client: Client)
     assert again["plan"]["routes"][0]["hand_steps"] == 0
 
 
+PUT_IN = [10.003, 55.9935]
+
+
+def with_one_put_in(mission: dict[str, Any]) -> list[dict[str, Any]]:
+    wished = as_wished(mission)
+    wished.insert(1, {"position": PUT_IN, "altitude_agl_m": 70.0, "was": None})
+    return wished
+
+
+def plan_again(client: Client, mission: dict[str, Any]) -> dict[str, Any]:
+    return client.post(f"/api/v1/missions/{mission['id']}/plan", HTTP_IF_MATCH=f'"{mission["revision"]}"').json()
+
+
+def by_hand(mission: dict[str, Any]) -> list[Any]:
+    (route,) = mission["plan"]["routes"]
+    return [route["waypoints"][place]["position"] for place in route["by_hand"]]
+
+
+def test_planned_again_a_route_keeps_what_a_hand_put_in_and_can_go_back_to_the_plan(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    changed = put(client, mission, with_one_put_in(mission)).json()
+    again = plan_again(client, changed)
+    assert by_hand(again) == [PUT_IN]
+    assert again["plan"]["warnings"] == []
+    assert (again["plan"]["is_proven"], again["plan"]["method"]) == (False, "by hand")
+    assert again["plan"]["total_length_m"] == pytest.approx(changed["plan"]["total_length_m"])
+    assert "by_hand" not in again["last_plan"]
+    (route,) = again["plan"]["routes"]
+    assert route["hand_steps"] == 1
+    back = undo(client, again).json()
+    assert without_steps(back) == without_steps(mission)
+    assert back["plan"]["is_proven"]
+    assert by_hand(plan_again(client, back)) == []
+
+
+def test_with_another_target_the_leg_by_hand_stays_where_its_ends_do(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    changed = put(client, mission, with_one_put_in(mission)).json()
+
+    def with_targets(*assets: Any) -> dict[str, Any]:
+        body = {"targets": mission_body(*assets)["targets"], "plan": True}
+        return client.patch(f"/api/v1/missions/{mission['id']}", body, content_type="application/json").json()
+
+    more = with_targets(here.towers[5], here.towers[4], here.towers[3])
+    assert by_hand(more) == [PUT_IN]
+    assert len(more["plan"]["routes"][0]["targets"]) == 3
+    other = with_targets(here.towers[0], here.towers[5])
+    assert by_hand(other) == []
+    (warning,) = other["plan"]["warnings"]
+    assert (warning["code"], warning["uav"]) == ("by_hand_not_kept", 0)
+    assert "as planned again: 1 of 1" in warning["message"]
+    assert changed["plan"]["warnings"] == []
+
+
+def test_what_a_zone_bars_by_now_is_planned_and_the_rest_by_hand_stays(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    wished = with_one_put_in(mission)
+    kinds = [None, *(point["kind"] for point in mission["plan"]["routes"][0]["waypoints"])]
+    last = max(place for place, kind in enumerate(kinds) if kind == "target")
+    wished.insert(last, {"position": [10.018, 55.997], "altitude_agl_m": 70.0, "was": None})
+    changed = put(client, mission, wished).json()
+    assert len(by_hand(changed)) == 2
+    zone_around((10.003, 55.9935), 0.0005, name="Hospital")
+    again = plan_again(client, changed)
+    assert by_hand(again) == [[10.018, 55.997]]
+    assert [warning["code"] for warning in again["plan"]["warnings"]] == ["by_hand_not_kept"]
+
+
+def test_a_height_and_a_speed_by_hand_stay(here: World, client: Client) -> None:
+    mission = planned_with(here, client)
+    wished = as_wished(mission)
+    target = next(place for place, point in enumerate(mission["plan"]["routes"][0]["waypoints"]) if point["kind"] == "target")
+    wished[target]["altitude_agl_m"] += 20.0
+    wished[longest_leg(mission)]["speed_mps"] = 6.0
+    changed = put(client, mission, wished).json()
+    again = plan_again(client, changed)
+    assert without_steps(again) == without_steps(changed)
+    assert again["plan"]["routes"][0]["speeds_by_hand"]
+
+
+def test_a_waypoint_that_was_taken_out_stays_out(here: World, client: Client) -> None:
+    mission = planned(here, client)
+    kinds = [waypoint["kind"] for waypoint in mission["plan"]["routes"][0]["waypoints"]]
+    changed = put(client, mission, [point for point, kind in zip(as_wished(mission), kinds, strict=True) if kind != "pass"]).json()
+    assert plan_again(client, changed)["plan"]["total_length_m"] == changed["plan"]["total_length_m"] < mission["plan"]["total_length_m"]
+
+
 def test_from_where_a_lost_link_goes_wrong_is_told_of_the_changed_route(here: World, client: Client) -> None:
     """South of the start a zone, and behind it a new waypoint, which is reached round it: from there nobody returns straight."""
     mission = planned_with(here, client, lost_link={"behaviour": "return"})

@@ -74,7 +74,7 @@ def test_a_request_that_is_sent_again_starts_nothing_more(client):
         ({"uavs": [{"position": HERE}], "faults": {"motor_failed": 7}}, "faults"),
         ({"uavs": [{"position": HERE}], "faults": {"wings": 1}}, "faults"),
         ({"uavs": [{"position": HERE}] * 2, "first_system_id": 250}, "first_system_id"),
-        ({"uavs": [{"position": HERE}], "host": "0.0.0.0"}, "host"),
+        ({"uavs": [{"position": HERE}], "host": "example"}, "host"),
     ],
 )
 def test_what_cannot_be_flown_is_told_where_it_stands(client, body, place):

@@ -1,4 +1,4 @@
-"""The simulator as a program: a mission is flown through the gateway by the operator's services, links are lost, and it is killed with -9."""
+"""The simulator as a program: a mission is flown through the gateway, its link is lost for a while, and the simulator is killed."""
 
 import subprocess
 import sys

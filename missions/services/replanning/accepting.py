@@ -11,6 +11,7 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from missions.command_rules import HAND_OVER
 from missions.models import (
     CommandAxis,
     CommandKind,
@@ -26,7 +27,6 @@ from missions.models import (
 )
 from missions.services.approval import approve_mission, change_state, held_mission
 from missions.services.flying import end_if_over
-from missions.services.handover import HAND_OVER
 from missions.services.outbox import queue_command
 from missions.services.refused import refuse
 from missions.services.replanning.offers import end_offer, held_offer

@@ -1,7 +1,7 @@
 /** At which departures a mission would meet no zone: places on a bar of time, and the sentence over it. Values in, values out. */
 
 import { language, localeOf, t, tn } from "../text.js";
-import { clockText, durationText, typedMoment } from "../units.js";
+import { clockText, durationText, energyText, lengthText, typedMoment } from "../units.js";
 import { departureText } from "./flight_options.js";
 import { marginWords } from "./zones_passed.js";
 
@@ -101,4 +101,29 @@ export function wayOf({ letter, waypoints }, leg) {
   const [start, end] = [`${letter}${before}`, `${letter}${before + 1}`];
   if (before === all) return before ? t("after {start}", { start }) : t("on its way");
   return before ? t("{start} to {end}|way", { start, end }) : t("start to {end}|way", { end });
+}
+
+const MOST_COMPARED = 12; // targets, of which departures are compared
+const LEAST_M = 1;
+
+/** Whether looking for a better departure may be of use: a zone is in the way of the plan, for a while or for ever. */
+export function mayDepartBetter({ gap_of, unassigned = [] }, targets) {
+  return targets <= MOST_COMPARED && (gap_of === "without_timed_zones" || unassigned.some(({ reason }) => reason === "inside_zone" || reason === "no_path"));
+}
+
+/** The answer about a better departure in words: { words, departs_at }. */
+export function betterWords({ departs_at, looked_until, before, then }) {
+  if (departs_at === null) {
+    const words = looked_until === null ? t("No zone near ends in the next 48 hours.") : t("No departure until {when} does better: one was looked at after each end of a zone near.", { when: departureText(looked_until) });
+    return { words, departs_at };
+  }
+  const when = departureText(departs_at);
+  const more = before.left_out - then.left_out;
+  if (more > 0) return { words: tn(more, "Departing {when} reaches {count} target more.", "Departing {when} reaches {count} targets more.", { when }), departs_at };
+  const gains = [
+    before.total_length_m - then.total_length_m >= LEAST_M && t("{length} less", { length: lengthText(before.total_length_m - then.total_length_m) }),
+    before.done_s - then.done_s >= 60 && t("done {time} sooner after it", { time: durationText(before.done_s - then.done_s) }),
+    before.total_energy_wh !== null && before.total_energy_wh - then.total_energy_wh >= 1 && t("{energy} less", { energy: energyText(before.total_energy_wh - then.total_energy_wh) }),
+  ].filter(Boolean);
+  return { words: t("Departing {when} does better: {gains}.", { when, gains: gains.join(", ") || t("by what the plan is best at") }), departs_at };
 }

@@ -6,6 +6,7 @@ import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { changesOf } from "./hand_route.js";
 import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
+import { positionAt, profileOf } from "./span_strip.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
 const REASONS = {
@@ -106,7 +107,7 @@ const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; //
  * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
  * out, a figure would be taken for more than it is.
  */
-export function qualityOf({ objective, lower_bound_m, lower_bound_s, lower_bound_wh, gap, is_proven, wish, routes, unassigned = [] }) {
+export function qualityOf({ objective, lower_bound_m, lower_bound_s, lower_bound_wh, gap, gap_of, is_proven, wish, routes, unassigned = [] }) {
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
   const above = gap / (1 - gap); // `gap` is a share of this plan
@@ -114,8 +115,16 @@ export function qualityOf({ objective, lower_bound_m, lower_bound_s, lower_bound
   if (unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
   const bound = { total: lower_bound_m, energy: lower_bound_wh }[objective] ?? (["makespan", "time"].includes(objective) ? lower_bound_s : null);
   const share = shareText(above);
+  if (gap_of === "without_timed_zones") return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
   const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
   return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
+}
+
+/** Against the best plan without the zones that come or go meanwhile: it may be that none is as good that keeps clear of them. share: null: nothing. */
+function beyondTimedZones(share, isLocked) {
+  if (share === null) return t("No worse than the best plan without the zones that come or go meanwhile.");
+  if (isLocked) return t("At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.", { share });
+  return t("At most {share} above the best plan without the zones that come or go meanwhile.", { share });
 }
 
 function boundWords(objective, bound) {
@@ -208,6 +217,19 @@ export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
   const changed = hand && flown.find((route) => route.sequence === hand.sequence);
   if (changed) return wishedRoute(changed, hand);
   return [lookedAt, chosenRoute].map((sequence) => flown.find((route) => route.sequence === sequence)).find(Boolean) ?? flown.sort((a, b) => b.length_m - a.length_m)[0] ?? null;
+}
+
+/**
+ * Where on the map the pointer on a strip or a profile is, lon lat. along: { sequence, at_m, isWished }: isWished where it is on the profile
+ * of a route as it is changed by hand. Null where that is not shown any more.
+ */
+export function pointAlong(state) {
+  const { along, plan } = state;
+  if (!along || !plan) return null;
+  const stored = routesOf(plan).find(({ sequence, geometry }) => sequence === along.sequence && geometry);
+  const shown = along.isWished ? shownRoute(state) : null;
+  const route = !along.isWished ? stored : shown?.isWished && shown.sequence === along.sequence ? shown : null;
+  return route ? positionAt(route.waypoints, profileOf(route.waypoints, route.length_m).places, along.at_m) : null;
 }
 
 /** Whether the plan on the page is the plan of what is picked. */

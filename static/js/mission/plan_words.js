@@ -46,6 +46,10 @@ const SENTENCES = [
   [/^From its other targets (.+) would have to pass a mast or wires that cannot be flown over\.$/, (name) => t("From its other targets {name} would have to pass a mast or wires that cannot be flown over.", { name })],
   [/^(.+) would have to pass a mast or wires that cannot be flown over\.$/, (name) => t("{name} would have to pass a mast or wires that cannot be flown over.", { name })],
   [/^A UAV can get there, but not on one route with its other targets\. Add a UAV\.$/, () => t("A UAV can get there, but not on one route with its other targets. Add a UAV.")],
+  [
+    /^Legs of (.+) that were changed by hand and are as planned again: (\d+) of (\d+)\. Their ends differ, or something bars them now\.$/,
+    (name, missed, count) => t("Legs of {name} that were changed by hand and are as planned again: {missed} of {count}. Their ends differ, or something bars them now.", { name, missed, count }),
+  ],
   [/^The asset has been deleted since it was picked\.$/, () => t("It has been deleted from the data since it was picked.")],
 ];
 
@@ -54,9 +58,21 @@ export const takesShortestWays = ({ warnings }) => (warnings ?? []).some(({ code
 /** What a plan warns of where a UAV stays on the ground. */
 export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
 
+const LOCKED = " It is locked to others: the run is left out as a whole.";
+const MINUTES = /^(.+): ([\d,.]+) min of flight\.$/;
+
 /** `fallback` where a language has no sentence for it; English as it is stored. */
 export function inWords(message, fallback = message) {
   if (language === "en" || !message) return message || fallback;
+  if (message.endsWith(LOCKED)) {
+    const words = inWords(message.slice(0, -LOCKED.length), "");
+    return words ? `${words} ${t("It is locked to others: the run is left out as a whole.")}` : fallback;
+  }
+  const missing = MINUTES.exec(message);
+  if (missing) {
+    const words = inWords(`${missing[1]}.`, "");
+    return words ? `${words.replace(/\.$/, "")}: ${t("{minutes} min of flight.", { minutes: figure(missing[2]) })}` : fallback;
+  }
   for (const [pattern, say] of SENTENCES) {
     const found = pattern.exec(message);
     if (found) return say(...found.slice(1));

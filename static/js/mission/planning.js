@@ -50,16 +50,8 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     queueMicrotask(plan); // after whoever saved has settled
   });
 
-  const isByHand = () => (store.state.plan?.result.routes ?? []).some(({ by_hand, hand_steps }) => by_hand?.length > 0 || hand_steps > 0);
-
-  /** `isSure` is true where somebody has been told what is lost; events are no answer. */
-  async function plan(isSure) {
+  async function plan() {
     if (store.state.planning) return;
-    if (isSure !== true && isByHand()) {
-      const anyway = { label: t("Plan all the same"), act: () => plan(true) };
-      problem(t("A route was changed by hand."), t("Planning again takes that away."), [anyway], { untilChanged: true, level: "warning" });
-      return;
-    }
     if (store.state.saving) {
       isWanted = true;
       return;

@@ -28,7 +28,7 @@ export function sentenceOf(detail) {
   return failed.size ? tn(failed.size, "{count} of {all} targets fails: {conditions}.", "{count} of {all} targets fail: {conditions}.", { all, conditions }) : t("It fails: {conditions}.", { conditions });
 }
 
-const apart = (metres) => (metres === null || metres === undefined ? t("–") : heightText(metres));
+const apart = (metres) => (metres === null || metres === undefined ? "–" : heightText(metres));
 
 /** Figures of a route beside what is planned or allowed: [{ words, flown, beside }]. */
 export function figuresOf(route, limits) {
@@ -38,7 +38,7 @@ export function figuresOf(route, limits) {
   return [
     { words: t("Time"), flown: durationText(route.flown_s), beside: route.planned_s === null ? "" : t("{time} planned", { time: durationText(route.planned_s) }) },
     { words: t("Energy"), flown: energyText(route.used_wh), beside: route.planned_wh === null ? "" : t("{energy} planned", { energy: energyText(route.planned_wh) }) },
-    { words: t("Battery at landing"), flown: Number.isFinite(left) ? percentText(left) : t("–"), beside: t("limit {limit}", { limit: percentText(route.reserve_percent) }) },
+    { words: t("Battery at landing"), flown: Number.isFinite(left) ? percentText(left) : "–", beside: t("limit {limit}", { limit: percentText(route.reserve_percent) }) },
     { words: t("Off the line, most"), flown: apart(route.across.max_m), beside: t("limit {limit}", { limit: apart(limit("across_fail_m")) }) },
     { words: t("Off the height, most"), flown: apart(route.height.max_m), beside: t("limit {limit}", { limit: apart(limit("height_fail_m")) }) },
     { words: t("Lowest above ground"), flown: apart(route.lowest?.away_m), beside: t("limit {limit}", { limit: apart(limit("ground_fail_m")) }) },

@@ -127,8 +127,7 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
  * stops at bases and on towers: [{ index of the waypoint, kind, words }].
  *
  * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event, targets, label): a pill is
- * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or null, without) };
- * positionAt gives the place on the map.
+ * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or null, without) }.
  */
 export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], waits = [], stopsOf = (targets) => targets, onAlong, onTarget, grab }) {
   const flown = profileOf(waypoints, length_m);
@@ -170,7 +169,6 @@ export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zon
       gap.setAttribute("x1", at);
       gap.setAttribute("x2", at);
     },
-    positionAt: (at_m) => positionAt(waypoints, profile.places, at_m),
   };
 }
 

@@ -1,5 +1,7 @@
 /** How sure a live page is of where a UAV is: measured, estimated, or lost. Values in, values out; times in milliseconds since 1970. */
 
+import { inAir } from "./in_air.js";
+
 export const FRESH_S = 3; // a report that is no older is shown as it is: one a second may well be two seconds on its way
 const RENEWED_S = 10; // an estimate that is older is of a watch that is gone
 
@@ -12,8 +14,8 @@ export function reportAge_s({ measured }, now_ms) {
   return measured ? Math.max(0, (now_ms - Date.parse(measured.measured_at)) / 1000) : null;
 }
 
-/** Whether its next report should have come, by how often they come and by the limits that alerts keep to. */
-export const isLate = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
+/** Whether its next report should have come, by how often they come and by the limits that alerts keep to: not of one that has landed. */
+export const isLate = (uav, now_ms) => inAir(uav) !== false && (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
 
 /** Whether so many have not come that it counts as silent. */
 export const isSilent = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? Infinity) >= uav.rhythm.silent_after_s;
@@ -24,6 +26,7 @@ const isRenewed = ({ estimated }, now_ms) => estimated !== null && now_ms - Date
 export function certaintyOf(uav, now_ms) {
   const { measured, estimated } = uav;
   if (!measured?.position && !estimated) return null;
+  if (measured?.position && inAir(uav) === false) return MEASURED; // it stands where it said, switched off perhaps
   const age_s = reportAge_s(uav, now_ms);
   const isFresh = !isSilent(uav, now_ms);
   if (isRenewed(uav, now_ms)) {

@@ -37,9 +37,9 @@ const commanding = page.canFly ? createCommanding(store) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
-mountCards(store, { pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
+mountCards(store, { isOfOne: page.mission !== null, pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
 mountOffers(store, page);
-const alertKeys = mountAlerts(store, page, { pick, commanding });
+const alertKeys = mountAlerts(store, page, { pick, commanding, showBoard: narrow.showBoard });
 mountBoard(store, {
   show(mission, place) {
     const position = store.state.details.get(mission)?.targets[place]?.position;
@@ -47,7 +47,7 @@ mountBoard(store, {
   },
 });
 mountSimulation(page);
-mountUrgent(store, { open: () => (narrow.showBoard(), document.getElementById("alerts-title").focus()) });
+mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 
 function step(by) {

@@ -4,7 +4,7 @@ import { byId } from "../dom.js";
 
 const narrow = matchMedia("(max-width: 1099px)");
 
-/** Returns { showBoard() }. */
+/** Returns { showBoard() }: from its top, where an offer stands above the alerts. */
 export function mountNarrow() {
   const parts = byId("right-parts");
   const tabs = byId("narrow-tabs");
@@ -25,6 +25,8 @@ export function mountNarrow() {
     showBoard() {
       tabs.querySelector("[value=board]").checked = true;
       place();
+      parts.parentElement.scrollTop = 0;
+      byId("alerts-title").focus({ preventScroll: true });
     },
   };
 }

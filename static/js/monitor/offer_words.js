@@ -16,7 +16,14 @@ export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
 });
 
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
-export const causeWords = ({ code }) => CAUSES[code] ?? code;
+/** Of a zone: which one, and between which targets it lies across whose route. */
+export const causeWords = ({ code, cause }) => (cause?.leg ? t("{zone} lies across the route of {uav}, {way}", { zone: cause.zone_name, uav: cause.uav_name, way: wayWords(cause.leg) }) : (CAUSES[code] ?? code));
+
+function wayWords([start, end]) {
+  if (start && end) return t("{start} to {end}|way", { start, end });
+  return start ? t("after {start}", { start }) : end ? t("start to {end}|way", { end }) : t("on its way");
+}
+
 
 /** The sentence first: "2 UAVs get another route, 3 targets change hands, 1 stays undone." */
 export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 0 } }) {

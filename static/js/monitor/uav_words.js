@@ -32,7 +32,7 @@ export function ageWords(uav, now_ms) {
   if (age_s === null) return { words: t("no report yet"), isLate: false };
   if (!isSilent(uav, now_ms)) return { words: t("{age} s ago", { age: numberText(age_s, age_s < 10 ? 1 : 0) }), isLate: isLate(uav, now_ms) };
   const age = age_s < 100 ? `${Math.floor(age_s)}\u00a0s` : durationText(age_s);
-  return { words: t("no report for {age}", { age }), isLate: true };
+  return { words: t("no report for {age}", { age }), isLate: isLate(uav, now_ms) };
 }
 
 function heightOf({ altitude_relative_m = null, altitude_agl_m = null, altitude_amsl_m = null } = {}) {

@@ -6,7 +6,7 @@ import { t } from "../text.js";
 import { clockText, dateText, durationText, heightText, minutesAheadOfUtc, percentText, exactClockText, SHORT_UNIT, SPEED_UNIT, speedText, zoneText } from "../units.js";
 import { drawChart } from "./charts.js";
 import { drawStrip } from "./strip.js";
-import { plannedHeights, scaleOf, ticksOf } from "./timeline.js";
+import { hasLanded, plannedHeights, scaleOf, ticksOf } from "./timeline.js";
 import { ESTIMATED, linesOf, MEASURED, momentOf, SILENT } from "./track.js";
 
 const MOST_READINGS = 6; // beside a chart; of more UAVs only the chosen one is read
@@ -29,9 +29,9 @@ function nextWords({ track, targets, isOver }, at_ms) {
   if (at_ms < first.from_ms) return t("takes off in {time}", { time: waitText(first.from_ms - at_ms) });
   const next = targets.find((target) => target.at_ms > at_ms);
   if (next) return t("{target} in {time}", { target: next.label, time: waitText(next.at_ms - at_ms) });
-  const flight = track.flights.find(({ to_ms }) => to_ms > at_ms);
-  if (flight) return t("lands in {time}", { time: waitText(flight.to_ms - at_ms) });
-  return isOver || track.samples.at(-1).isInAir === false ? t("landed") : t("last heard {time}", { time: clockText(track.samples.at(-1).at_ms) });
+  const index = track.flights.findIndex(({ to_ms }) => to_ms > at_ms);
+  if (index >= 0 && hasLanded(track, index, isOver)) return t("lands in {time}", { time: waitText(track.flights[index].to_ms - at_ms) });
+  return hasLanded(track, track.flights.length - 1, isOver) ? t("landed") : t("last heard {time}", { time: clockText(track.samples.at(-1).at_ms) });
 }
 
 function unsureWords(moment) {

@@ -13,38 +13,52 @@ const ENDS = { start: t("take-off"), end: t("end"), base: t("base") };
 const pointName = (sequence) => t("point {number}", { number: sequence });
 const letter = (place) => h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place));
 
-/** onLook({ place, from, to } or null): the leg whose row the pointer or the focus is on. */
+/** By target, the legs to each unfolded at will. onLook({ place, from, to } or null): what the pointer or the focus is on. */
 export function drawLegs(record, labels, onLook) {
-  const routes = record.routes.map((route) => ({ ...route, legs: route.legs.filter(({ length_m }) => length_m >= 1) })).filter(({ legs }) => legs.length);
-  const count = routes.reduce((sum, { legs }) => sum + legs.length, 0);
+  const routes = record.routes.filter(({ stages }) => stages.length);
+  const count = routes.reduce((sum, { stages }) => sum + stages.length, 0);
   fold("legs", count, h("div", {}, routes.map((route) => legTable(route, labels, onLook))));
 }
 
 const metres = (value) => (value === null ? "—" : exactHeightText(value));
+const errors = (rms, max) => h("td", { class: "number", title: t("RMS {rms}, greatest {max}", { rms: metres(rms), max: metres(max) }) }, rms === null ? "—" : [metres(rms), h("small", {}, metres(max))]);
 
 function legTable(route, labels, onLook) {
   const heads = [t("Leg"), t("Length"), t("Off route"), t("Height error")];
-  const errors = (rms, max) => h("td", { class: "number", title: t("RMS {rms}, greatest {max}", { rms: metres(rms), max: metres(max) }) }, rms === null ? "—" : [metres(rms), h("small", {}, metres(max))]);
-  const row = (leg) => {
+  const several = route.stages.some(({ flight }) => flight > 1);
+  const row = (leg, { button, words = "", isWithin = false }) => {
     const look = () => onLook({ place: route.place, from: leg.from_sequence, to: leg.to_sequence });
     const name = [leg.from_sequence, leg.to_sequence].map((sequence) => waypointName(route, sequence, labels, ENDS, pointName)).join(" – ");
+    const small = [words, leg.reports === 0 && t("no report")].filter(Boolean).join(", ");
     return h(
       "tr",
-      { class: leg.reports ? "" : "unflown", onpointerenter: look, onpointerleave: () => onLook(null) },
-      h("th", { scope: "row" }, h("button", { type: "button", class: "report-leg", onfocus: look, onblur: () => onLook(null) }, name), leg.reports === 0 && h("small", {}, t("no report"))),
+      { class: [isWithin && "report-within", !leg.reports && "unflown"].filter(Boolean).join(" "), hidden: isWithin, onpointerenter: look, onpointerleave: () => onLook(null) },
+      h("th", { scope: "row" }, h("button", { type: "button", class: "report-leg", onfocus: look, onblur: () => onLook(null), ...button }, name), small && h("small", {}, small)),
       h("td", { class: "number" }, lengthText(leg.length_m)),
       errors(leg.across_rms_m, leg.across_max_m),
       errors(leg.height_rms_m, leg.height_max_m),
     );
+  };
+  const stageRows = (stage) => {
+    const legs = route.legs.filter((leg) => leg.length_m >= 1 && leg.from_sequence >= stage.from_sequence && leg.to_sequence <= stage.to_sequence);
+    const words = several ? t("flight {number}", { number: stage.flight }) : "";
+    if (legs.length < 2) return h("tbody", {}, row(stage, { words }));
+    const rows = legs.map((leg) => row(leg, { isWithin: true }));
+    const unfold = ({ currentTarget }) => {
+      const isOpen = currentTarget.getAttribute("aria-expanded") !== "true";
+      currentTarget.setAttribute("aria-expanded", isOpen);
+      for (const one of rows) one.hidden = !isOpen;
+    };
+    return h("tbody", {}, row(stage, { words: [words, t("{count} legs", { count: legs.length })].filter(Boolean).join(", "), button: { "aria-expanded": "false", onclick: unfold } }), rows);
   };
   const table = h(
     "table",
     { class: "report-table report-legs" },
     h("caption", {}, t("RMS, and below it the greatest")),
     h("thead", {}, h("tr", {}, heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)))),
-    h("tbody", {}, route.legs.map(row)),
+    route.stages.map(stageRows),
   );
-  return h("details", { class: "report-route" }, h("summary", {}, icon("chevron-down", "small"), letter(route.place), h("strong", {}, route.name), h("span", { class: "count" }, route.legs.length)), table);
+  return h("details", { class: "report-route" }, h("summary", {}, icon("chevron-down", "small"), letter(route.place), h("strong", {}, route.name), h("span", { class: "count" }, route.stages.length)), table);
 }
 
 /** onSeek(iso): the time of an alert was clicked. */

@@ -5,6 +5,7 @@ import { byId, h, icon } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { t } from "../text.js";
 import { createDock } from "./dock.js";
+import { offerFollowUp } from "./follow_up.js";
 import { labelsOf } from "./labels.js";
 import { mountLayout } from "./layout.js";
 import { drawAlerts, drawCommands, drawLegs, drawResults } from "./lists.js";
@@ -72,6 +73,7 @@ function take(loaded) {
   events = eventsOf({ routes, targets: record.targets, alerts: loaded.alerts, isOver: isOver(record) });
   drawHead(record);
   drawTargets(record, labels, (place) => map.showPlace(labels.get(place).position));
+  offerFollowUp(record, { canPlan: page.canFly });
   drawLegs(record, labels, lookAtLeg);
   drawAlerts(loaded.alerts, (uav) => routes.find((route) => route.uav === uav)?.name ?? "", (iso) => player.seek(Date.parse(iso)));
   drawCommands(loaded.commands);

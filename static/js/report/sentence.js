@@ -4,6 +4,7 @@ import { t, tn } from "../text.js";
 import { clockText, durationText, energyText, exactHeightText, lengthText, percentText } from "../units.js";
 
 const UNDER_WAY = ["dispatched", "active"];
+const ENOUGH_TO_SHARE = 20; // estimates beside a measurement: of fewer a share says nothing
 const NOT_BEGUN = ["draft", "planned", "approved", "dispatched"];
 
 export const isUnderWay = ({ mission }) => UNDER_WAY.includes(mission.state);
@@ -52,7 +53,7 @@ export function figuresOf(record) {
     ...(planned.energy_wh === null && flown.energy_wh === null ? [] : [compared(t("Energy"), "energy_wh", energyText)]),
     { words: t("Off route, RMS"), planned: "", flown: metres(across_rms_m), more: "" },
     { words: t("Height error, RMS"), planned: "", flown: metres(height_rms_m), more: "" },
-    ...(estimates.compared
+    ...(estimates.compared >= ENOUGH_TO_SHARE
       ? [
           { words: t("Estimates inside bound"), planned: percentText(95), flown: percentText(estimates.share_inside * 100), more: "" },
           { words: t("Estimates off, RMS"), planned: "", flown: metres(estimates.rms_m), more: "" },

@@ -45,6 +45,9 @@ export function rulesOf(highest) {
   return Array.from({ length: Math.floor(highest / step + 1e-9) }, (_, index) => (index + 1) * step);
 }
 
+/** Whether a UAV's flight of this index has ended, as far as anybody heard. */
+export const hasLanded = (track, index, isOver) => isOver || index < track.flights.length - 1 || track.samples.at(-1).isInAir === false;
+
 /**
  * What happened, in the order of time: [{ at_ms, kind, place?, target?, alert? }], kind one of take-off, target, alert, landing.
  * routes: [{ place, uav, track }]; targets and alerts as the API has them. isOver: the mission has ended.
@@ -54,8 +57,7 @@ export function eventsOf({ routes, targets, alerts, isOver }) {
   for (const { place, track } of routes) {
     track.flights.forEach(({ from_ms, to_ms }, index) => {
       events.push({ at_ms: from_ms, kind: "take-off", place });
-      const isLanded = isOver || index < track.flights.length - 1 || track.samples.at(-1).isInAir === false;
-      if (isLanded) events.push({ at_ms: to_ms, kind: "landing", place });
+      if (hasLanded(track, index, isOver)) events.push({ at_ms: to_ms, kind: "landing", place });
     });
   }
   for (const target of targets) if (target.reached_at) events.push({ at_ms: Date.parse(target.reached_at), kind: "target", place: target.uav, target: target.place });

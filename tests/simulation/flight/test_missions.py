@@ -157,6 +157,19 @@ def test_pause_and_resume_miss_nothing() -> None:
     assert not uav.set_mode(Mode.MISSION).is_done  # complete, and in the air
 
 
+def test_look_is_kept_over_a_pause() -> None:
+    look = at(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, 15.0, 500.0, 0.0)
+    uav = uav_with([take_off(), look, waypoint(30.0, 0.0, 10.0, 60.0)])
+    begin(uav)
+    step(uav, 25.0)
+    uav.hold()
+    step(uav, 2.0)
+    uav.set_mode(Mode.MISSION)
+    step(uav, 3.0)
+    assert off_m(uav.state.position, place(30.0, 0.0)) < 0.5
+    assert uav.state.heading_deg > 350.0 or uav.state.heading_deg < 5.0
+
+
 def test_current_item_can_be_set_in_flight() -> None:
     uav = uav_with([take_off(), waypoint(40.0, 0.0), waypoint(0.0, 30.0), waypoint(0.0, 40.0)])
     begin(uav)

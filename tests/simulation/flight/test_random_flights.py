@@ -160,14 +160,14 @@ def test_model_that_comes_apart_is_a_crash_where_it_last_was() -> None:
     uav.arm()
     for _ in range(100):
         uav.step()
-    uav._plant.set_wind(NAN, 0.0, 0.0)
+    uav._body.plant.set_wind(NAN, 0.0, 0.0)
     uav.step()
     assert uav.is_crashed
     assert all(map(math.isfinite, numbers(uav.state)))
 
 
 def test_set_points_that_are_no_numbers_are_not_taken() -> None:
-    plant = SimulatedUav(AIRFRAMES["iris"], HOME)._plant
+    plant = SimulatedUav(AIRFRAMES["iris"], HOME)._body.plant
     assert plant.fly((1.0, 2.0, 3.0), (0.0, 0.0, 0.0), 1.0)
     for wrong in (NAN, math.inf):
         assert not plant.fly((wrong, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0)

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from missions.command_rules import HAND_OVER
 from missions.mavlink.frames import frames_of_datagram
 from missions.mavlink.signing import FrameWriter
 from missions.models import CommandKind, CommandState, Uav, UavCommand
@@ -97,6 +98,7 @@ def test_nothing_else_is_sent_unheard(uav, tmp_path):
         for kind in (CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.CHANGE_SPEED, CommandKind.PAUSE, CommandKind.RESUME):
             queue_command(uav=uav, kind=kind, actor=None)
             time.sleep(0.3)
+        queue_command(uav=uav, kind=CommandKind.HOLD, actor=None, parameters={HAND_OVER: True})
         time.sleep(1.0)
     assert set(UavCommand.objects.values_list("attempts", flat=True)) == {0}
     assert vehicle.taken == []

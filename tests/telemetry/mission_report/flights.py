@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -37,6 +38,25 @@ def route() -> FrozenRoute:
         for number, kind in enumerate(kinds)
     )
     return FrozenRoute("Kite", TakeOff(place(0.0, 0.0), 450.0), SPEED_MPS, "land", waypoints)
+
+
+SECOND = 5  # sequence at which the second flight of two begins
+
+
+def route_of_two_flights() -> FrozenRoute:
+    """The same line twice, with other targets, and a base between, where it starts anew."""
+    once = route()
+    base = replace(once.waypoints[0], sequence=SECOND - 1, kind=WaypointKind.BASE, altitude_agl_m=0.0, altitude_relative_m=0.0)
+    again = [
+        replace(waypoint, sequence=waypoint.sequence + SECOND, target=None if waypoint.target is None else waypoint.target + 2)
+        for waypoint in once.waypoints
+    ]
+    return replace(once, waypoints=(*once.waypoints, base, *again))
+
+
+def flown_twice() -> list[Fix]:
+    """The second flight half an hour after the first."""
+    return [*flown(), *(replace(fix, at_s=fix.at_s + 1_800.0, waypoint_sequence=(fix.waypoint_sequence or 0) + SECOND) for fix in flown())]
 
 
 def flown(

@@ -6,7 +6,7 @@ import pytest
 
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.flown_route import flown_route, track_of
-from tests.telemetry.mission_report.flights import flown, place, route
+from tests.telemetry.mission_report.flights import SECOND, flown, flown_twice, place, route, route_of_two_flights
 
 
 def test_a_flight_along_the_route_is_off_it_nowhere() -> None:
@@ -49,3 +49,31 @@ def test_a_track_is_broken_where_nothing_was_heard_for_long_and_one_of_a_moment_
     late = [replace(fix, at_s=fix.at_s + 600.0) for fix in fixes[:5]]
     lines = track_of(in_order([*late, *fixes, *fixes]))
     assert [len(line) for line in lines] == [len(fixes), 5]
+
+
+def test_legs_are_taken_together_by_target() -> None:
+    once = route()
+    without = replace(
+        once, waypoints=tuple(replace(point, target=None if point.sequence == 1 else point.target) for point in once.waypoints)
+    )
+    found = flown_route(without, flown(aside_m=4.0))
+    first, rest = found.stages
+    assert (first.flight, first.target, first.whole.from_sequence, first.whole.to_sequence) == (1, 1, 0, 2)
+    assert (rest.target, rest.whole.from_sequence, rest.whole.to_sequence) == (None, 2, 3)
+    assert first.whole.reports == sum(leg.reports for leg in found.legs[:2]) and first.whole.length_m == pytest.approx(600.0, abs=1.0)
+    assert first.whole.across_rms_m == pytest.approx(4.0, abs=0.1)
+
+
+def test_each_flight_of_a_route_is_told_by_itself() -> None:
+    found = flown_route(route_of_two_flights(), flown_twice())
+    assert [(stage.flight, stage.target) for stage in found.stages] == [(1, 0), (1, 1), (1, None), (2, 2), (2, 3), (2, None)]
+    assert {leg.from_sequence for leg in found.legs} == {0, 1, 2, SECOND, SECOND + 1, SECOND + 2}
+    assert all(stage.whole.reports for stage in found.stages) and found.across_max_m == pytest.approx(0.0, abs=0.1)
+    first, second = found.stages[0].whole, found.stages[3].whole
+    assert second.began_s == pytest.approx((first.began_s or 0.0) + 1_800.0, abs=2.0)
+    assert found.flown_m == pytest.approx(2 * 990.0, abs=6.0)
+
+
+def test_of_a_route_under_way_the_first_flight_is_told_and_the_second_is_not() -> None:
+    found = flown_route(route_of_two_flights(), flown())
+    assert [bool(stage.whole.reports) for stage in found.stages] == [True, True, True, False, False, False]

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.visits import visits_of
-from tests.telemetry.mission_report.flights import HOLD_S, flown, route
+from tests.telemetry.mission_report.flights import HOLD_S, flown, flown_twice, route, route_of_two_flights
 
 FASTEST_MPS = 15.0
 
@@ -51,3 +51,11 @@ def test_lost_reports_never_make_a_target_that_was_reached_a_missed_one(chance, 
     ends = [flown()[0], flown()[-1]]
     for visit in visits_of(route(), in_order([*fixes, *ends]), fastest_mps=FASTEST_MPS):
         assert visit.is_done
+
+
+def test_targets_of_the_second_flight_are_looked_for_in_the_second_flight() -> None:
+    both = visits_of(route_of_two_flights(), flown_twice(), fastest_mps=FASTEST_MPS)
+    assert [visit.target for visit in both] == [0, 1, 2, 3] and all(visit.is_done for visit in both)
+    assert both[2].reached_s == pytest.approx((both[0].reached_s or 0.0) + 1_800.0, abs=2.0)
+    under_way = visits_of(route_of_two_flights(), flown(), fastest_mps=FASTEST_MPS)
+    assert [visit.is_done for visit in under_way] == [True, True, False, False]

@@ -1,6 +1,19 @@
 /** When and in what air a mission is flown, and when it is legal. English → German; [one, other] where there is a plural. */
 
 export default {
+  "The zone may be over later.": "Die Zone gilt später vielleicht nicht mehr.",
+  "Look for a better departure": "Besseren Abflug suchen",
+  "Depart then": "Dann abfliegen",
+  "Zones bar a part of this plan. After one of them ends, another departure may do better.": "Zonen versperren einen Teil dieses Plans. Nach dem Ende einer von ihnen kann ein anderer Abflug besser sein.",
+  "Plans for other departures are being made.": "Pläne für andere Abflüge werden gemacht.",
+  "No zone near ends in the next 48 hours.": "In den nächsten 48 Stunden endet keine Zone in der Nähe.",
+  "No departure until {when} does better: one was looked at after each end of a zone near.": "Bis {when} ist kein Abflug besser: Nach jedem Ende einer Zone in der Nähe wurde einer angesehen.",
+  "Departing {when} reaches {count} target more.": ["Abflug {when}: {count} Ziel mehr.", "Abflug {when}: {count} Ziele mehr."],
+  "Departing {when} does better: {gains}.": "Abflug {when} ist besser: {gains}.",
+  "{length} less": "{length} weniger",
+  "{energy} less": "{energy} weniger",
+  "done {time} sooner after it": "danach {time} früher fertig",
+  "by what the plan is best at": "um das, worauf es beim Plan ankommt",
   "a mast or wires are in the way: over them it would be {height} above the greatest allowed height": "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten erlaubten Höhe",
   "A mission has at most {most} rally points.": "Eine Mission hat höchstens {most} Sammelpunkte.",
   "A plan with a departure counts it at its times, any other plan at all times.": "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",

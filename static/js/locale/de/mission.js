@@ -159,7 +159,4 @@ export default {
   "{who}: {what}.": "{who}: {what}.",
   "“{name}” is saved.": "„{name}“ ist gespeichert.",
   "“{name}” is saved. From now on it saves itself.": "„{name}“ ist gespeichert. Ab jetzt speichert sie sich selbst.",
-  "A route was changed by hand.": "Eine Route wurde von Hand geändert.",
-  "Plan all the same": "Trotzdem planen",
-  "Planning again takes that away.": "Neu zu planen nimmt das weg.",
 };

@@ -1,6 +1,7 @@
 /** German: what flies now. */
 
 export default {
+  "{zone} lies across the route of {uav}, {way}": "{zone} liegt auf der Route von {uav}, {way}",
   "Critical alert": "Kritischer Alarm",
   "Warning": "Warnung",
   "Held": "Gehalten",

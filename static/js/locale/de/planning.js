@@ -1,6 +1,13 @@
 /** Planning: priorities, who flies what, locks, how good a plan is. English → German; [one, other] where there is a plural. */
 
 export default {
+  "{minutes} min of flight.": "{minutes} min Flug.",
+  "It is locked to others: the run is left out as a whole.": "Es ist mit anderen festgelegt: Die Folge bleibt als Ganzes weg.",
+  "The one that comes nearest lacks {length}, {minutes} min of flight.": "Dem, das ihm am nächsten kommt, fehlen {length}, {minutes} min Flug.",
+  "At most {share} above the best plan without the zones that come or go meanwhile.": "Höchstens {share} über dem besten Plan ohne die Zonen, die währenddessen kommen oder gehen.",
+  "At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.": "Höchstens {share} über dem besten Plan mit dem Festgelegten, ohne die Zonen, die währenddessen kommen oder gehen.",
+  "No worse than the best plan without the zones that come or go meanwhile.": "Nicht schlechter als der beste Plan ohne die Zonen, die währenddessen kommen oder gehen.",
+  "Legs of {name} that were changed by hand and are as planned again: {missed} of {count}. Their ends differ, or something bars them now.": "Von Hand geänderte Abschnitte von {name}, die wieder sind wie geplant: {missed} von {count}. Ihre Enden sind andere, oder etwas ist ihnen jetzt im Weg.",
   "Each UAV that can do it has as many targets as it may have.": "Jedes UAV, das es könnte, hat so viele Ziele, wie es haben darf.",
   "However {name} charges on the way, it alone takes up to {missing} Wh more than its battery may give.": "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es bis zu {missing} Wh mehr, als sein Akku geben darf.",
   "However {name} charges on the way, the battery does not last for it.": "Wie auch immer {name} unterwegs lädt: Der Akku reicht dafür nicht.",

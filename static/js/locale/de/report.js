@@ -68,4 +68,7 @@ export default {
   "Until the last landing": "Bis zur letzten Landung",
   "What its UAVs report is drawn here as soon as they fly.": "Was ihre UAVs melden, steht hier, sobald sie fliegen.",
   "You have been signed out.": "Sie wurden abgemeldet.",
+  "No follow-up was made.": "Es wurde keine Folgemission angelegt.",
+  "flight {number}": "Flug {number}",
+  "{count} legs": "{count} Abschnitte",
 };

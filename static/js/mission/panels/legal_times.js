@@ -5,10 +5,11 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { zoneText } from "../../units.js";
-import { routesOf } from "../plan_view.js";
+import { isPlanCurrent, routesOf } from "../plan_view.js";
+import { requestOf } from "../selection.js";
 import { scheduleText } from "../../zones/schedule_words.js";
 import { departureText } from "../flight_options.js";
-import { STEP_MS, legalTimesOf, legsText, marginText, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
+import { STEP_MS, betterWords, legalTimesOf, legsText, marginText, mayDepartBetter, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
 
 const HOUR_MS = 3_600_000;
 const [LAST_ROOM, LAST_ROOM_WIDE] = [0.78, 0.93]; // a label that begins later has no room to the right, on a phone and on a desk
@@ -168,11 +169,31 @@ export function showLegalTimes(store, actions) {
     return slider;
   }
 
+  const better = h("div", { class: "stack tight" });
+
+  function offerBetter(words = "", departs_at = null) {
+    const look = h("button", { type: "button", class: "button", onclick: lookForBetter }, t("Look for a better departure"));
+    const go = departs_at && h("button", { type: "button", class: "button primary", onclick: () => (actions.setOption("departs_at", departs_at), dialog.close()) }, t("Depart then"));
+    better.replaceChildren(h("p", { class: "quiet-text", role: "status" }, words || t("Zones bar a part of this plan. After one of them ends, another departure may do better.")), h("div", { class: "acts" }, go || look));
+  }
+
+  async function lookForBetter() {
+    better.replaceChildren(h("p", { class: "quiet-text", role: "status" }, t("Plans for other departures are being made.")));
+    try {
+      const { data } = await post("/plans/later-departure", requestOf(store.state.selection), { signal: asking.signal });
+      const { words, departs_at } = betterWords(data);
+      offerBetter(words, departs_at);
+    } catch (error) {
+      if (error.name !== "AbortError") offerBetter(error.message);
+    }
+  }
+
   const isPlanned = store.state.plan?.result.routes.some((route) => route.geometry);
   dialog.append(
     h("div", { class: "stack" },
       h("div", {}, h("h2", { id: "legal-title" }, t("When is this mission legal?")), h("p", { class: "quiet-text" }, t("For the routes as planned, by the clock of {zone}.", { zone: zoneText(new Date().toISOString()) }))),
       body,
+      better,
       h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Close")))),
   );
   const stopListening = store.listen(["selection"], () => times && draw());
@@ -181,6 +202,7 @@ export function showLegalTimes(store, actions) {
     asking.abort();
   });
   open(dialog);
+  if (store.state.plan && isPlanCurrent(store.state) && mayDepartBetter(store.state.plan.result, store.state.selection.targets.length)) offerBetter();
   if (isPlanned) askAgain();
   else body.replaceChildren(h("div", { class: "empty" }, h("strong", {}, t("No route yet")), h("span", {}, t("Plan the mission first: which zones it meets, and when, comes from its routes.")), h("button", { type: "button", class: "button", onclick: () => (dialog.close(), actions.plan()) }, t("Plan"))));
 }

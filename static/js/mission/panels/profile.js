@@ -53,7 +53,7 @@ export function mountProfile(store, { grounds }) {
       longest_m,
       width_px,
       reserve_percent: store.state.plan.uavs[route.sequence]?.reserve_percent ?? null,
-      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
+      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m, isWished: Boolean(route.isWished) } }),
       onTask: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
     });
     drawn = { route, flight, chart, width_px, longest_m, fault };
@@ -71,7 +71,7 @@ export function mountProfile(store, { grounds }) {
   function follow({ along }) {
     if (!drawn) return;
     const { route, flight, chart, fault } = drawn;
-    const isHere = along?.sequence === route.sequence;
+    const isHere = along?.sequence === route.sequence && Boolean(along.isWished) === Boolean(route.isWished);
     chart.point(isHere ? along.at_m : null);
     byId("profile-words").replaceChildren(...(isHere ? readingWords(readingAt(flight, along.at_m), flight, departsAt()) : wholeWords(route, flight, fault, departsAt())));
   }

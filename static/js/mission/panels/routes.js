@@ -8,7 +8,7 @@ import { counterpart, profileOfSummary } from "../compare.js";
 import { timeAt } from "../flight_options.js";
 import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
 import { checkStateOf, checkText } from "../lost_link.js";
-import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
+import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, pointAlong, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
 import { GROUNDING } from "../plan_words.js";
 import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
 import { createPillDrag } from "../strip_drag.js";
@@ -113,7 +113,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       stopsOf: (planned) => stopsOf(route, state, planned),
       zones: zonesOf.get(waypoints) ?? [],
       waits: staysOf(route).map((stay) => ({ ...stay, words: stayText(stay) })),
-      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m } }),
+      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m, isWished: false } }),
       onTarget: (key) => store.update({ litTarget: key }),
       grab: canPlan && uavsByName(state.selection).some(({ name }) => name === route.name) ? grab : undefined,
     });
@@ -201,9 +201,10 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     for (const drawn of strips.values()) drawn.light(state.plan ? state.litTarget : null);
   }
 
-  function follow({ along }) {
-    for (const [sequence, drawn] of strips) drawn.point(along?.sequence === sequence ? along.at_m : null);
-    const position = along && strips.has(along.sequence) ? strips.get(along.sequence).positionAt(along.at_m) : null;
+  function follow(state) {
+    const { along } = state;
+    for (const [sequence, drawn] of strips) drawn.point(along?.sequence === sequence && !along.isWished ? along.at_m : null);
+    const position = pointAlong(state);
     if (position || isPointed) showPoint(position);
     isPointed = position !== null;
   }

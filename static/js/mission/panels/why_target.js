@@ -2,14 +2,15 @@
 
 import { h } from "../../dom.js";
 import { t, tn } from "../../text.js";
-import { heightText, lengthText } from "../../units.js";
+import { heightText, lengthText, numberText } from "../../units.js";
 import { inWords, zoneOf } from "../plan_words.js";
+import { showLegalTimes } from "./legal_times.js";
 
 /** said: see TargetExplanationSerializer; entry: of the plan's unassigned. */
 export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {
   const target = plan.targets[said.target];
   const full = fullUavs(said, plan);
-  return [h("p", { class: "why-sentence" }, reasonWords(said, full) || inWords(entry.message)), facts(said), canPlan && changes(said, { target, full, store, actions })].filter(Boolean);
+  return [h("p", { class: "why-sentence" }, [reasonWords(said, full) || inWords(entry.message), lackWords(said, entry)].filter(Boolean).join(" ")), facts(said), canPlan && changes(said, { target, full, store, actions })].filter(Boolean);
 }
 
 /** UAVs of the mission that could fly there but for having as many targets as they may. */
@@ -24,6 +25,12 @@ function sharedWords(said, full) {
   const names = full.map(({ name }) => name).join(", ");
   const words = tn(full.length, "{names} could fly there, but has as many targets as it may have.", "{names} could fly there, but have as many targets as they may have.", { names });
   return full.length === able.length ? words : `${words} ${t("No other UAV has the range left after its other targets.")}`;
+}
+
+/** What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves. */
+export function lackWords({ reason }, { missing_m, missing_s }) {
+  if (reason !== "beyond_range" || !missing_m) return "";
+  return t("The one that comes nearest lacks {length}, {minutes} min of flight.", { length: lengthText(missing_m), minutes: numberText(Math.ceil(missing_s / 6) / 10, 1) });
 }
 
 /** full: see fullUavs. */
@@ -75,6 +82,7 @@ function changes(said, { target, full, store, actions }) {
   const nearest = said.uavs.filter((uav) => isOfRange && uav.is_in_mission && uav.is_allowed && uav.needed_m !== null && uav.max_range_m !== null && !uav.is_enough).sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
   if (nearest) list.push(h("li", {}, t("{name} would need {missing} more range, or a start that is nearer: drag its square on the map.", { name: nearest.name, missing: lengthText(nearest.needed_m - nearest.max_range_m) })));
   if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
+  if (["inside_zone", "no_path"].includes(said.reason) && said.zones.length) list.push(act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)));
   list.push(act(t("The plan goes without it."), t("Remove it"), () => (store.update({ why: null }), actions.removeTargets([target.key]))));
   return h("div", {}, h("h3", {}, t("What would help")), h("ul", { class: "why-changes" }, list));
 }

@@ -15,8 +15,8 @@ const ACTS = { "battery-short": "return", "no-progress": "hold", "off-route": "p
 const ACT_WORDS = { return: (name) => t("Return {name}", { name }), hold: (name) => t("Hold {name}", { name }), pause: (name) => t("Pause {name}", { name }) };
 const HISTORY_AT_ONCE = 50;
 
-/** pick(uav id); commanding: null for who cannot fly. Returns keys. */
-export function mountAlerts(store, page, { pick, commanding }) {
+/** pick(uav id); commanding: null for who cannot fly; showBoard() shows them. Returns keys. */
+export function mountAlerts(store, page, { pick, commanding, showBoard }) {
   const alarm = createAlarm();
   const list = byId("alert-list");
   const told = new Map(); // alert → level that was said
@@ -151,10 +151,7 @@ export function mountAlerts(store, page, { pick, commanding }) {
         }))));
   drawSound();
 
-  byId("open-alerts").addEventListener("click", () => {
-    document.getElementById("narrow-tabs").querySelector("[value=board]").click();
-    byId("alerts-title").focus();
-  });
+  byId("open-alerts").addEventListener("click", showBoard);
   store.listen(["alerts", "uavs"], drawAll);
   store.listen(["alerts", "isWhole"], tell);
   return canFly ? [{ keys: ["a"], words: t("Acknowledge the alert that has focus, or the first"), act: () => (document.activeElement?.closest?.(".alert")?.querySelector("[data-act=acknowledge]") ?? list.querySelector("[data-act=acknowledge]"))?.click() }] : [];

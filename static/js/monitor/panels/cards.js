@@ -21,8 +21,8 @@ export function commandOf(uav, commands, now_ms) {
   return own.find(isOpen) ?? own.find(({ finished_at }) => finished_at && now_ms - Date.parse(finished_at) < SAID_FOR_MS) ?? null;
 }
 
-/** pick(id), jumpTo(id), follow() */
-export function mountCards(store, { pick, jumpTo, follow }) {
+/** isOfOne: the page is one mission's, which then need not be named; pick(id), jumpTo(id), follow() */
+export function mountCards(store, { isOfOne, pick, jumpTo, follow }) {
   const list = byId("uav-cards");
   const parts = new WeakMap();
 
@@ -56,9 +56,10 @@ export function mountCards(store, { pick, jumpTo, follow }) {
     const age = ageWords(uav, now_ms);
     refill(at.age, `${age.isLate} ${age.words}`, () => [age.isLate && icon("signal", "small"), age.words]);
     at.age.classList.toggle("late", age.isLate);
-    const about = [mission ? missions.length > 1 && mission.name : t("not in a mission"), uav.is_simulated && t("simulated, no real aircraft")].filter(Boolean).join(" · ");
-    at.mission.hidden = about === "";
-    at.mission.textContent = about;
+    const ofMission = mission ? !isOfOne && h("a", { href: `/missions/${mission.id}/fly` }, mission.name) : t("not in a mission");
+    const about = [ofMission, uav.is_simulated && t("simulated, no real aircraft")].filter(Boolean);
+    at.mission.hidden = about.length === 0;
+    refill(at.mission, JSON.stringify([mission && [mission.id, mission.name], uav.is_simulated]), () => about.flatMap((part, index) => (index ? [" · ", part] : [part])));
     const estimate = estimateWords(uav, certainty, now_ms);
     at.estimate.hidden = estimate === null;
     if (estimate) refill(at.estimate, `${estimate.strong} ${estimate.rest}`, () => [icon("circle-dashed"), h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`)]);

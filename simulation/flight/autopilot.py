@@ -1,0 +1,197 @@
+"""The autopilot: it carries out a manoeuvre, looks after battery, position and ground, and commands the loops inside the model."""
+
+import math
+
+from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
+from simulation.flight.cockpit import Cockpit
+from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
+from simulation.flight.failsafes import Failsafes
+from simulation.flight.manoeuvres import Hold, Manoeuvre
+from simulation.flight.mission import Mission
+from simulation.flight.plant import GUIDANCE_STEP_S, CameApart
+from simulation.flight.states import Mode, Severity
+
+SETTLES_S = 2.0  # on the ground, until the model rests
+
+
+class Autopilot:
+    """`revision` counts what has changed."""
+
+    def __init__(self, body: Body, cockpit: Cockpit) -> None:
+        self.body, self.cockpit = body, cockpit
+        self.manoeuvre: Manoeuvre = Hold()
+        self.is_crashed = False
+        self.revision = 0
+        self._failsafes = Failsafes()
+        self._ticks = 0
+        self._armed_ticks = 0  # on the ground
+        self._rest_ticks = 0
+        self._heading_rad = body.motion.heading_rad
+        self._look_around()
+
+    @property
+    def is_gps_lost(self) -> bool:
+        return self.cockpit.faults.is_gps_lost(self.now_s)
+
+    def arm(self) -> None:
+        self.cockpit.is_armed, self._armed_ticks = True, 0
+        self.body.plant.set_armed(True)
+        self.body.plant.set_grounded(True)
+        self.cockpit.events.append(Armed(self.now_s))
+        self.begin(self.manoeuvre)
+
+    def begin(self, manoeuvre: Manoeuvre, *, is_own: bool = False) -> None:
+        if manoeuvre.mode is not self.manoeuvre.mode:
+            self.cockpit.events.append(ModeChanged(self.now_s, manoeuvre.mode, is_own))
+        self.manoeuvre = manoeuvre
+        self.revision += 1
+        manoeuvre.begin(self.cockpit)
+
+    @property
+    def now_s(self) -> float:
+        """Simulated seconds since the start."""
+        return self._ticks * GUIDANCE_STEP_S
+
+    def step(self) -> None:
+        """0.04 s of simulated time."""
+        self._ticks += 1
+        self.revision += 1
+        cockpit = self.cockpit
+        cockpit.now_s = self.now_s
+        self.body.navigate(is_gps_lost=self.is_gps_lost)
+        if self.is_crashed or self._is_parked():
+            return
+        self.body.air.step(cockpit.agl_m)
+        self._fly()
+        try:
+            self.body.advance()
+        except CameApart as error:
+            self._crash(f"The flight model: {error}.")
+            return
+        self._look_around()
+        self._touch()
+
+    def _is_parked(self) -> bool:
+        """Disarmed and at rest on the ground: time passes, and nothing moves."""
+        if self.cockpit.is_armed or self.cockpit.is_in_air:
+            self._rest_ticks = 0
+            return False
+        self._rest_ticks += 1
+        if self._rest_ticks * GUIDANCE_STEP_S <= SETTLES_S:
+            return False
+        self.body.park()
+        return True
+
+    def _fly(self) -> None:
+        cockpit = self.cockpit
+        if not cockpit.is_armed:
+            return
+        if self.body.battery_percent <= 0.0:
+            cockpit.say("Battery empty: the motors stop", Severity.CRITICAL)
+            self.disarm()
+            return
+        own = self._failsafes.step(cockpit, self.manoeuvre.mode, self.body.battery_percent, is_gps_lost=self.is_gps_lost)
+        if own is not None:
+            self.begin(own, is_own=True)
+        self.manoeuvre.step(cockpit)
+        if self.manoeuvre.is_done and cockpit.is_in_air:
+            self.begin(Hold(), is_own=True)
+        elif not cockpit.is_in_air:
+            self._wait_on_ground()
+            if not cockpit.is_armed:
+                return
+        if cockpit.camera.is_due(cockpit.now_s, cockpit.flown_m):
+            self._take_photo()
+        self._command()
+
+    def _command(self) -> None:
+        cockpit = self.cockpit
+        above_m = max(self.body.above_standing_m, 0.0)
+        command = cockpit.guidance.step(GUIDANCE_STEP_S, cockpit.here, above_m=above_m, effort=self.body.motion.effort)
+        (east, north, up), (a_east, a_north, a_up) = command.velocity, command.acceleration
+        if not cockpit.is_in_air and not self.manoeuvre.lifts_off:
+            up = -1.0
+        u, v, _ = command.along
+        if cockpit.looks_at is not None:
+            x, y = cockpit.looks_at[0] - cockpit.here[0], cockpit.looks_at[1] - cockpit.here[1]
+            if math.hypot(x, y) > 0.5:
+                self._heading_rad = math.atan2(x, y)
+        elif cockpit.heading_deg is not None:
+            self._heading_rad = math.radians(cockpit.heading_deg)
+        elif math.hypot(u, v) > 0.2:
+            self._heading_rad = math.atan2(u, v)
+        self.body.plant.fly((north, east, -up), (a_north, a_east, -a_up), self._heading_rad)
+
+    def _wait_on_ground(self) -> None:
+        """Armed, and not off the ground: not for long."""
+        self._armed_ticks += 1
+        if self._armed_ticks * GUIDANCE_STEP_S > self.cockpit.settings.disarm_on_ground_s and not (
+            self.manoeuvre.lifts_off and not self.manoeuvre.is_done
+        ):
+            self.cockpit.say("Disarmed: no take-off")
+            self.disarm()
+
+    def _look_around(self) -> None:
+        cockpit, body = self.cockpit, self.body
+        cockpit.here, cockpit.velocity, cockpit.agl_m = body.believed(), body.velocity, body.agl_m
+        cockpit.facing_deg = math.degrees(body.motion.heading_rad) % 360.0
+        if cockpit.is_in_air:
+            cockpit.flown_m += math.hypot(cockpit.velocity[0], cockpit.velocity[1]) * GUIDANCE_STEP_S
+
+    def _touch(self) -> None:
+        """Off the ground, onto it, or into it."""
+        cockpit, body = self.cockpit, self.body
+        if not cockpit.is_in_air:
+            if cockpit.is_armed and body.above_standing_m > STEADY_M:
+                body.plant.set_grounded(False)
+            if body.above_standing_m > OFF_GROUND_M:
+                cockpit.is_in_air = True
+                cockpit.events.append(TookOff(self.now_s))
+            return
+        contact = body.contact()
+        if contact is Contact.OVERTURNED:
+            self._crash("It overturned.")
+        elif contact is Contact.HARD:
+            self._crash(f"It hit the ground at {body.impact_mps:.1f} m/s.")
+        elif contact is Contact.SOFT:
+            if cockpit.is_armed and not self.manoeuvre.is_landing:
+                cockpit.say("Touched the ground outside of a landing", Severity.WARNING)
+            self._landed()
+
+    def _landed(self) -> None:
+        cockpit = self.cockpit
+        cockpit.is_in_air = False
+        self.body.plant.set_armed(False)
+        self.body.plant.set_grounded(True)
+        cockpit.events.append(LandedAt(self.now_s, self.body.position))
+        self.manoeuvre.step(cockpit)  # a mission's last item is told before the motors are
+        self.disarm()
+
+    def disarm(self) -> None:
+        cockpit = self.cockpit
+        self.body.plant.set_armed(False)
+        if cockpit.is_armed:
+            cockpit.is_armed = False
+            cockpit.events.append(Disarmed(self.now_s))
+        if not cockpit.is_in_air:
+            self.body.plant.set_grounded(True)
+            cockpit.camera.stop()
+            cockpit.heading_deg = cockpit.looks_at = None
+            if self.manoeuvre.mode is not Mode.HOLD:
+                self.begin(Hold(), is_own=True)
+        self.revision += 1
+
+    def _crash(self, reason: str) -> None:
+        cockpit = self.cockpit
+        self.is_crashed = True
+        cockpit.is_in_air = False
+        self.disarm()
+        cockpit.events.append(Crashed(self.now_s, self.body.position, reason))
+        cockpit.say(f"Crashed: {reason}", Severity.CRITICAL)
+        self.body.stop()
+
+    def _take_photo(self) -> None:
+        cockpit, motion = self.cockpit, self.body.motion
+        position = cockpit.position_of(cockpit.here)
+        item = self.manoeuvre.index if isinstance(self.manoeuvre, Mission) else None
+        cockpit.events.append(PhotoTaken(self.now_s, cockpit.camera.number, position, motion.altitude_amsl_m, cockpit.facing_deg, item))

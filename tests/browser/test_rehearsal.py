@@ -1,0 +1,100 @@
+"""The panel of rehearsals on the page of a mission: by pointer and keys, wide and narrow, in both languages."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Site, Visitor
+from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.pictures import HAS_PICTURES
+from tests.browser.test_accessibility import faults
+from tests.browser.test_report import VIEWS, posts
+
+pytestmark = pytest.mark.browser
+
+Picture = Callable[[Page, str], None]
+FLIGHT_MS = 120_000
+STARTS = {"Wigeon": [-82.995, 39.905], "Shoveler": [-82.945, 39.905]}
+_planned: dict[str, str] = {}
+
+
+@pytest.fixture
+def planned(visitor: Visitor, site: Site) -> str:
+    """A mission of two UAVs that is planned, over flat ground: its key; planned once for all tests."""
+    if site.address not in _planned:
+        page = visitor.signs_in("ada")
+        uavs = [posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})["id"] for name, position in STARTS.items()]
+        towers = asks(page, "/assets?kind=tower&bbox=-83.0,39.90,-82.94,39.92&limit=100")["features"]
+        body = {
+            "name": "South belt, rehearsed", "uavs": [{"id": uav, "most_targets": 2} for uav in uavs],
+            "targets": [{"asset": tower["id"]} for tower in towers[:: max(1, len(towers) // 3)][:3]],
+            "return_to_start": True, "plan": True,
+        }  # fmt: skip
+        _planned[site.address] = posts(page, "/missions", body)["id"]
+        page.context.close()
+    return _planned[site.address]
+
+
+def opened(page: Page, key: str) -> Page:
+    page.goto(f"/missions/{key}")
+    wait_for_map(page)
+    return page
+
+
+def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str, picture: Picture) -> None:
+    page = opened(visitor.signs_in("opal"), planned)
+    panel = page.get_by_role("region", name="Rehearsal")
+    page.keyboard.press("r")
+    expect(panel.get_by_role("checkbox", name="Calm")).to_be_focused()
+    panel.get_by_role("checkbox", name="As planned").uncheck()
+    start = panel.get_by_role("button", name="Rehearse", exact=True)
+    expect(start).to_be_disabled()
+    panel.get_by_role("checkbox", name="Calm").check()
+    panel.get_by_text("Own figures").last.click()
+    panel.get_by_label("Battery holds").fill("25")
+    expect(panel.get_by_role("checkbox", name="Own figures")).to_be_checked()
+    start.click()
+    expect(panel.get_by_role("button", name="Cancel")).to_be_visible()
+    sentence = panel.locator("#rehearsal-sentence")
+    expect(sentence).to_have_text(re.compile(r"^\d of 3 targets fails?: Own figures\.$"), timeout=FLIGHT_MS)
+    expect(panel.get_by_role("group", name="Conditions").get_by_role("button", name="Own figures")).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    expect(panel.locator(".rehearsal-targets .fail .rehearsal-why").first).to_have_text(
+        re.compile(r"% battery at return, limit 20 %|was not flown to")
+    )
+    expect(panel.get_by_role("img", name="Height above take-off by time").first).to_be_visible()
+    expect(panel.get_by_role("row", name=re.compile(r"^Battery at landing .* limit 20\s%"))).to_be_visible()
+    panel.get_by_role("button", name="Calm").click()
+    expect(panel.locator(".rehearsal-targets .pass")).to_have_count(3)
+    panel.get_by_text("Limits and what flew").click()
+    expect(panel).to_contain_text("Wigeon: the simulated Iris, the nearest by mass and endurance")
+    picture(page, "rehearsal-limits")
+
+
+@pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["dark", "phone-light"])
+def test_the_verdict_fits_every_window(visitor: Visitor, planned: str, picture: Picture, view: str) -> None:
+    page = visitor.signs_in("vera", **VIEWS[view])
+    if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
+        pytest.skip("nothing was rehearsed")
+    opened(page, planned)
+    panel = page.locator("#rehearsal")
+    expect(panel.locator("#rehearsal-sentence")).to_have_count(1)
+    expect(panel.get_by_role("button", name="Rehearse", exact=True)).to_have_count(0)
+    panel.evaluate("(panel) => panel.scrollIntoView()")
+    picture(page, f"rehearsal-{view}")
+    assert faults(page) == []
+
+
+def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, planned: str) -> None:
+    page = visitor.signs_in("opal")
+    if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
+        pytest.skip("nothing was rehearsed")
+    token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
+    body: dict[str, Any] = {"return_to_start": False, "plan": True}
+    assert page.request.patch(f"/api/v1/missions/{planned}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"}).ok
+    opened(page, planned)
+    expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Out of date.")

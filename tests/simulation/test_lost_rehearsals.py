@@ -1,0 +1,38 @@
+"""A real worker of the queue `simulation` that is killed with -9 in mid-flight: the rehearsal is flown by the next one."""
+
+from pathlib import Path
+
+import pytest
+
+from simulation.models import Rehearsal, RehearsalTrack
+from tests.missions.flights import an_operator, fleet, ground, planned
+from tests.missions.test_lost_planners import kill, own_queue, wait_until, worker
+from tests.missions.worlds import world
+from tests.simulation.rehearsed import asked
+from workspace import tasks
+from workspace.models import Job, JobState
+
+pytestmark = pytest.mark.django_db(transaction=True)
+
+
+@pytest.mark.long
+def test_a_rehearsal_whose_worker_is_killed_is_taken_over(tmp_path: Path) -> None:
+    here, person = world(), an_operator()
+    ground(tmp_path / "ground.tif")
+    rehearsal = asked(planned(person, fleet("Tern", "Gull"), [here.towers[0], here.towers[3]]), person, "calm", "strong-wind")
+    with own_queue() as queue:
+        with worker(queue, tmp_path) as first:
+            tasks.send_job(rehearsal.job)
+            wait_until(lambda: Job.objects.get().progress > 0.1)
+            kill(first)
+        assert Job.objects.get().state == JobState.RUNNING
+        with worker(queue, tmp_path):
+
+            def is_done() -> bool:
+                tasks.requeue_lost_jobs()
+                return Job.objects.get().state == JobState.DONE
+
+            wait_until(is_done)
+    assert Job.objects.get().attempts == 2
+    assert Rehearsal.objects.get().level in ("pass", "warnings")
+    assert RehearsalTrack.objects.count() == 4

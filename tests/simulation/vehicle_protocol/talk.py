@@ -1,0 +1,75 @@
+"""A station that talks to an endpoint by real frames, without a socket."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from simulation.vehicle_protocol.endpoint import Endpoint
+from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.stations import Outgoing, Station
+from tests.simulation.kinematic_uav import STEP_S, KinematicUav
+
+SYSTEM = 7
+TO = (SYSTEM, 1)
+UNIX_S = 1_800_000_000.0
+STATION = Station(255, 190, 1)
+
+
+def over_the_wire(message: Any, system: int, component: int) -> Any:
+    """As the other end gets it."""
+    return mavlink.MAVLink(None).parse_char(bytes(message.pack(mavlink.MAVLink(None, srcSystem=system, srcComponent=component))))
+
+
+@dataclass
+class Talk:
+    """`say` returns what comes back to everybody and to this station, `pass_by` what the vehicle says by itself meanwhile."""
+
+    flavour: Flavour = Flavour.PX4
+    uav: Any = field(default_factory=KinematicUav)
+    now_s: float = 0.0
+    station: Station = STATION
+
+    def __post_init__(self) -> None:
+        self.endpoint = Endpoint(self.uav, flavour=self.flavour, system=SYSTEM, unix_at_zero_s=UNIX_S)
+        self.endpoint.tick(self.now_s)
+
+    def say(self, *messages: Any, station: Station | None = None) -> list[Any]:
+        who = station or self.station
+        answers: list[Outgoing] = []
+        for message in messages:
+            answers += self.endpoint.receive(over_the_wire(message, who.system, who.component), who, self.now_s)
+        assert all(answer.to in (None, who) for answer in answers)
+        return [over_the_wire(answer.message, SYSTEM, 1) for answer in answers]
+
+    def pass_by(self, seconds: float, wall_s: float | None = None) -> list[Any]:
+        """So many simulated seconds, in as many of the wall unless told otherwise."""
+        steps = round(seconds / STEP_S)
+        told = []
+        for _ in range(steps):
+            self.uav.step()
+            self.now_s += (seconds if wall_s is None else wall_s) / steps
+            told += [over_the_wire(one.message, SYSTEM, 1) for one in self.endpoint.tick(self.now_s)]
+        return told
+
+    def command(self, number: int, *values: float) -> int:
+        """The result of a COMMAND_LONG; what is not given is NaN, as MAVSDK leaves it."""
+        parameters = [*values, *[float("nan")] * (7 - len(values))]
+        answers = self.say(mavlink.MAVLink_command_long_message(*TO, number, 0, *parameters))
+        (result,) = [answer.result for answer in answers if answer.get_type() == "COMMAND_ACK"]
+        return int(result)
+
+    @property
+    def mode(self) -> tuple[int, int]:
+        """PX4's main and sub mode; ArduPilot's number and 0."""
+        number = self.endpoint.pilot.custom_mode
+        return (number >> 16 & 0xFF, number >> 24) if self.flavour is Flavour.PX4 else (number, 0)
+
+
+def kinds(messages: list[Any]) -> list[str]:
+    return [message.get_type() for message in messages]
+
+
+def only(messages: list[Any], kind: str) -> Any:
+    (found,) = [message for message in messages if message.get_type() == kind]
+    return found

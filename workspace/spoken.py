@@ -1,0 +1,22 @@
+"""In which language somebody is spoken to who has chosen none: that of the browser, by websocket as by HTTP."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from django.http import HttpRequest
+from django.utils import translation
+
+from workspace.models import User
+
+
+def language_of_request(user: User, request: HttpRequest) -> str:
+    return user.language or translation.get_language_from_request(request)
+
+
+def language_of_socket(user: User, scope: Mapping[str, Any]) -> str:
+    """scope: of a websocket behind the session's middleware."""
+    request = HttpRequest()
+    request.COOKIES = dict(scope.get("cookies", {}))
+    told = dict(scope.get("headers", [])).get(b"accept-language", b"")
+    request.META["HTTP_ACCEPT_LANGUAGE"] = told.decode("latin-1")
+    return language_of_request(user, request)
