@@ -21,7 +21,7 @@ CURATED = re.compile(
 # a POST because the question is long; nothing is stored
 ASKED_BY_ALL = {
     "terrain_profile", "convert_heights", "lookup_assets", "list_assets_within", "report_presence",
-    "explain_unreached_target", "explain_route", "plan_legal_windows", "reachable_assets", "check_legs",
+    "explain_unreached_target", "explain_route", "plan_legal_windows", "find_later_departure", "reachable_assets", "check_legs",
 }  # fmt: skip
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(people|invitations|sign-ins|unknown-vehicles)(/|$)")
