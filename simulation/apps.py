@@ -7,7 +7,6 @@ class SimulationConfig(AppConfig):
     name = "simulation"
 
     def ready(self) -> None:
-        from missions.services.approval_checks import register_check  # noqa: PLC0415 (models are there by then)
-        from simulation.services.green_verdict import reasons_without_rehearsal  # noqa: PLC0415
+        from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
 
-        register_check(reasons_without_rehearsal)
+        register_check("simulation.services.green_verdict.reasons_without_rehearsal")

@@ -14,6 +14,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from inspection.selectors.ground import held_ground_revision
+from missions.approval_hooks import further_reasons
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import (
     OPEN_COMMANDS,
@@ -27,7 +28,7 @@ from missions.models import (
     UavCommand,
 )
 from missions.selectors import approval_in_force, mission_of_organisation
-from missions.services.approval_checks import further_reasons, reasons_against
+from missions.services.approval_checks import reasons_against
 from missions.services.approval_document import approval_document, content_sha256
 from missions.services.missions import MissionChanged, note
 from missions.services.outbox import end_commands, queue_command

@@ -1,6 +1,6 @@
 """What speaks against flying a mission's routes as they are stored: looked at before it is approved, and again before it is sent."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
@@ -20,20 +20,6 @@ from missions.stale_selectors import causes_on_the_routes
 from missions.uav_change_selectors import uav_changes
 
 TOO_NEAR = {"too_near", "hovers_in_the_way"}
-
-Check = Callable[[Mission], list[Reason]]
-_further: list[Check] = []
-
-
-def register_check(check: Check) -> None:
-    """Later apps ask more of a mission before it is approved; it is told of one as loaded by selectors.mission_of_organisation."""
-    if check not in _further:
-        _further.append(check)
-
-
-def further_reasons(mission: Mission) -> list[Reason]:
-    """What later apps have against approving a mission as it is planned."""
-    return [reason for check in _further for reason in check(mission)]
 
 
 def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[Reason]:
