@@ -6,7 +6,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -16,11 +16,13 @@ from simulation.flight.ground import FlatGround
 from simulation.flight.states import Mode
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import GUIDED
 from tests.simulation.fleets import AT, flying, free_port, wait_for
 
 SPEED = 20.0
 GROUND_M = 40.0
 SYSTEM = 7
+WAITS = {Flavour.PX4: "COM_DISARM_PRFLT", Flavour.ARDUPILOT: "DISARM_DELAY"}
 HOME = "16 0 0 0 0 0 55.4 10.4 40"
 MISSION = ("22 3 0 0 0 0 55.4 10.4 15", "16 3 2 0 0 0 55.4004 10.4 20", "21 3 0 0 0 0 55.4004 10.4 0")
 FENCE = ("5001 0 3 0 0 0 55.41 10.39 0", "5001 0 3 0 0 0 55.41 10.41 0", "5001 0 3 0 0 0 55.39 10.4 0")
@@ -48,6 +50,15 @@ class MavProxy:
         self._mark = len(self._printed)
         self._process.stdin.write(line + "\n")
         self._process.stdin.flush()
+
+    def asked(self, line: str, words: str) -> None:
+        """Says the line again until it tells so: what the vehicle has told it may not have read yet."""
+        for _ in range(10):
+            self.say(line)
+            with suppress(AssertionError):
+                wait_for(lambda: words in self.since, words, patience_s=2.0)
+                return
+        raise AssertionError(f"MAVProxy did not tell {words!r} but:\n{self.since}")
 
     @property
     def since(self) -> str:
@@ -111,7 +122,7 @@ def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
     launch = Launch(SYSTEM, AT, flavour=flavour, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
     mission = [HOME, *MISSION] if flavour is Flavour.ARDUPILOT else list(MISSION)
     with flying([launch], speed=SPEED) as fleet, mavproxy(port, tmp_path) as station:
-        uav, held = fleet.uavs[0].uav, fleet.uavs[0].endpoint.missions.held
+        uav, pilot, held = fleet.uavs[0].uav, fleet.uavs[0].endpoint.pilot, fleet.uavs[0].endpoint.missions.held
         station.told("Saved")  # its parameters: it has asked for all it wants
 
         for kind, name, items in (
@@ -131,27 +142,27 @@ def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
         name, value, metres = {Flavour.PX4: ("RTL_RETURN_ALT", "33", 33.0), Flavour.ARDUPILOT: ("RTL_ALT", "3300", 33.0)}[flavour]
         station.say(f"param set {name} {value}")
         wait_for(lambda: uav.settings.return_height_m == metres, "the parameter")
-        station.say(f"param show {name}")
-        assert f"{float(value):.1f}" in station.told(name)
+        station.asked(f"param show {name}", f"{float(value):.1f}")
 
+        station.say(f"param set {WAITS[flavour]} 120")  # simulated seconds on the ground: the machine may be busy
+        wait_for(lambda: uav.settings.disarm_on_ground_s == 120.0, "the parameter")
         if flavour is Flavour.ARDUPILOT:
             station.say("mode GUIDED")
-            station.told("GUIDED>")
+            station.told("DO_SET_MODE: ACCEPTED")
+            assert pilot.custom_mode == GUIDED
             station.say("arm throttle")
             station.told("ARMED")
             station.say("takeoff 12")
             wait_for(lambda: uav.state.altitude_relative_m > 11.5, "the height of take-off")
             station.say("mode AUTO")
-            station.told("AUTO>")
         else:  # its own `mode` does not know how PX4 numbers modes
             station.say("arm throttle")
             station.told("ARMED")
             station.say("long MISSION_START 0 0 0 0 0 0 0")
-            station.told("MISSION>")
             wait_for(lambda: uav.state.altitude_relative_m > 5.0, "the take-off")
             station.say("long DO_SET_MODE 209 4 3 0 0 0 0")
-            station.told("LOITER>")
-            wait_for(lambda: uav.state.mode is Mode.HOLD, "the pause")
+            station.told("DO_SET_MODE: ACCEPTED")
+            assert uav.state.mode is Mode.HOLD
             station.say("long DO_SET_MODE 209 4 4 0 0 0 0")
         station.told("DISARMED")
         assert not uav.state.is_in_air and uav.state.position.lat == pytest.approx(55.4004, abs=2e-5)

@@ -23,6 +23,8 @@ from tests.simulation.fleets import AT, PATIENCE_S, flying, free_port, wait_for
 SPEED = 20.0
 GROUND_M = 40.0
 NORTH_DEG = 1 / 111_195.0
+# Simulated seconds armed on the ground: the machine may be busy.
+WAITS = {Flavour.PX4: "COM_DISARM_PRFLT", Flavour.ARDUPILOT: "DISARM_DELAY"}
 MISSION, HOLD, RETURN, LAND = "MISSION", "HOLD", "RETURN_TO_LAUNCH", "LAND"
 
 
@@ -58,7 +60,9 @@ def station(request) -> Iterator[Station]:
             system = mavsdk.first_autopilot(PATIENCE_S)
             assert system is not None
             plugins = (plugin(system) for plugin in (Action, Telemetry, Mission, MissionRaw, Param, Info))
-            yield Station(fleet, request.param, *plugins)
+            found = Station(fleet, request.param, *plugins)
+            found.param.set_param_float(WAITS[request.param], 120.0)
+            yield found
         finally:
             mavsdk.destroy()
 

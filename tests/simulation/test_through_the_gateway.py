@@ -57,7 +57,8 @@ def fresh(mission: Mission) -> Mission:
 def test_a_mission_is_flown_to_its_end(flavour, uav_and_key, mission, tmp_path):
     uav, key = uav_and_key
     port = free_port()
-    launch = Launch(SYSTEM, LonLat(*UAV_AT), "inspector", flavour, key, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
+    ground_below, station = FlatGround(GROUND_M), ("127.0.0.1", port)
+    launch = Launch(SYSTEM, LonLat(*UAV_AT), airframe="inspector", flavour=flavour, key=key, ground=ground_below, talks_to=[station])
     with gateway_program(port, tmp_path), flying([launch], speed=SPEED) as fleet:
         (upload,) = dispatch_mission(mission=mission, actor=mission.author)
         load = load_of(ended(upload))
