@@ -98,7 +98,7 @@ def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, planned: str
     if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
         pytest.skip("nothing was rehearsed")
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
-    body: dict[str, Any] = {"return_to_start": False, "plan": True}
+    body: dict[str, Any] = {"departs_at": "2031-05-01T10:00:00Z", "plan": True}
     assert page.request.patch(f"/api/v1/missions/{planned}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"}).ok
     opened(page, planned)
     expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Out of date.")
