@@ -28,18 +28,20 @@ def test_mavproxy_connects_and_arms(tmp_path):
     own = [f"--logfile={tmp_path / 'log.tlog'}", f"--state-basedir={tmp_path}"]
     command = [sys.executable, str(Path(sys.executable).with_name(program)), *words, *own]
     pipe, environment = subprocess.PIPE, os.environ | {"HOME": str(tmp_path)}
-    with flying([Launch(1, AT, listens_at=(HOST, port))], speed=SPEED) as fleet:
-        with subprocess.Popen(  # noqa: S603
+    with (
+        flying([Launch(1, AT, listens_at=(HOST, port))], speed=SPEED) as fleet,
+        subprocess.Popen(  # noqa: S603
             command, cwd=tmp_path, env=environment, stdin=pipe, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True, bufsize=1
-        ) as process:
-            assert process.stdin is not None
-            try:
-                wait_for(lambda: fleet.uavs[0].heard > 3, "MAVProxy", patience_s=60.0)
-                process.stdin.write("arm throttle\n")
-                wait_for(lambda: fleet.uavs[0].uav.state.is_armed, "arming", patience_s=60.0)
-            finally:
-                process.kill()
-                process.wait()
+        ) as process,
+    ):
+        assert process.stdin is not None
+        try:
+            wait_for(lambda: fleet.uavs[0].heard > 3, "MAVProxy", patience_s=60.0)
+            process.stdin.write("arm throttle\n")
+            wait_for(lambda: fleet.uavs[0].uav.state.is_armed, "arming", patience_s=60.0)
+        finally:
+            process.kill()
+            process.wait()
 
 
 def test_mavsdk_connects_and_takes_off():
