@@ -29,7 +29,7 @@ class Rehearsal(models.Model):
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, related_name="rehearsals")
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="rehearsals")
-    job = models.OneToOneField(Job, on_delete=models.PROTECT, related_name="rehearsal", help_text="its state, lease and progress")
+    job = models.OneToOneField(Job, on_delete=models.CASCADE, related_name="rehearsal", help_text="its state, lease and progress")
     content_sha256 = models.CharField(max_length=64, editable=False, help_text="of the routes, what flies them and when")
     mission_revision = models.PositiveIntegerField(help_text="of the mission when it was asked for")
     ground_revision = models.PositiveBigIntegerField(help_text="zones, assets and terrain that it is held against")

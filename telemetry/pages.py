@@ -6,7 +6,7 @@ from uuid import UUID
 from django.http import Http404
 
 from inspection.selectors import ground_extent
-from missions.models import Mission
+from missions.models import Mission, MissionUav
 from missions.selectors import mission_bounds
 from workspace.pages import SignedInPage, raster_maps
 
@@ -42,6 +42,10 @@ class MissionStagePage(SignedInPage):
 
 class MissionFlyPage(MissionStagePage):
     template_name = "live.html"
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        simulated = MissionUav.objects.filter(mission=kwargs["mission_id"], uav__is_simulated=True)
+        return super().page(**kwargs) | {"hasSimulated": simulated.exists()}
 
 
 class MissionReportPage(MissionStagePage):

@@ -113,6 +113,7 @@ def test_every_pure_folder_is_under_the_strict_type_check() -> None:
         "watch",
         "live",
         "vehicle_endpoint",
+        "simulator",
     }
     folders = {
         f"{app}/{path.parent.name}"

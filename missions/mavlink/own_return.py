@@ -1,9 +1,9 @@
 """Where and how high an autopilot flies home by itself, as its parameters say. Heights count from where it took off.
 
-Sources. ArduPilot/ardupilot: ArduCopter/mode_rtl.cpp (compute_return_target), libraries/AP_Rally/AP_Rally.cpp,
-libraries/AC_Avoidance/AP_OAPathPlanner.cpp; in January 2026 metres took the place of centimetres (convert_params there). Its RTL_OPTIONS
-concern the pilot's yaw alone. PX4/PX4-Autopilot: src/modules/navigator/rtl.cpp (computeReturnAltitude, findRtlDestination),
-rtl_params.yaml, geofence_avoidance_params.yaml.
+Sources, read: ArduPilot/ardupilot ArduCopter/mode_rtl.cpp (compute_return_target) and libraries/AP_Rally/AP_Rally.cpp, both of the years
+in which heights were centimetres; PX4/PX4-Autopilot src/modules/navigator/rtl_params.yaml and geofence_avoidance_params.yaml. Seen in
+parts only: ArduPilot's change to metres of January 2026 (convert_params), libraries/AC_Avoidance/AP_OAPathPlanner.cpp, PX4's rtl.cpp
+(computeReturnAltitude). ArduPilot's RTL_OPTIONS concern the pilot's yaw alone.
 """
 
 import math

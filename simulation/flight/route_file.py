@@ -46,6 +46,8 @@ def read_route(value: Any) -> RouteFile:
         if not isinstance(waypoint, Mapping):
             raise InvalidRoute(f"waypoints[{number}] is not an object with position and altitude_relative_m.")
         positions.append(_position(waypoint.get("position"), f"waypoints[{number}].position"))
+        if number and abs(positions[-1].lon - positions[-2].lon) > 180.0:
+            raise InvalidRoute(f"waypoints[{number}] is on the other side of the 180th meridian; routes across it are not flown.")
         heights.append(_number(waypoint.get("altitude_relative_m"), f"waypoints[{number}].altitude_relative_m", *HEIGHTS_M))
         if number and (length_m := path_length_m(np.array(positions[-2:]))) > LONGEST_LEG_M:
             raise InvalidRoute(

@@ -47,7 +47,7 @@ class Migration(migrations.Migration):
                 ('limits', models.JSONField(default=dict, help_text='that it is held against, each with its source')),
                 ('created_at', models.DateTimeField(db_default=django.db.models.functions.datetime.Now(), editable=False)),
                 ('created_by', models.ForeignKey(blank=True, null=True, on_delete=django.db.models.deletion.SET_NULL, related_name='rehearsals', to=settings.AUTH_USER_MODEL)),
-                ('job', models.OneToOneField(help_text='its state, lease and progress', on_delete=django.db.models.deletion.PROTECT, related_name='rehearsal', to='workspace.job')),
+                ('job', models.OneToOneField(help_text='its state, lease and progress', on_delete=django.db.models.deletion.CASCADE, related_name='rehearsal', to='workspace.job')),
                 ('mission', models.ForeignKey(on_delete=django.db.models.deletion.CASCADE, related_name='rehearsals', to='missions.mission')),
                 ('organisation', models.ForeignKey(on_delete=django.db.models.deletion.CASCADE, related_name='rehearsals', to='workspace.organisation')),
             ],

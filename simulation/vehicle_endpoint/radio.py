@@ -1,6 +1,7 @@
 """One UAV's socket: it talks to the addresses it was given and to whoever talked to it, by UDP."""
 
 import contextlib
+import ipaddress
 import socket
 import time
 from collections import Counter
@@ -55,12 +56,20 @@ class Radio:
         self.socket = socket.socket(family, socket.SOCK_DGRAM)
         try:
             self.socket.setblocking(False)
-            self.socket.bind(self.listen or ("", 0))
+            self.socket.bind(self.listen or (self._host, 0))
         except OSError:
             self.socket.close()
             raise
         for address in self.given:
             self._add(address, is_given=True)
+
+    @property
+    def _host(self) -> str:
+        """Who only talks to this machine is heard by it alone."""
+        hosts = [ipaddress.ip_address(host) for host, _ in self.given]
+        if any(not host.is_loopback for host in hosts):
+            return ""
+        return str(hosts[0]) if hosts else "127.0.0.1"
 
     def close(self) -> None:
         self.socket.close()

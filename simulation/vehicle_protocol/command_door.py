@@ -24,12 +24,14 @@ class NotFinite(ValueError):
 class Command:
     """`values` are its seven parameters, None where it left the choice to the vehicle; 5 and 6 of a place are latitude and longitude [deg].
 
-    `is_above_sea` tells how the seventh counts, where the message said so; COMMAND_LONG does not.
+    `is_above_sea` tells how the seventh counts, where the message said so; COMMAND_LONG does not. `is_frame_known` is False where it said
+    something else, such as above the ground.
     """
 
     number: int
     values: Seven
     is_above_sea: bool | None = None
+    is_frame_known: bool = True
 
     def __getitem__(self, number: int) -> float | None:
         """Parameters count from 1."""
@@ -47,8 +49,8 @@ def command_of(message: Any) -> Command:
     if message.get_type() == "COMMAND_LONG":
         return Command(message.command, _finite(*first, message.param5, message.param6, message.param7))
     place = (math.nan if value == NO_PLACE_E7 else value / E7 for value in (message.x, message.y))
-    is_above_sea = message.frame in ABOVE_SEA if message.frame in PLACED_FRAMES else None
-    return Command(message.command, _finite(*first, *place, message.z), is_above_sea)
+    is_known = message.frame in PLACED_FRAMES
+    return Command(message.command, _finite(*first, *place, message.z), message.frame in ABOVE_SEA if is_known else None, is_known)
 
 
 def acknowledgement(number: int, result: int, station: Station) -> Outgoing:

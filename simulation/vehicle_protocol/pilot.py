@@ -89,10 +89,12 @@ class Pilot:
     def _take_off(self, command: Command) -> int:
         """PX4 is told before it is armed, by the height above sea level; ArduCopter armed in GUIDED, by the height above home."""
         state, height_m = self.vehicle.state, command[7]
+        if not command.is_frame_known:
+            return DENIED
         if self.flavour is Flavour.ARDUPILOT:
             if not state.is_armed or self.custom_mode != GUIDED:
                 return self._refused("Take-off needs an armed vehicle in GUIDED")
-            if height_m is None or height_m <= 0:
+            if height_m is None or height_m <= 0 or command.is_above_sea:
                 return DENIED
             return self._result(self.vehicle.take_off(height_m))
         relative_m = self.vehicle.settings.take_off_height_m
@@ -138,6 +140,8 @@ class Pilot:
             return self._refused("It stands on the ground", REJECTED)
         if all(value is None for value in (lat, lon, height_m, command[4])):
             return self.set_mode(Mode.HOLD)
+        if height_m is not None and not command.is_frame_known:
+            return DENIED
         if (lat is not None and not -90 <= lat <= 90) or (lon is not None and not -180 <= lon <= 180):
             return DENIED
         place = LonLat(state.position.lon if lon is None else lon, state.position.lat if lat is None else lat)

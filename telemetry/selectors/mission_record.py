@@ -11,7 +11,7 @@ from django.db.models import Count, F
 
 from inspection.geodesy import LonLat
 from missions.mavlink.frozen import FrozenRoute, route_from_json
-from missions.models import Approval, InspectionTarget, Mission, TargetState
+from missions.models import Approval, InspectionTarget, Mission, TargetState, Uav
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.visits import Visit, visits_of
@@ -84,6 +84,8 @@ def mission_record(mission: Mission) -> dict[str, Any]:
     approval = approval_on_record(mission)
     routes = routes_on_record(mission, approval)
     targets = list(mission.targets.order_by("sequence"))
+    flown_by = [route.uav_id for route in routes if route.uav_id is not None]
+    simulated = set(Uav.objects.filter(pk__in=flown_by, is_simulated=True).values_list("pk", flat=True))
     return {
         "mission": {
             "id": mission.pk,
@@ -96,7 +98,7 @@ def mission_record(mission: Mission) -> dict[str, Any]:
             "approval": None if approval is None else _approval(approval),
         },
         "summary": _summary(mission, routes, targets),
-        "routes": [_route(route, mission) for route in routes],
+        "routes": [_route(route, mission) | {"is_simulated": route.uav_id in simulated} for route in routes],
         "targets": _targets(mission, targets, routes),
         "results": _results(mission),
     }

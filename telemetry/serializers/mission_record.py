@@ -115,6 +115,7 @@ class RecordRouteSerializer(serializers.Serializer):
     place = serializers.IntegerField(help_text="of the UAV in the mission")
     uav = serializers.IntegerField(allow_null=True)
     name = serializers.CharField()
+    is_simulated = serializers.BooleanField(help_text="no real aircraft")
     departs_at = serializers.DateTimeField(allow_null=True)
     planned = PlannedRouteSerializer()
     flown = FlownRouteSerializer()

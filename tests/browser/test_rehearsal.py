@@ -18,6 +18,10 @@ pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
 FLIGHT_MS = 120_000
 STARTS = {"Wigeon": [-82.995, 39.905], "Shoveler": [-82.945, 39.905]}
+INTO_VIEW = """(panel) => {
+    const scrolled = panel.closest(".side-scroll");
+    scrolled.scrollTop += panel.getBoundingClientRect().top - scrolled.getBoundingClientRect().top;
+}"""
 _planned: dict[str, str] = {}
 
 
@@ -84,7 +88,7 @@ def test_the_verdict_fits_every_window(visitor: Visitor, planned: str, picture: 
     panel = page.locator("#rehearsal")
     expect(panel.locator("#rehearsal-sentence")).to_have_count(1)
     expect(panel.get_by_role("button", name="Rehearse", exact=True)).to_have_count(0)
-    panel.evaluate("(panel) => panel.scrollIntoView()")
+    panel.evaluate(INTO_VIEW)
     picture(page, f"rehearsal-{view}")
     assert faults(page) == []
 
@@ -98,3 +102,14 @@ def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, planned: str
     assert page.request.patch(f"/api/v1/missions/{planned}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"}).ok
     opened(page, planned)
     expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Out of date.")
+
+
+def test_an_administrator_asks_for_rehearsals_before_approval(visitor: Visitor) -> None:
+    page = visitor.signs_in("ada")
+    page.goto("/administration?tab=rules")
+    page.locator("html[data-loaded]").wait_for(state="attached")
+    rule = page.get_by_role("switch", name="Approve only what has passed a rehearsal")
+    for wanted in (True, False):  # other tests approve without one
+        rule.set_checked(wanted)
+        expect(rule).to_be_enabled()
+        assert asks(page, "/rehearsal-rule") == {"requires_green": wanted}

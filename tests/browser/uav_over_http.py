@@ -48,10 +48,12 @@ class Flyer:
 
     def reports(self, along_m: float, *, aside_m: float = 0.0, **told: Any) -> list[float]:
         """aside_m to the right of the route. Where it says that it is."""
+        assert self.content is not None
         position, heading_deg, waypoint = self._place(along_m, aside_m)
+        height_m = self.content["waypoints"][waypoint]["altitude_relative_m"]
         self.sequence += 1
         record = {
-            "sequence": self.sequence, "measured_at": datetime.now(UTC).isoformat(), "position": position, "altitude_relative_m": 45.0,
+            "sequence": self.sequence, "measured_at": datetime.now(UTC).isoformat(), "position": position, "altitude_relative_m": height_m,
             "velocity_north_mps": 9.0 * math.cos(math.radians(heading_deg)), "velocity_east_mps": 9.0 * math.sin(math.radians(heading_deg)),
             "heading_deg": heading_deg, "battery_percent": 71.0, "mode": "Mission", "is_armed": True, "is_in_air": True,
             "gps_fix": 3, "satellites": 14, "hdop": 0.8, "waypoint_sequence": waypoint,

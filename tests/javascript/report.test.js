@@ -196,6 +196,9 @@ test("the sentence says what came of it, what is so far, or that nothing was flo
   assert.equal(sentenceOf(record("planned", { reports: 0, complete: 0 })), "Not flown yet.");
   assert.equal(sentenceOf(record("aborted", { reports: 0, complete: 0 })), "0 of 12 targets complete");
   assert.equal(factsOf(record("completed")), "No battery was below 24\u00a0%. No alerts.");
+  const simulated = { ...record("completed"), routes: [{ name: "Tern", is_simulated: true, flown: { reports: 9 } }] };
+  assert.match(factsOf(simulated), /^Flown in simulation, by no real aircraft\. /);
+  assert.match(factsOf({ ...simulated, routes: [...simulated.routes, { name: "Kite", is_simulated: false, flown: { reports: 9 } }] }), /^Simulated, no real aircraft: Tern\. /);
   assert.equal(factsOf(record("completed", { alerts: { critical: 1, warning: 2 } })), "No battery was below 24\u00a0%. 3 alerts, 1 critical.");
 });
 

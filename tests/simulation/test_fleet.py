@@ -21,7 +21,7 @@ from simulation.flight.faults import Faults
 from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from simulation.vehicle_endpoint.launch import Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of
-from simulation.vehicle_endpoint.radio import WrongAddress, address_of
+from simulation.vehicle_endpoint.radio import Radio, WrongAddress, address_of
 from tests.simulation.fleets import AT, flying, free_port, wait_for
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
@@ -170,6 +170,13 @@ def test_orders_that_say_nothing_are_refused(line):
 def test_addresses_that_are_none(text):
     with pytest.raises(WrongAddress):
         address_of(text)
+
+
+@pytest.mark.parametrize(("talks_to", "is_alone"), [([], True), ([("127.0.0.1", 9)], True), ([("127.0.0.1", 9), ("192.0.2.1", 9)], False)])
+def test_who_only_talks_to_this_machine_is_heard_by_it_alone(talks_to, is_alone):
+    radio = Radio(talks_to)
+    assert (radio.socket.getsockname()[0] == "127.0.0.1") is is_alone
+    radio.close()
 
 
 def test_a_socket_that_is_taken_is_told_and_none_is_kept():

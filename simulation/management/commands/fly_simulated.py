@@ -1,5 +1,6 @@
 """Flies simulated UAVs that speak MAVLink, until it is told to stop. Needs no database."""
 
+import gc
 import json
 import signal
 import sys
@@ -73,6 +74,7 @@ class Command(BaseCommand):
         self.stdout.flush()
         if options["orders"]:
             threading.Thread(target=self._take_orders, args=(fleet,), daemon=True).start()
+        gc.freeze()  # what there is by now stays: looking through it again and again would make steps late
         seconds = options["seconds"]
         uav = fleet.uavs[0].uav
         report = fleet.run(lambda: seconds is not None and uav.now_s >= seconds)

@@ -1,4 +1,4 @@
-/** Administration: people, invitations and the log of sign-ins, each a list with filters. */
+/** Administration: people, invitations and the log of sign-ins, each a list with filters; and the organisation's rules. */
 
 import { ApiError, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -6,9 +6,10 @@ import { startChrome } from "../page/chrome.js";
 import { t } from "../text.js";
 import { mountInvitations } from "./invitations.js";
 import { mountPeople } from "./people.js";
+import { mountRules } from "./rules.js";
 import { mountSignIns } from "./sign_ins.js";
 
-const TABS = ["people", "invitations", "sign-ins"];
+const TABS = ["people", "invitations", "sign-ins", "rules"];
 
 function tell(title, error) {
   if (!(error instanceof ApiError)) throw error;
@@ -24,6 +25,7 @@ const lists = {
   people: mountPeople({ tell, settle }),
   invitations: mountInvitations({ tell, settle, show: () => showTab("invitations") }),
   "sign-ins": mountSignIns({ tell, settle }),
+  rules: mountRules({ tell, settle }),
 };
 
 /** The tab is in the address: it can be sent, and Back works. */

@@ -57,4 +57,4 @@ export function wrongWayRound(stated, usual) {
 export const boundsIn = ([least, most], factor) => (factor === 1 ? { min: least, max: most } : { min: Math.ceil((least / factor) * 10) / 10, max: Math.floor((most / factor) * 10) / 10 });
 
 /** What is stated, in a few words each: [[label, figure]]. */
-export const statedLines = (stated) => GROUPS.flatMap(({ title, limits }) => limits.filter(({ name }) => name in stated).map(({ name, label, unit, factor }) => [`${title}: ${label.toLocaleLowerCase()}`, `${Number((stated[name] / factor).toFixed(1))}${unit && `\u00a0${unit}`}`]));
+export const statedLines = (stated) => GROUPS.flatMap(({ title, limits }) => limits.filter(({ name }) => name in stated).map(({ name, label, unit, factor }) => [`${title}: ${label}`, `${Number((stated[name] / factor).toFixed(1))}${unit && `\u00a0${unit}`}`]));

@@ -25,7 +25,7 @@ export const KINDS = {
     path: "/uavs",
     read: flat,
     columns: [
-      { words: t("Name"), cell: (uav) => caption(uav.type_name || t("no type")) },
+      { words: t("Name"), cell: (uav) => caption([uav.type_name || t("no type"), uav.is_simulated && t("simulated")].filter(Boolean).join(" · ")) },
       { words: t("State"), cell: (uav) => stateChip(uav.state) },
       { words: t("Base"), class: "wide", cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))] },
       { words: t("Battery"), class: "number", cell: batteryCell },

@@ -19,6 +19,7 @@ import { mountCards } from "./panels/cards.js";
 import { mountCommandBar } from "./panels/command_bar.js";
 import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
+import { mountSimulation } from "./panels/simulation.js";
 import { mountUrgent } from "./panels/urgent.js";
 
 const TICK_MS = 500;
@@ -45,6 +46,7 @@ mountBoard(store, {
     if (position) map.showPlace(position);
   },
 });
+mountSimulation(page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 

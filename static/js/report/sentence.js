@@ -24,6 +24,8 @@ export function factsOf(record) {
   const { alerts, lowest_battery_percent: lowest } = record.summary;
   const all = alerts.critical + alerts.warning + alerts.advisory;
   const facts = [];
+  const simulated = record.routes.filter(({ is_simulated }) => is_simulated);
+  if (simulated.length) facts.push(simulated.length === record.routes.length ? t("Flown in simulation, by no real aircraft.") : t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") }));
   if (isUnderWay(record) && record.mission.started_at) facts.push(t("Under way since {time}.", { time: clockText(record.mission.started_at) }));
   if (!wasFlown(record)) facts.push(isOver(record) ? t("Nothing that its UAVs reported is in the log.") : t("Its record is written while it is flown."));
   else if (lowest !== null) facts.push(t("No battery was below {percent}.", { percent: percentText(Math.floor(lowest)) }));

@@ -66,6 +66,13 @@ def test_route_is_flown_from_a_shell_without_database_and_redis(tmp_path: Path) 
             {"waypoints": [{"position": position, "altitude_relative_m": 9} for position in ([9, 47], [47, 9])], "speed_mps": 5},
             r"km from the one before.*\[longitude, latitude\]",
         ),
+        (
+            {
+                "waypoints": [{"position": position, "altitude_relative_m": 9} for position in ([179.9999, 1], [-179.9999, 1])],
+                "speed_mps": 5,
+            },
+            "180th meridian",
+        ),
         ({"waypoints": [{"position": [9, 47], "altitude_relative_m": 9}] * (MOST_WAYPOINTS + 1), "speed_mps": 5}, "at most 9,000"),
     ],
 )

@@ -46,6 +46,19 @@ def test_square_of_two_kilometres_is_kept(weather: Weather, most_rms_m: float, m
     assert off_m(touched_down_at, HOME) < 1.0
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(20))
+def test_gusts_from_any_side_are_borne(seed: int) -> None:
+    route = square(150.0)
+    flight = fly_route(route, AIRFRAMES["iris"], weather=wind(8.0, 18.0 * seed, gusts_mps=2.0), seed=seed)
+    told, touched_down_at = flight.as_json(), flight.flown.touched_down_at
+    assert told["verdict"]["result"] == "pass"
+    assert told["cross_track_rms_m"] < 1.0
+    assert told["cross_track_max_m"] < 3.0
+    assert touched_down_at is not None
+    assert off_m(touched_down_at, HOME) < 1.0
+
+
 @pytest.mark.parametrize("physics_hz", [125, 100])
 def test_coarser_steps_fly_the_same_square(physics_hz: int) -> None:
     route = square(60.0)

@@ -106,6 +106,19 @@ def test_it_goes_nowhere_from_the_ground_nor_into_it_nor_off_the_earth():
     assert talk.mode == PX4_HOLD
 
 
+@pytest.mark.parametrize("flavour", Flavour)
+def test_a_height_above_ground_is_not_taken_for_one_above_the_sea(flavour):
+    talk = in_the_air(flavour)
+    here = (round(HOME.lat * 1e7), round(HOME.lon * 1e7))
+    for number in (GO_TO, TAKE_OFF):
+        message = mavlink.MAVLink_command_int_message(*TO, 11, number, 0, 0, -1, 1, 0, NAN, *here, 60.0)
+        assert only(talk.say(message), "COMMAND_ACK").result == DENIED
+    relative = mavlink.MAVLink_command_int_message(*TO, 3, GO_TO, 0, 0, -1, 1, 0, NAN, *here, 24.0)
+    assert only(talk.say(relative), "COMMAND_ACK").result == ACCEPTED
+    talk.pass_by(8.0)
+    assert talk.uav.state.altitude_relative_m == pytest.approx(24.0, abs=0.5)
+
+
 def test_px4_is_told_the_mission_and_then_armed():
     talk = flown()
     assert talk.command(SET_MODE, 209, *PX4_MISSION) == FAILED, "there is none"

@@ -53,5 +53,7 @@ export default {
   "How the lines are drawn": "Wie die Linien gezeichnet sind",
   "flown in simulation": "in der Simulation geflogen",
   "reserve": "Reserve",
+  "The rules could not be read.": "Die Regeln konnten nicht gelesen werden.",
+  "The rule was not changed.": "Die Regel wurde nicht geändert.",
   "{count} of {all} targets fails: {conditions}.": ["{count} von {all} Zielen nicht bestanden: {conditions}.", "{count} von {all} Zielen nicht bestanden: {conditions}."],
 };

@@ -1,16 +1,13 @@
-/** What was flown in simulation over what was planned: thin and dotted on a casing, so that nobody takes it for a flight. */
-
-import { routeNumber } from "../palette.js";
+/** What was flown in simulation over what was planned: dashed in ink, so that nobody takes it for a flight. */
 
 const SOURCE = "rehearsed";
 const BEFORE = "line-labels";
 
 function layersOf(palette) {
-  const round = { "line-cap": "round", "line-join": "round" };
-  const colour = ["match", ["get", "route"], ...palette.routes.flatMap((value, index) => [index + 1, value]), palette.inkSecond];
+  const joined = { "line-join": "round" };
   return [
-    { id: "rehearsed-casing", type: "line", source: SOURCE, layout: round, paint: { "line-color": palette.casing, "line-width": 6, "line-opacity": 0.8 } },
-    { id: "rehearsed", type: "line", source: SOURCE, layout: round, paint: { "line-color": colour, "line-width": 3, "line-dasharray": [0.1, 1.8] } },
+    { id: "rehearsed-casing", type: "line", source: SOURCE, layout: joined, paint: { "line-color": palette.casing, "line-width": 4, "line-opacity": 0.9 } },
+    { id: "rehearsed", type: "line", source: SOURCE, layout: joined, paint: { "line-color": palette.ink, "line-width": 1.75, "line-dasharray": [3, 2] } },
   ];
 }
 
@@ -21,7 +18,7 @@ export function show(map, palette, routes) {
     map.addSource(SOURCE, { type: "geojson", data: { type: "FeatureCollection", features: [] } });
     for (const layer of layersOf(palette)) map.addLayer(layer, map.getLayer(BEFORE) ? BEFORE : undefined);
   }
-  const features = (routes ?? []).flatMap(({ uav, flights }) => flights.filter(({ position }) => position.length > 1).map(({ position }) => ({ type: "Feature", properties: { route: routeNumber(uav) }, geometry: { type: "LineString", coordinates: position } })));
+  const features = (routes ?? []).flatMap(({ uav, flights }) => flights.filter(({ position }) => position.length > 1).map(({ position }) => ({ type: "Feature", properties: { uav }, geometry: { type: "LineString", coordinates: position } })));
   map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
 }
 

@@ -30,9 +30,9 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
   function mountForm() {
     const own = h("input", { type: "checkbox", name: "own" });
     const figure = (name, label, unit, min, max) => h("label", { class: "field" }, h("span", { class: "field-label" }, label), h("span", { class: "with-unit" }, h("input", { class: "input", type: "number", name, step: "any", min, max, oninput: () => (own.checked = true) }), h("span", { class: "unit" }, unit)));
-    const checks = CONDITIONS.map((code) => h("label", { class: "check" }, h("input", { type: "checkbox", name: "condition", value: code, checked: code === "as-planned" }), h("span", {}, conditionWords(code))));
+    const checks = CONDITIONS.map((code) => h("label", { class: "rehearsal-check" }, h("input", { type: "checkbox", name: "condition", value: code, checked: code === "as-planned" }), h("span", {}, conditionWords(code))));
     place("form").append(
-      h("fieldset", { class: "rehearsal-conditions" }, h("legend", { class: "field-label" }, t("Conditions")), checks, h("label", { class: "check" }, own, h("span", {}, t("Own figures")))),
+      h("fieldset", { class: "rehearsal-conditions" }, h("legend", { class: "field-label" }, t("Conditions")), checks, h("label", { class: "rehearsal-check" }, own, h("span", {}, t("Own figures")))),
       h("details", { class: "rehearsal-own" }, h("summary", {}, t("Own figures")), h("div", { class: "rehearsal-figures" }, figure("wind_mps", t("Wind speed"), "m/s", 0, 60), figure("from_deg", t("Wind from"), "°", 0, 360), figure("gusts_mps", t("Gusts"), "m/s", 0, 10), figure("battery_percent", t("Battery holds"), "%", 10, 100)), h("p", { class: "caption" }, t("What is empty is as planned."))),
     );
     const read = () => {
@@ -149,8 +149,9 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
   if (!canRehearse) return [];
   const open = () => {
     if (section.hidden) return false;
-    section.scrollIntoView({ block: "start" });
-    place("form").querySelector("input").focus();
+    const scrolled = section.closest(".side-scroll"); // the page itself stays where it is
+    scrolled.scrollTop += section.getBoundingClientRect().top - scrolled.getBoundingClientRect().top;
+    place("form").querySelector("input").focus({ preventScroll: true });
     return true;
   };
   return [{ keys: ["r"], words: t("Rehearse: choose conditions"), act: open }];

@@ -31,6 +31,7 @@ export function createCloseUp(view, frame, page) {
   let markers = null;
   let isReady = false;
   let latest = null;
+  let drawn = "";
 
   function start() {
     small = new maplibre.Map({ container: place, style: mapStyle(view.palette(), options), interactive: false, attributionControl: false, fadeDuration: 0, center: latest.position, zoom: 14 });
@@ -46,6 +47,9 @@ export function createCloseUp(view, frame, page) {
 
   function draw() {
     const { uav, routes, flown } = latest;
+    const key = JSON.stringify([uav.id, uav.position, uav.bound]);
+    if (key === drawn) return;
+    drawn = key;
     const ring = ellipseRing(uav.position, { ...uav.bound, along_m: uav.bound.along_m * ROUND, across_m: uav.bound.across_m * ROUND }, 20);
     const [west, south, east, north] = boxAround([...ring]);
     small.fitBounds([[west, south], [east, north]], { duration: 0, padding: 12, maxZoom: 16 });

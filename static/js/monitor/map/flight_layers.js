@@ -5,6 +5,7 @@ import { ellipseRing, metresPerPixel } from "./ellipse.js";
 
 const BEFORE = "line-labels";
 const LEAST_RING_PX = 14;
+const CLEAR_PX = 48;
 const NOTHING = { type: "FeatureCollection", features: [] };
 const SOURCES = ["flown", "last-report", "ellipses", "offered"];
 
@@ -45,18 +46,35 @@ export function recolour(map, palette) {
 }
 
 const feature = (uav, geometry, more = {}) => ({ type: "Feature", properties: { route: uav.place === null ? 0 : routeNumber(uav.place), isLost: uav.certainty === "lost", ...more }, geometry });
-const show = (map, source, features) => map.getSource(source)?.setData({ type: "FeatureCollection", features });
+const shown = new WeakMap(); // source → what it shows, in one text
+
+/** Only what is another is drawn: each time costs the whole map a frame, and the clock ticks without anything having moved. */
+function show(map, name, features, key = JSON.stringify(features)) {
+  const source = map.getSource(name);
+  if (!source || shown.get(source) === key) return;
+  shown.set(source, key);
+  source.setData({ type: "FeatureCollection", features });
+}
+
+/** A line of thousands of places grows at its end. */
+const lineKey = (uavs) => JSON.stringify(uavs.map(({ place, parts }) => [place, parts.length, parts.at(-1)?.length, parts.at(-1)?.at(-1), parts[0]?.[0]]));
 
 /** uavs: [{ place, certainty, parts: [[lon lat, …], …] }] */
 export function showFlown(map, uavs) {
-  show(map, "flown", uavs.map((uav) => feature({ ...uav, certainty: "measured" }, { type: "MultiLineString", coordinates: uav.parts.filter((part) => part.length > 1) })));
+  show(map, "flown", uavs.map((uav) => feature({ ...uav, certainty: "measured" }, { type: "MultiLineString", coordinates: uav.parts.filter((part) => part.length > 1) })), lineKey(uavs));
+}
+
+/** The time of a last report is left out where the UAV itself would stand on it. */
+function isClear(map, { last, position }) {
+  const [from, to] = [map.project(last), map.project(position)];
+  return Math.hypot(from.x - to.x, from.y - to.y) >= CLEAR_PX;
 }
 
 /** uavs that are estimated or lost: [{ place, certainty, position, bound, last: lon lat or null, words }]. */
 export function showUncertain(map, uavs) {
   const zoom = map.getZoom();
   show(map, "ellipses", uavs.filter(({ bound }) => bound).map((uav) => feature(uav, { type: "Polygon", coordinates: [ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]))] })));
-  show(map, "last-report", uavs.filter(({ last }) => last).flatMap((uav) => [feature(uav, { type: "LineString", coordinates: [uav.last, uav.position] }), feature(uav, { type: "Point", coordinates: uav.last }, { words: uav.words })]));
+  show(map, "last-report", uavs.filter(({ last }) => last).flatMap((uav) => [feature(uav, { type: "LineString", coordinates: [uav.last, uav.position] }), feature(uav, { type: "Point", coordinates: uav.last }, { words: isClear(map, uav) ? uav.words : "" })]));
 }
 
 /** Routes of another plan that is offered: [{ place, geometry }]. */

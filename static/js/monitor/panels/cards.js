@@ -9,7 +9,7 @@ import { numbersOf, pillOf } from "../board.js";
 import { certaintyOf, MEASURED } from "../certainty.js";
 import { liveStrip, progressOf } from "../live_strip.js";
 import { profileOf } from "../../mission/span_strip.js";
-import { inOrder, isOpenAlert } from "../order.js";
+import { alertsInOrder, inOrder, isOpenAlert } from "../order.js";
 import { ageWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
 
 const SAID_FOR_MS = 60_000; // a command that is over stays on the card
@@ -71,7 +71,7 @@ export function mountCards(store, { isOfOne, pick, jumpTo, follow }) {
     at.next.hidden = !next.next && !next.toGo;
     refill(at.next, JSON.stringify([next, certainty]), () => [h("span", {}, next.next && [t("Next"), " ", h("strong", {}, next.next), next.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${next.at}`]), h("span", { class: "quiet-text" }, next.toGo)]);
     drawCommand(at.command, commandOf(uav, commands, now_ms));
-    const open = alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert));
+    const open = alertsInOrder(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
     at.alerts.hidden = open.length === 0;
     refill(at.alerts, JSON.stringify(open.map(({ id, revision, level, message }) => [id, revision, level, message])), () => open.map(({ level, message, acknowledged_at }) => h("li", { class: acknowledged_at ? "known" : level }, icon(acknowledged_at ? "check" : LEVEL_ICONS[level], "small"), h("span", {}, message))));
     at.acts.hidden = !isChosen;
