@@ -75,12 +75,14 @@ class Watch:
 
     def run(self) -> None:
         logger.info("watch %s has begun", self.options.holder)
-        while not self._stop.wait(_until_next(time.time())):
+        wait_s = 0.0  # the first at once: UAVs may have been without a watch
+        while not self._stop.wait(wait_s):
             try:
                 close_old_connections()
                 self.round(time.time())
             except DATABASE_AWAY as error:
                 self._go_on_without_database(error)
+            wait_s = _until_next(time.time())
         self._give_back()
 
     def stop(self) -> None:
