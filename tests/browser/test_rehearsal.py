@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
@@ -98,7 +99,7 @@ def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, planned: str
     if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
         pytest.skip("nothing was rehearsed")
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
-    body: dict[str, Any] = {"departs_at": "2031-05-01T10:00:00Z", "plan": True}
+    body: dict[str, Any] = {"departs_at": (datetime.now(UTC) + timedelta(days=30)).isoformat(), "plan": True}
     assert page.request.patch(f"/api/v1/missions/{planned}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"}).ok
     opened(page, planned)
     expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Out of date.")
