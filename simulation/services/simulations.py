@@ -9,6 +9,7 @@ from typing import Any
 from django.conf import settings
 from django.contrib.gis.geos import Point
 from django.db import connection, transaction
+from django.db.models import Q
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
@@ -148,9 +149,13 @@ def end_now(simulation: Simulation, reason: str, *, state: SimulationState = Sim
 
 
 def hold_starts() -> None:
-    """Until the transaction ends: of two that start at once the second counts the first one's."""
+    """Until the transaction ends: of two that start at once the second counts the first one's. What is over and nobody holds is ended."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_advisory_xact_lock(%s)", [_STARTS])
+    now = timezone.now()
+    unheld = Simulation.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=now), state__in=PRESENT)
+    for simulation in unheld.filter(Q(lifetime_ends_at__lte=now) | Q(end_wanted_at__isnull=False)):
+        end_now(simulation, "ended-by-hand" if simulation.end_wanted_at else "lifetime-over")
 
 
 def check_quota(organisation: Organisation, wanted: int) -> None:

@@ -32,20 +32,20 @@ class Held:
     vehicles: tuple[SimulatedVehicle, ...]
 
 
-def take_simulation(*, holder: str, lease_s: float, most_load: float, has_others: bool) -> Held | None:
-    """The one that has waited longest, if its UAVs times its speed are no more than most_load; anything where nothing else is held.
+def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Collection[UUID]) -> Held | None:
+    """The one that has waited longest, if its UAVs times its speed are no more than most_load; anything where none is `flown` yet.
 
-    Those whose time is over are ended on the way.
+    Those whose time is over are ended on the way. One that bears the holder's name and is not flown was given up: it begins anew.
     """
     with transaction.atomic():
         now = timezone.now()
         free = Q(lease_expires_at=None) | Q(lease_expires_at__lt=now) | Q(holder__startswith=f"{_name(holder)}/")
-        waiting = Simulation.objects.filter(free, state__in=PRESENT).exclude(holder=holder)
+        waiting = Simulation.objects.filter(free, state__in=PRESENT).exclude(pk__in=flown)
         for simulation in waiting.select_for_update(skip_locked=True, of=("self",)).order_by("created_at"):
             if (reason := _why_over(simulation)) is not None:
                 _end(simulation, reason)
                 continue
-            if has_others and simulation.vehicles.filter(state__in=PRESENT).count() * simulation.speed > most_load:
+            if flown and simulation.vehicles.filter(state__in=PRESENT).count() * simulation.speed > most_load:
                 continue
             vehicles = _to_fly(simulation)
             if not vehicles:
@@ -140,7 +140,7 @@ def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
     """
     vehicles = list(simulation.vehicles.filter(state__in=PRESENT).select_related("uav"))
     if simulation.state == SimulationState.FLYING:
-        lost = [vehicle for vehicle in vehicles if simulation.mission_id is not None and vehicle.told.get("is_in_air")]
+        lost = [vehicle for vehicle in vehicles if simulation.mission_id is not None and _is_gone(vehicle)]
         vehicles = [vehicle for vehicle in vehicles if vehicle not in lost]
         keys = [vehicle.pk for vehicle in lost]
         SimulatedVehicle.objects.filter(pk__in=keys).update(state=SimulationState.FAILED, reason="simulator-lost")
@@ -155,6 +155,11 @@ def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
         state=SimulationState.FLYING, restarts=again, told={}
     )
     return vehicles
+
+
+def _is_gone(vehicle: SimulatedVehicle) -> bool:
+    """What flew, and what had crashed: neither stands on the ground whole."""
+    return bool(vehicle.told.get("is_in_air") or vehicle.told.get("is_crashed"))
 
 
 def _name(holder: str) -> str:

@@ -88,7 +88,7 @@ class Simulator:
         options = self.options
         while True:
             room = options.most_load - self.load
-            held = take_simulation(holder=options.holder, lease_s=options.lease_s, most_load=room, has_others=bool(self.flights))
+            held = take_simulation(holder=options.holder, lease_s=options.lease_s, most_load=room, flown=list(self.flights))
             if held is None:
                 return
             try:

@@ -8,6 +8,7 @@ const simulation = (more = {}) => ({ state: "flying", speed: 5, message: "", pac
 
 test("a simulation says how many fly, how fast, and who is lost or has crashed", () => {
   assert.equal(stateWords(simulation()).words, "1 simulated UAV at 5 times real time.");
+  assert.equal(stateWords(simulation({ speed: 1 })).words, "1 simulated UAV in real time.");
   const bad = stateWords(simulation({ vehicles: [vehicle("Tern", { told: { is_crashed: true } }), vehicle("Kite", { state: "failed" })] }));
   assert.equal(bad.words, "1 simulated UAV at 5 times real time. Crashed: Tern. Lost with their simulator: Kite.");
   assert.equal(bad.isBad, true);

@@ -30,14 +30,14 @@ def stand_ins(mission: Mission, actor: User, **more: Any) -> Simulation:
     return start_simulated_flights(mission=mission_of_organisation(mission.organisation, mission.pk), actor=actor, sky=CALM, **more)
 
 
-def taken(holder: str = "one/a", *, most_load: float = 60.0, has_others: bool = False) -> Held | None:
-    return take_simulation(holder=holder, lease_s=5.0, most_load=most_load, has_others=has_others)
+def taken(holder: str = "one/a", *flown: Simulation, most_load: float = 60.0) -> Held | None:
+    return take_simulation(holder=holder, lease_s=5.0, most_load=most_load, flown=[simulation.pk for simulation in flown])
 
 
-def lose(simulation: Simulation, *, in_air: bool = False) -> None:
+def lose(simulation: Simulation, **told: bool) -> None:
     """Its simulator is dead: the lease runs out."""
     Simulation.objects.filter(pk=simulation.pk).update(lease_expires_at=LONG_AGO)
-    simulation.vehicles.update(told={"is_in_air": in_air})
+    simulation.vehicles.update(told=told)
 
 
 def fresh(simulation: Simulation) -> Simulation:

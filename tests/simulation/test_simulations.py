@@ -132,14 +132,16 @@ def test_one_simulator_holds_a_simulation_and_the_longest_waiting_goes_first(per
     first, second = pool(person), pool(person)
     assert taken("one/a").simulation == first
     assert taken("two/b").simulation == second
-    assert taken("one/a") is None
+    assert taken("one/a", first) is None
     assert renew_simulations(holder="one/a", ids=[first.pk, second.pk], lease_s=5.0) == {first.pk}
 
 
 def test_what_is_too_much_waits_for_another_unless_nothing_else_is_flown(person):
-    pool(person, 4, speed=10.0)
-    assert taken(most_load=39.0, has_others=True) is None
-    assert taken(most_load=39.0, has_others=False)
+    first = pool(person, 1)
+    taken()
+    second = pool(person, 4, speed=10.0)
+    assert taken("one/a", first, most_load=39.0) is None
+    assert taken("two/b", most_load=39.0).simulation == second
 
 
 def test_the_same_simulator_started_again_takes_its_own_at_once(person):
@@ -152,7 +154,7 @@ def test_the_same_simulator_started_again_takes_its_own_at_once(person):
 def test_a_lost_simulators_pool_begins_anew_on_the_ground(person):
     simulation = pool(person)
     assert taken("one/a")
-    lose(simulation, in_air=True)
+    lose(simulation, is_in_air=True)
     held = taken("two/b")
     assert len(held.vehicles) == 2
     assert (fresh(simulation).restarts, fresh(simulation).state) == (1, SimulationState.FLYING)
@@ -162,7 +164,7 @@ def test_a_lost_simulators_pool_begins_anew_on_the_ground(person):
 def test_a_missions_uav_that_was_in_the_air_is_gone_with_its_simulator(person, mission):
     simulation = stand_ins(mission, person)
     assert taken("one/a")
-    lose(simulation, in_air=True)
+    lose(simulation, is_in_air=True)
     assert taken("two/b") is None
     vehicle = simulation.vehicles.get()
     assert (vehicle.state, vehicle.reason) == (SimulationState.FAILED, "simulator-lost")
@@ -173,8 +175,35 @@ def test_a_missions_uav_that_was_in_the_air_is_gone_with_its_simulator(person, m
 def test_a_missions_uav_that_stood_on_the_ground_stands_there_anew(person, mission):
     simulation = stand_ins(mission, person)
     assert taken("one/a")
-    lose(simulation, in_air=False)
+    lose(simulation, is_in_air=False)
     assert [vehicle.name for vehicle in taken("two/b").vehicles] == ["Tern"]
+
+
+def test_a_missions_uav_that_had_crashed_does_not_rise_again(person, mission):
+    simulation = stand_ins(mission, person)
+    assert taken("one/a")
+    lose(simulation, is_in_air=False, is_crashed=True)
+    assert taken("two/b") is None
+
+
+def test_what_a_simulator_had_to_give_up_it_takes_again(person):
+    """Its database was away for longer than its leases."""
+    simulation = pool(person)
+    taken("one/a")
+    lose(simulation)
+    assert taken("one/a").simulation == simulation
+    assert fresh(simulation).restarts == 1
+
+
+def test_what_is_over_and_was_left_by_a_dead_simulator_bars_no_start(person, mission):
+    simulation = stand_ins(mission, person)
+    taken()
+    end_simulation(simulation=simulation, actor=person)
+    with pytest.raises(Refused):
+        stand_ins(mission, person)
+    lose(simulation)
+    assert stand_ins(mission, person)
+    assert (fresh(simulation).state, fresh(simulation).reason) == (SimulationState.ENDED, "ended-by-hand")
 
 
 def test_a_simulator_that_is_stopped_leaves_what_a_lost_one_leaves(person, mission):
@@ -210,8 +239,7 @@ def test_it_ends_a_while_after_its_mission(person, mission):
 
 def test_one_that_nobody_holds_ends_at_once_and_a_held_one_by_its_holder(person):
     waiting, held = pool(person), pool(person)
-    taken(), taken("two/b")
-    lose(waiting)
+    taken("two/b", waiting)
     for simulation in (waiting, held):
         end_simulation(simulation=simulation, actor=person)
     assert fresh(waiting).state == SimulationState.ENDED

@@ -2,7 +2,7 @@
 
 import { t, tn } from "../text.js";
 
-export const SPEEDS = [1, 2, 5, 10];
+export const SPEEDS = [1, 2, 5, 10].map((speed) => [speed, speed === 1 ? t("Real time") : t("{speed} times real time", { speed })]);
 export const AIRS = [["as-planned", t("Wind as planned")], ["calm", t("Calm")], ["strong-wind", t("Strong wind")]];
 const WEAK_SHARE = 0.2;
 const WIND_AGL_M = 10;
@@ -31,7 +31,7 @@ export function stateWords(simulation) {
   if (simulation.state === "ended") return { words: simulation.message, isBad: false };
   const crashed = flown.filter(({ told }) => told?.is_crashed);
   const said = [
-    tn(flown.length, "{count} simulated UAV at {speed} times real time.", "{count} simulated UAVs at {speed} times real time.", { speed: simulation.speed }),
+    simulation.speed === 1 ? tn(flown.length, "{count} simulated UAV in real time.", "{count} simulated UAVs in real time.") : tn(flown.length, "{count} simulated UAV at {speed} times real time.", "{count} simulated UAVs at {speed} times real time.", { speed: simulation.speed }),
     crashed.length > 0 && t("Crashed: {names}.", { names: crashed.map(({ name }) => name).join(", ") }),
     lost.length > 0 && t("Lost with their simulator: {names}.", { names: lost.map(({ name }) => name).join(", ") }),
     (simulation.pace?.slipped_s ?? 0) > BEHIND_S && t("This machine is too slow for that speed: {seconds} s behind.", { seconds: Math.round(simulation.pace.slipped_s) }),

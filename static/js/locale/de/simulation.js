@@ -2,6 +2,8 @@
 
 export default {
   "simulated": "simuliert",
+  "Real time": "Echtzeit",
+  "{count} simulated UAV in real time.": ["{count} simuliertes UAV in Echtzeit.", "{count} simulierte UAVs in Echtzeit."],
   "{speed} times real time": "{speed}-fache Echtzeit",
   "Simulated UAVs are being started.": "Simulierte UAVs werden gestartet.",
   "Air": "Luft",

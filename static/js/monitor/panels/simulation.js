@@ -19,7 +19,6 @@ export function mountSimulation(page) {
   const choice = (id, entries) => h("select", { class: "input", id }, entries.map(([value, words]) => h("option", { value }, words)));
   const field = (label, input, unit = null) => h("div", { class: "field" }, h("label", { for: input.id }, label), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input);
   const number = (id, value, min, max) => h("input", { class: "input", type: "number", id, value, min, max, step: "any", required: true });
-  const speeds = SPEEDS.map((speed) => [speed, t("{speed} times real time", { speed })]);
 
   async function done(act, words) {
     try {
@@ -32,14 +31,14 @@ export function mountSimulation(page) {
     await look();
   }
 
-  const startSpeed = choice("simulation-start-speed", speeds);
+  const startSpeed = choice("simulation-start-speed", SPEEDS);
   const air = choice("simulation-air", AIRS);
   const start = h("form", { class: "simulation-form", onsubmit: (event) => {
     event.preventDefault();
     void done(() => post(`/missions/${page.mission}/simulated-flights`, { speed: Number(startSpeed.value), conditions: air.value }, { headers: { "Idempotency-Key": AGAIN() } }), t("Simulated UAVs are being started."));
   } }, h("div", { class: "simulation-pair" }, field(t("Speed"), startSpeed), field(t("Air"), air)), h("button", { class: "button primary", type: "submit" }, icon("play", "small"), t("Start simulated UAVs")));
 
-  const speed = choice("simulation-speed", speeds);
+  const speed = choice("simulation-speed", SPEEDS);
   speed.addEventListener("change", () => void done(() => patch(`/simulations/${newest.id}`, { speed: Number(speed.value) })));
   const whose = choice("simulation-whose", []);
   const wind = number("simulation-wind", 5, 0, 30), from = number("simulation-from", 270, 0, 360), seconds = number("simulation-seconds", LASTS_S, 1, 3600);
