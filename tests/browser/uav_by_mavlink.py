@@ -12,6 +12,7 @@ from tests.telemetry.vehicles.px4 import LAND, MISSION, RETURN, Px4
 
 METRES_A_DEGREE = 111_195.0
 CLIMB_MPS, SINK_MPS, NEAR_M, TELLS_EVERY_S = 12.0, 2.0, 1.0, 1.0
+STAYS = (mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LOITER_TIME)
 HOME_AMSL_M = 220.0  # about that of Columbus
 BATTERY_PERCENT_S = 0.02
 
@@ -28,6 +29,7 @@ class Autopilot(Flyer):
     _moved_s: float = 0.0
     _told_s: float = 0.0
     _velocity_mps: tuple[float, float] = (0.0, 0.0)
+    _held_s: float = 0.0
     _reached: list[int] = field(default_factory=list)
 
     def __enter__(self) -> "Autopilot":
@@ -86,9 +88,15 @@ class Autopilot(Flyer):
         place = (item.longitude_e7 / 1e7, item.latitude_e7 / 1e7)
         if item.command == mavlink.MAV_CMD_NAV_LAND:
             self._lands_at(place, for_s)
-        elif item.frame == mavlink.MAV_FRAME_MISSION or self._goes_to(place, item.altitude_m, for_s):
+        elif item.frame == mavlink.MAV_FRAME_MISSION or (self._goes_to(place, item.altitude_m, for_s) and self._has_stayed(item, for_s)):
+            self._held_s = 0.0
             self._reached.append(self.vehicle.current_item)
             self.vehicle.current_item += 1
+
+    def _has_stayed(self, item: MissionItem, for_s: float) -> bool:
+        """As long as the item says, for what is done there."""
+        self._held_s += for_s
+        return item.command not in STAYS or self._held_s >= item.parameters[0]
 
     def _lands_at(self, place: tuple[float, float], for_s: float) -> None:
         if self._goes_to(place, self.relative_m, for_s) and self._goes_to(place, 0.0, for_s):
