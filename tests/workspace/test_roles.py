@@ -25,6 +25,7 @@ ASKED_BY_ALL = {
 }  # fmt: skip
 SEEN_BY_CURATORS_ALONE = re.compile(r"/api/v1/(uploads|imports)(/|$)")
 SEEN_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/(people|invitations|sign-ins|unknown-vehicles)(/|$)")
+SET_BY_ADMINISTRATORS_ALONE = re.compile(r"/api/v1/rehearsal-rule$")  # read by everybody
 FOR_UAVS_ALONE = re.compile(r"/api/v1/uav-link(/|$)")
 ONES_OWN = re.compile(r"/api/v1/account(/|$)")
 
@@ -89,7 +90,7 @@ def test_operators_change_what_is_flown_curators_the_ground_administrators_peopl
             continue
         allowed = {Role.ADMINISTRATOR, Role.CURATOR if CURATED.match(address) else Role.OPERATOR}
         allowed |= {Role.CURATOR} if name in ALSO_CURATORS else set()
-        if SEEN_BY_ADMINISTRATORS_ALONE.match(address):
+        if SEEN_BY_ADMINISTRATORS_ALONE.match(address) or SET_BY_ADMINISTRATORS_ALONE.match(address):
             allowed = {Role.ADMINISTRATOR}
         if ONES_OWN.match(address):
             allowed = set(Role)
