@@ -117,6 +117,7 @@ def test_a_missions_uav_is_lost_with_a_simulator_that_is_killed_in_mid_air(missi
     assert state_of(mission) == MissionState.ACTIVE, "what becomes of the mission is for people to say"
 
 
+@pytest.mark.long
 def test_a_uav_of_the_pool_is_reached_as_it_says_and_stands_there_anew_after_a_kill(settings, tmp_path):
     port = free_port()
     settings.SIMULATOR_PORTS = f"{port}-{port}"
