@@ -6,7 +6,7 @@ import { t } from "../text.js";
 import { durationText, heightText, percentText, SHORT_UNIT } from "../units.js";
 import { curvesOf, rulesUpTo } from "./rehearsal.js";
 
-const [TOP_PX, BOTTOM_PX, LEFT_PX] = [8, 8, 44];
+const [TOP_PX, BOTTOM_PX, LEFT_PX] = [8, 14, 44];
 const WIDTH_PX = 344; // of the panel; the drawing is stretched to its place
 
 function chart({ words, flown, planned, limit = null, highest = null, unit, text, height_px, longest_s, place }) {

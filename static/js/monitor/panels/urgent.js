@@ -1,19 +1,25 @@
-/** On a phone: the most urgent alert over the map, with the way to it. */
+/** On a phone: the most urgent alert, or else another plan that waits for a decision, over the map, with the way to it. */
 
 import { byId, h, icon } from "../../dom.js";
 import { t } from "../../text.js";
+import { causeWords, isUndecided } from "../offer_words.js";
 import { alertsInOrder, isUnanswered } from "../order.js";
 
-/** open() shows the alerts. */
+/** open() shows the alerts and offers. */
 export function mountUrgent(store, { open }) {
   const words = h("span", {});
   const box = h("div", { class: "urgent float", hidden: true }, words, h("button", { type: "button", class: "text-button", onclick: open }, t("Decide")));
   byId("map").parentElement.append(box);
-  store.listen(["alerts"], ({ alerts }) => {
+  store.listen(["alerts", "offers"], ({ alerts, offers }) => {
     const [worst] = alertsInOrder(alerts.filter(isUnanswered)).filter(({ level }) => level !== "advisory");
-    box.hidden = !worst;
-    if (!worst) return;
-    box.className = `urgent float ${worst.level}`;
-    words.replaceChildren(icon(worst.level === "critical" ? "octagon-alert" : "triangle-alert"), h("strong", {}, worst.message));
+    const offer = offers.find((one) => isUndecided(one) && one.state !== "computing");
+    box.hidden = !worst && !offer;
+    if (worst) {
+      box.className = `urgent float ${worst.level}`;
+      words.replaceChildren(icon(worst.level === "critical" ? "octagon-alert" : "triangle-alert"), h("strong", {}, worst.message));
+    } else if (offer) {
+      box.className = "urgent float offered";
+      words.replaceChildren(icon("waypoints"), h("span", {}, h("strong", {}, `${t("Another plan is offered")}. `), `${causeWords(offer)}.`));
+    }
   });
 }
