@@ -5,7 +5,7 @@ import { newAlerts } from "../../static/js/monitor/alarm.js";
 import { boardRows } from "../../static/js/monitor/board.js";
 import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/monitor/certainty.js";
 import { eventsOf } from "../../static/js/monitor/event_log.js";
-import { inAir } from "../../static/js/monitor/in_air.js";
+import { flyingUavs, inAir } from "../../static/js/monitor/in_air.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";
@@ -204,4 +204,11 @@ test("of UAVs that are not heard it is said who is told all the same", () => {
   assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
   assert.match(unheardLines(uavs.slice(0, 1), "pause", NOW_MS)[0], /^There is no link to Tern now/);
   assert.deepEqual(unheardLines([], "return", NOW_MS), []);
+});
+
+test("who is in the air can be told something, also after its mission", () => {
+  const uav = (id, mission, isInAir, heard_s = 5) => ({ id, mission, measured: null, link: { is_in_air: isInAir, heard_at: ago(heard_s) } });
+  const missions = [{ id: "m", state: "active" }, { id: "over", state: "aborted" }];
+  const uavs = [uav(1, "m", true), uav(2, "m", null), uav(3, "m", false), uav(4, "over", true), uav(5, null, true), uav(6, null, null), uav(7, null, true, 7_200)];
+  assert.deepEqual(flyingUavs({ uavs, missions, now_ms: NOW_MS }).map(({ id }) => id), [1, 2, 4, 5]);
 });

@@ -3,14 +3,14 @@
 import { ApiError, get, post } from "../api.js";
 import { routeLetter } from "../map/palette.js";
 import { LATE, questionOf } from "../mission/command_questions.js";
-import { isOnItsWay, KINDS } from "../mission/flying.js";
+import { KINDS } from "../mission/flying.js";
 import { returnOf } from "../mission/own_return.js";
 import { confirmAct } from "../mission/panels/confirm.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 import { certaintyOf, MEASURED } from "./certainty.js";
-import { inAir } from "./in_air.js";
+import { flyingUavs } from "./in_air.js";
 import { unheardLines } from "./unheard.js";
 
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -18,12 +18,6 @@ const ALL = {
   pause: { title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"), lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")], act: t("Pause all"), isBack: true },
   return: { title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"), lines: [t("Each flies back to where it took off and lands there. Targets that are not reached stay undone.")], act: t("Return all"), isBack: true },
 };
-
-/** UAVs that can be told something: on a mission that is on its way, and not known to stand on the ground. */
-export function flyingUavs({ uavs, missions }) {
-  const onItsWay = new Set(missions.filter(isOnItsWay).map(({ id }) => id));
-  return uavs.filter((uav) => onItsWay.has(uav.mission) && inAir(uav) !== false);
-}
 
 /** Figures of now in a question: the battery, what is left, the targets that stay open. */
 export function figuresLine({ measured, estimated, place }, mission) {
@@ -79,7 +73,7 @@ export function createCommanding(store) {
   async function askAll(kind, opener) {
     const uavs = flyingUavs(store.state);
     const { title, lines, ...rest } = ALL[kind];
-    if (!uavs.length) return void toast(t("No UAV is flying a mission."));
+    if (!uavs.length) return void toast(t("No UAV is in the air."));
     const silent = uavs.filter((uav) => certainty(uav) !== MEASURED);
     const asked = await confirmAct({ ...rest, title: title(uavs.length), lines: [`${uavs.map(({ name }) => name).join(", ")}.`, ...lines, ...unheardLines(silent, kind, store.state.now_ms), LATE], keep: t("Keep flying"), opener });
     if (!asked) return;

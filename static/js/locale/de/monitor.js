@@ -20,7 +20,7 @@ export default {
   "{distance} of its route to go": "noch {distance} seiner Route",
   "would land {time}": "würde {time} landen",
   "Nothing is heard from {names} now: this is sent all the same, again and again, and known to be done once it is heard.": "Von {names} ist jetzt nichts zu hören: Der Befehl wird trotzdem gesendet, immer wieder; ob er ausgeführt ist, zeigt sich, sobald etwas zu hören ist.",
-  "No UAV is flying a mission.": "Kein UAV fliegt eine Mission.",
+  "No UAV is in the air.": "Kein UAV ist in der Luft.",
   "There is no link to {names} now: the command waits and is sent on contact, as long as it is wanted.": "Zu {names} besteht jetzt keine Verbindung: Der Befehl wartet und wird beim nächsten Kontakt gesendet, solange er gewünscht ist.",
   "{name}: {act}, {state}": "{name}: {act}, {state}",
   "{name}: {act}, given by {who}": "{name}: {act}, gegeben von {who}",

@@ -4,7 +4,7 @@ import { byId, h, icon } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
 import { KINDS } from "../../mission/flying.js";
 import { t } from "../../text.js";
-import { flyingUavs } from "../commanding.js";
+import { flyingUavs } from "../in_air.js";
 import { isHeld } from "../uav_words.js";
 
 const BUTTONS = [
@@ -35,8 +35,11 @@ export function mountCommandBar(store, commanding) {
     document.documentElement.toggleAttribute("data-commanding", uav !== null);
     if (!uav) return;
     bar.setAttribute("aria-label", t("Commands to {name}", { name: uav.name }));
-    letter.textContent = routeLetter(uav.place);
-    letter.className = `letter route-${routeNumber(uav.place)}`;
+    letter.hidden = uav.place === null;
+    if (uav.place !== null) {
+      letter.textContent = routeLetter(uav.place);
+      letter.className = `letter route-${routeNumber(uav.place)}`;
+    }
     name.textContent = uav.name;
     const kind = isHeld(uav) ? "resume" : "pause";
     if (pause.dataset.kind === kind) return;
