@@ -11,7 +11,7 @@ from django.db.models import Count, F
 
 from inspection.geodesy import LonLat
 from missions.mavlink.frozen import FrozenRoute, route_from_json
-from missions.models import Approval, InspectionTarget, Mission, TargetState, Uav
+from missions.models import Approval, InspectionTarget, Mission, OfferState, TargetState, Uav
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.visits import Visit, visits_of
@@ -95,6 +95,7 @@ def mission_record(mission: Mission) -> dict[str, Any]:
             "started_at": mission.started_at,
             "ended_at": mission.ended_at,
             "continues": mission.continues_id,
+            "continued_by": _continuation(mission),
             "approval": None if approval is None else _approval(approval),
         },
         "summary": _summary(mission, routes, targets),
@@ -102,6 +103,11 @@ def mission_record(mission: Mission) -> dict[str, Any]:
         "targets": _targets(mission, targets, routes),
         "results": _results(mission),
     }
+
+
+def _continuation(mission: Mission) -> UUID | None:
+    """The mission that flies what is left of this one, once a person has confirmed it."""
+    return mission.continued_by.filter(offered_by__state=OfferState.ACCEPTED, deleted_at=None).values_list("pk", flat=True).first()
 
 
 def _approval(approval: Approval) -> dict[str, Any]:

@@ -21,6 +21,7 @@ class RecordMissionSerializer(serializers.Serializer):
     started_at = serializers.DateTimeField(allow_null=True, help_text="when its first UAV began to fly")
     ended_at = serializers.DateTimeField(allow_null=True)
     continues = serializers.UUIDField(allow_null=True, help_text="the mission whose rest this one flies")
+    continued_by = serializers.UUIDField(allow_null=True, help_text="the mission that flies the rest of this one")
     approval = RecordApprovalSerializer(allow_null=True)
 
 

@@ -11,7 +11,7 @@ from django.contrib.gis.geos import Point
 from django.test import Client
 from django.utils import timezone
 
-from missions.models import Approval, InspectionTarget, Mission, MissionState, TargetState, Uav
+from missions.models import Approval, InspectionTarget, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert
@@ -130,6 +130,14 @@ def test_a_mission_that_has_not_flown_has_a_record_without_figures(client: Clien
 def test_a_draft_has_a_record_that_says_so(client: Client) -> None:
     told = record_of(client, Mission.objects.create(name="Draft"))
     assert told["mission"]["approval"] is None and told["routes"] == []
+
+
+@pytest.mark.parametrize(("state", "is_named"), [(OfferState.ACCEPTED, True), (OfferState.DECLINED, False)])
+def test_the_record_leads_to_the_mission_that_flies_the_rest(client: Client, mission: Mission, state: OfferState, is_named: bool) -> None:
+    rest = Mission.objects.create(name="The rest", continues=mission)
+    ReplanOffer.objects.create(mission=mission, code="uav-out", state=state, continuation=rest)
+    assert record_of(client, mission)["mission"]["continued_by"] == (str(rest.pk) if is_named else None)
+    assert record_of(client, rest)["mission"]["continues"] == str(mission.pk)
 
 
 def test_another_organisations_record_is_not_there(mission: Mission) -> None:

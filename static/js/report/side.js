@@ -30,9 +30,10 @@ export function drawHead(record) {
   const sentence = sentenceOf(record);
   if (byId("report-sentence").textContent !== sentence) byId("report-sentence").textContent = sentence;
   byId("report-said").textContent = factsOf(record);
+  const others = [[mission.continues, t("Flies the rest of an earlier mission: its report")], [mission.continued_by, t("Its rest is flown by another mission: that one's report")]].filter(([id]) => id);
   const continues = byId("report-continues");
-  continues.hidden = !mission.continues;
-  if (mission.continues) continues.replaceChildren(h("a", { class: "report-link", href: `/missions/${mission.continues}/report` }, icon("link", "small"), t("Flies the rest of an earlier mission: its report")));
+  continues.hidden = !others.length;
+  continues.replaceChildren(...others.map(([id, words]) => h("a", { class: "report-link", href: `/missions/${id}/report` }, icon("link", "small"), words)));
   const table = byId("report-figures");
   table.hidden = !record.routes.length;
   table.tBodies[0].replaceChildren(...figuresOf(record).map(({ words, planned, flown, more }) => h("tr", {}, h("th", { scope: "row" }, words), h("td", { class: "number quiet-text" }, planned), h("td", { class: "number flown" }, flown), h("td", { class: "number quiet-text" }, more))));

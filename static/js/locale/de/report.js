@@ -23,6 +23,7 @@ export default {
   "Faster": "Schneller",
   "Fit what was flown": "Geflogenes einpassen",
   "Flies the rest of an earlier mission: its report": "Fliegt den Rest einer früheren Mission: deren Bericht",
+  "Its rest is flown by another mission: that one's report": "Den Rest fliegt eine andere Mission: deren Bericht",
   "Height above take-off by time": "Höhe über dem Startplatz nach der Zeit",
   "Height error": "Höhenfehler",
   "Height error, RMS": "Höhenfehler, RMS",
