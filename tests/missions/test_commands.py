@@ -196,7 +196,7 @@ def test_a_uav_that_is_reached_otherwise_now_is_given_nothing_by_its_former_door
 
 @pytest.mark.parametrize("change", [{"link": LinkKind.HTTP}, {"mavlink_system_id": 9}, {"allows_unsigned": True}])
 def test_how_a_uav_is_reached_does_not_change_while_a_command_waits(change: dict) -> None:
-    person, uav = somebody(), a_uav()
+    person, uav = somebody(), a_uav(mavlink_system_id=7)
     abort = give(uav, CommandKind.ABORT)
     with pytest.raises(Refused) as error:
         change_uav(uav=uav, actor=person, position=None, values=change)
@@ -205,6 +205,12 @@ def test_how_a_uav_is_reached_does_not_change_while_a_command_waits(change: dict
     assert claim_commands(uav_ids=[uav.pk], holder="gateway-1", lease_s=LEASE_S, limit=1, link=LinkKind.MAVLINK) == [abort]
     assert note_applied(abort.pk, attempt=1, holder="gateway-1")
     change_uav(uav=uav, actor=person, position=None, values=change)
+
+
+def test_a_system_id_is_given_to_a_uav_that_had_none_though_a_command_waits() -> None:
+    uav = a_uav()
+    give(uav, CommandKind.ABORT)
+    change_uav(uav=uav, actor=somebody(), position=None, values={"mavlink_system_id": 9})
 
 
 def test_what_is_held_is_taken_by_nobody_else_until_the_lease_runs_out() -> None:
