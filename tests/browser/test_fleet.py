@@ -277,12 +277,12 @@ def test_axe_finds_nothing_serious_in_details_and_forms(visitor: Visitor, theme:
 
 
 def test_a_viewer_looks_and_changes_nothing_on_a_phone(visitor: Visitor, picture: Picture) -> None:
-    writes(visitor.signs_in("opal"), "POST", "/uavs", {"name": "Ruff", "position": YARD, "battery_percent": 22})
+    writes(visitor.signs_in("opal"), "POST", "/uavs", {"name": "Sanderling", "position": YARD, "battery_percent": 22})
     page = fleet(visitor.signs_in("vera", size=(390, 844), touch=True))
     picture(page, "uavs-phone")
-    page.get_by_role("link", name="Ruff").tap()
+    page.get_by_role("link", name="Sanderling").tap()
     expect(details(page).get_by_text("22")).to_be_visible()
-    for name in ("Edit", "Retire", "Delete Ruff", "Make: Token of the HTTP link", "New UAV"):
+    for name in ("Edit", "Retire", "Delete Sanderling", "Make: Token of the HTTP link", "New UAV"):
         expect(page.get_by_role("button", name=name)).to_have_count(0)
     page.get_by_role("button", name="All of them").tap()
-    expect(page.get_by_role("link", name="Ruff")).to_be_visible()
+    expect(page.get_by_role("link", name="Sanderling")).to_be_visible()
