@@ -7,11 +7,12 @@ export const ESTIMATED = "estimated";
 export const PLANNED = "planned";
 export const LOST = "lost"; // nobody knows where it is by now: where it was last
 
-const NUMBERS = ["altitude_amsl_m", "altitude_relative_m", "speed_mps", "climb_mps", "battery_percent", "roll_deg", "pitch_deg", "bound_m", "bound_height_m"];
+const NUMBERS = ["altitude_amsl_m", "altitude_relative_m", "speed_mps", "climb_mps", "battery_percent", "roll_deg", "pitch_deg"];
+const NO_BOUND = { along_m: 0, across_m: 0, bearing_deg: 0, height_m: 0 }; // at a report
 
 /**
- * A piece of a track: { kind, samples } with samples [{ at_ms, position: [lon, lat], heading_deg, …numbers, waypoint, isInAir }] by time,
- * numbers as named above, null where they are not known.
+ * A piece of a track: { kind, samples } with samples [{ at_ms, position: [lon, lat], heading_deg, …numbers, waypoint, isInAir, bound }] by time,
+ * numbers as named above, null where they are not known; bound { along_m, across_m, bearing_deg, height_m } of what is estimated.
  *
  * → the same at a moment, numbers in proportion, headings the short way; with `kind`, `at_ms` and `since_ms` of the sample before it; null before
  * the first sample. In a silence, and after the last sample, it is LOST where it was last; after a landing it stands there.
@@ -37,7 +38,13 @@ function at({ kind, samples }, at_ms) {
   const mixed = { ...before, kind, at_ms, since_ms: before.at_ms, position: [0, 1].map((axis) => before.position[axis] + (after.position[axis] - before.position[axis]) * share) };
   for (const name of NUMBERS) mixed[name] = isKnown(before[name]) && isKnown(after[name]) ? before[name] + (after[name] - before[name]) * share : (before[name] ?? null);
   if (isKnown(before.heading_deg) && isKnown(after.heading_deg)) mixed.heading_deg = (before.heading_deg + turn_deg(before.heading_deg, after.heading_deg) * share + 360) % 360;
+  mixed.bound = kind === ESTIMATED ? boundBetween(before.bound ?? NO_BOUND, after.bound ?? NO_BOUND, share) : null;
   return mixed;
+}
+
+function boundBetween(before, after, share) {
+  const part = (name) => (before[name] ?? 0) + ((after[name] ?? 0) - (before[name] ?? 0)) * share;
+  return { along_m: part("along_m"), across_m: part("across_m"), height_m: part("height_m"), bearing_deg: share < 0.5 ? before.bearing_deg : after.bearing_deg };
 }
 
 const isKnown = (value) => typeof value === "number" && Number.isFinite(value);
