@@ -8,6 +8,7 @@ const ROUTES = 8;
 const PLANNED = { width_m: 0.5, least_px: 1.4, poles_m: 120 };
 const FLOWN = { width_m: 1.1, least_px: 3.2, poles_m: 60 };
 const ALWAYS_S = -1e9; // a time that is over
+const FOR_EVER_S = 1e30;
 
 const VERTEX = `
   uniform vec2 viewport; uniform float leastPx;
@@ -57,7 +58,7 @@ function material({ isLine, least_px = 1, opacity, later }) {
     vertexShader: isLine ? LINE_VERTEX : VERTEX,
     fragmentShader: FRAGMENT,
     uniforms: {
-      viewport: { value: [1, 1] }, leastPx: { value: least_px }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: Infinity }, opacity: { value: opacity },
+      viewport: { value: [1, 1] }, leastPx: { value: least_px }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: FOR_EVER_S }, opacity: { value: opacity },
       later: { value: later }, looked: { value: -1 }, rest: { value: 0.35 },
     },
     transparent: true,
@@ -189,7 +190,7 @@ export function createWays(groundAt) {
     /** at_ms: what is later is faint; looked: place of the route that is looked at, or null. */
     frame({ at_ms, looked, viewport }) {
       for (const { material: look } of all) {
-        look.uniforms.now.value = at_ms === null ? Infinity : (at_ms - from_ms) / 1_000;
+        look.uniforms.now.value = at_ms === null ? FOR_EVER_S : (at_ms - from_ms) / 1_000;
         look.uniforms.looked.value = looked ?? -1;
         look.uniforms.viewport.value = viewport;
       }
