@@ -7,7 +7,7 @@ import { RADIANS } from "../cameras/vectors.js";
 import { ESTIMATED, LOST, MEASURED, PLANNED } from "../sources/pieces.js";
 import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
-const LEAST_PX = 30; // across: from far away it is drawn larger than it is
+const LEAST_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
 const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
 const LEAST_BOUND_M = 1.5;
@@ -76,6 +76,7 @@ export function createUavs(count) {
     show(drawn, { palette, metresPerPixel, dt_s = 0, hidden = null }) {
       spin += dt_s * 23; // seen turning, not as fast as they do
       const numbers = { solid: 0, ghosts: 0, rotors: 0, cones: 0, bounds: 0 };
+      cones.material.opacity = palette.isDark ? 0.06 : 0.1;
       cones.material.blending = palette.isDark ? AdditiveBlending : NormalBlending;
       for (const uav of drawn) {
         if (uav.route === hidden) continue;
