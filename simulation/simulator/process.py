@@ -1,11 +1,13 @@
 """The simulator as a whole: it takes simulations by leases, flies each at its pace, passes changes on, and writes down how they do."""
 
+import errno
 import logging
 import threading
 import time
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from django.conf import settings
 from django.db import close_old_connections, connection
 
 from simulation.flight.faults_told import WrongFaults, faults_told
@@ -96,9 +98,13 @@ class Simulator:
                 self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches)
             except DATABASE_AWAY:
                 raise
-            except OSError:
-                logger.exception("no socket for simulation %s", held.simulation.pk)
-                fail_simulation(simulation=held.simulation, reason="no-socket")
+            except OSError as error:
+                is_taken = error.errno == errno.EADDRINUSE
+                if is_taken:
+                    logger.warning("%s: another program has a port of simulation %s", settings.SIMULATOR_PORTS, held.simulation.pk)
+                else:
+                    logger.exception("no socket for simulation %s", held.simulation.pk)
+                fail_simulation(simulation=held.simulation, reason="port-taken" if is_taken else "no-socket")
             except Exception:
                 logger.exception("simulation %s cannot be flown", held.simulation.pk)
                 fail_simulation(simulation=held.simulation, reason="simulator-fault")
