@@ -126,7 +126,9 @@ TEMPLATES = (
 
 def _pattern(template: str) -> re.Pattern[str]:
     parts = re.split(r"%\((\w+)\)s", template)
-    return re.compile("".join(f"(?P<{part}>.+)" if index % 2 else re.escape(part.replace("%%", "%")) for index, part in enumerate(parts)), re.S)
+    return re.compile(
+        "".join(f"(?P<{part}>.+)" if index % 2 else re.escape(part.replace("%%", "%")) for index, part in enumerate(parts)), re.S
+    )
 
 
 _PATTERNS = {template: _pattern(template) for template in TEMPLATES}

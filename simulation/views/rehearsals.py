@@ -80,9 +80,7 @@ class MissionRehearsals(APIView):
         skies = skies_of(values.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
         try:
             with refusals(), transaction.atomic():
-                rehearsal = start_rehearsal(
-                    mission=mission, actor=request.user, skies=skies, seed=values["seed"], afresh=values["afresh"]
-                )
+                rehearsal = start_rehearsal(mission=mission, actor=request.user, skies=skies, seed=values["seed"], afresh=values["afresh"])
                 send_job_on_commit(rehearsal.job)
         except TooManyJobs as error:
             raise ApiProblem(429, "too_many_jobs", str(error), retry_after_s=RETRY_AFTER_S) from error

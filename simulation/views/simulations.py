@@ -20,7 +20,16 @@ from missions.views.problems import refusals
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.serializers import simulations as shapes
 from simulation.services.simulated_flights import start_simulated_flights
-from simulation.services.simulations import IsOver, NoPortFree, PoolUav, QuotaReached, change_simulation, end_simulation, end_vehicle, start_pool
+from simulation.services.simulations import (
+    IsOver,
+    NoPortFree,
+    PoolUav,
+    QuotaReached,
+    change_simulation,
+    end_simulation,
+    end_vehicle,
+    start_pool,
+)
 from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.vehicle_models import PRESENT
 from simulation.views.skies import sky_of

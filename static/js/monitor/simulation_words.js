@@ -1,7 +1,7 @@
 /** What the panel of simulated UAVs says, and what its buttons send. */
 
 import { t, tn } from "../text.js";
-import { heightText, numberText, percentText } from "../units.js";
+import { heightText, numberText, percentText, speedText } from "../units.js";
 
 export const SPEEDS = [1, 2, 5, 10].map((speed) => [speed, speed === 1 ? t("Real time") : t("{speed} times real time", { speed })]);
 export const AIRS = [["as-planned", t("As planned")], ["calm", t("Calm")], ["strong-wind", t("Strong wind")]];
@@ -31,14 +31,20 @@ export function lastsWords(seconds, speed) {
   return t("By the clock on the wall; {flown} s of the flight.", { flown: numberText(Math.round(seconds * speed)) });
 }
 
+function airWords({ wind: [layer], gusts_mps }) {
+  if (!layer?.speed_mps) return t("calm");
+  const words = t("wind {speed} from {degrees}°", { speed: speedText(layer.speed_mps), degrees: Math.round(layer.from_deg) });
+  return gusts_mps > 0 ? `${words}, ${t("gusts {speed}", { speed: speedText(gusts_mps) })}` : words;
+}
+
 /** How one of its UAVs does: { words, isBad }. */
-export function vehicleWords({ state, message, told }) {
+export function vehicleWords({ state, message, told, conditions }) {
   if (state === "failed") return { words: message, isBad: true };
   if (state === "ended") return { words: t("Ended"), isBad: false };
   if (state === "wanted" || !told) return { words: t("is being started"), isBad: false };
   if (told.is_crashed) return { words: t("crashed"), isBad: true };
   const place = told.is_in_air ? t("in the air at {height}", { height: heightText(told.altitude_relative_m) }) : t("on the ground");
-  return { words: [place, t("battery {figure}", { figure: percentText(told.battery_percent) }), told.is_link_lost && t("its link is lost")].filter(Boolean).join(" · "), isBad: false };
+  return { words: [place, t("battery {figure}", { figure: percentText(told.battery_percent) }), airWords(conditions), told.is_link_lost && t("its link is lost")].filter(Boolean).join(" · "), isBad: false };
 }
 
 /** One sentence about a simulation, and whether something is wrong with it. */
