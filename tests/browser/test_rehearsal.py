@@ -107,9 +107,7 @@ def test_the_verdict_fits_every_window(visitor: Visitor, planned: str, picture: 
     assert faults(page) == []
 
 
-def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_for(
-    visitor: Visitor, planned: str, picture: Picture
-) -> None:
+def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_for(visitor: Visitor, planned: str, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
         pytest.skip("nothing was rehearsed")
@@ -137,7 +135,9 @@ def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visit
     panel = page.get_by_role("region", name="Rehearsal")
     panel.get_by_role("button", name="Rehearse", exact=True).click()
     expect(panel.locator("#rehearsal-sentence")).to_have_text(re.compile("fails?: As planned"), timeout=FLIGHT_MS)
-    expect(panel.locator(".rehearsal-reasons")).to_contain_text(re.compile(r"wind of 14\.0 m/s at 10 m, the simulated airframe flies [\d.]+ m/s"))
+    expect(panel.locator(".rehearsal-reasons")).to_contain_text(
+        re.compile(r"wind of 14\.0 m/s at 10 m, the simulated airframe flies [\d.]+ m/s")
+    )
     picture(page, "rehearsal-wind")
     with asked_for_rehearsals(visitor):
         page.get_by_role("button", name="Approve", exact=True).click()

@@ -55,10 +55,10 @@ test("a fault that lasts is told by both clocks, unless they are one", () => {
 });
 
 test("a clock's rate is a whole number where it nearly is one, and 1 where nobody knows it", () => {
-  assert.equal(rateOf({ link: { clock_rate: 9.7 } }), 10);
-  assert.equal(rateOf({ link: { clock_rate: 1.4 } }), 1.4);
-  assert.equal(rateOf({ link: { clock_rate: null } }), 1);
-  assert.equal(rateOf({ link: null }), 1);
+  const rate = (clock_rate, is_simulated = true) => rateOf({ link: { clock_rate }, is_simulated });
+  assert.deepEqual([rate(9.7), rate(1.4), rate(null)], [10, 1.4, 1]);
+  assert.equal(rateOf({ link: null, is_simulated: true }), 1);
+  assert.equal(rate(10, false), 1); // a real aircraft flies by the clock on the wall
 });
 
 test("what can be mended is mended", () => {

@@ -5,9 +5,9 @@ import { numberText } from "../units.js";
 
 const ALIKE = 0.1; // as much as what was learnt of a clock may be off
 
-/** Its seconds a second: 1, or the whole number that is learnt more or less. */
-export function rateOf({ link }) {
-  const rate = link?.clock_rate ?? 1;
+/** Its seconds a second: the whole number that is learnt more or less; 1 of what is no simulated UAV. */
+export function rateOf({ link, is_simulated }) {
+  const rate = is_simulated ? (link?.clock_rate ?? 1) : 1;
   const whole = Math.round(rate);
   return Math.abs(rate - whole) <= ALIKE * rate ? whole : Math.round(rate * 10) / 10;
 }
