@@ -10,7 +10,15 @@ from tests.browser.conftest import Visitor
 from tests.browser.operator_map import TOO_WIDE, asks
 from tests.browser.pictures import Picture
 from tests.browser.simulated_mission import (
-    SOON_MS, answers, flies_in_simulation, opened, panel_of, retires, simulated_uavs, stores_simulated_mission, two_towers,
+    SOON_MS,
+    answers,
+    flies_in_simulation,
+    opened,
+    panel_of,
+    retires,
+    simulated_uavs,
+    stores_simulated_mission,
+    two_towers,
 )  # fmt: skip
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
