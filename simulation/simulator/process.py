@@ -15,6 +15,7 @@ from simulation.models import SimulationChange
 from simulation.rehearsing.sky import sky_from_json
 from simulation.rehearsing.sky_weather import weather_of
 from simulation.services.simulator_leases import (
+    end_single_ones,
     end_those_over,
     fail_simulation,
     release_simulations,
@@ -85,6 +86,8 @@ class Simulator:
         self._renewed_s = time.monotonic()
         for key in self.flights.keys() - still:
             self.flights.pop(key).end()
+        for vehicle in end_single_ones(holder=options.holder, ids=list(self.flights)):
+            self.flights[vehicle.simulation_id].drop(vehicle)
 
     def _take(self) -> None:
         options = self.options

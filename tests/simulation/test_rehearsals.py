@@ -65,7 +65,7 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
 
 
 def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> None:
-    first, second = (rehearsed(mission, person, "strong-wind", seed=3) for _ in range(2))
+    first, second = (rehearsed(mission, person, "strong-wind", seed=3, afresh=True) for _ in range(2))
     tracks = [RehearsalTrack.objects.get(run__rehearsal=rehearsal).flights for rehearsal in (first, second)]
     assert tracks[0] == tracks[1]
 
@@ -156,6 +156,38 @@ def test_one_that_is_cancelled_before_a_worker_comes_is_not_flown(mission: Missi
     rehearsal.job.refresh_from_db()
     assert rehearsal.job.state == JobState.CANCELLED
     assert not RehearsalRun.objects.exclude(level="").exists()
+
+
+def test_what_was_flown_alike_lately_is_taken_over_and_not_flown_again(mission: Mission, person: User) -> None:
+    first = rehearsed(mission, person, "calm").runs.get()
+    with mock.patch("simulation.services.rehearsals.fly", side_effect=AssertionError("it is flown")):
+        again = rehearsed(mission, person, "calm")
+    run = again.runs.get()
+    assert (again.job.state, again.level) == (JobState.DONE, "pass")
+    assert (run.verdict, run.finished_at) == (first.verdict, first.finished_at)
+    assert run.tracks.get().flights == first.tracks.get().flights
+
+
+@pytest.mark.parametrize("what", ["another seed", "another air", "another ground", "long ago", "asked for afresh"])
+def test_what_differs_is_flown(mission: Mission, person: User, what: str) -> None:
+    first = rehearsed(mission, person, "calm")
+    if what == "another ground":
+        worlds.mark_ground_changed()
+    if what == "long ago":
+        first.runs.update(finished_at=timezone.now() - timedelta(hours=25))
+    flown = mock.Mock(side_effect=Flown)
+    with mock.patch("simulation.services.rehearsals.fly", flown), pytest.raises(Flown):
+        rehearsed(
+            mission,
+            person,
+            "strong-wind" if what == "another air" else "calm",
+            seed=8 if what == "another seed" else 7,
+            afresh=what == "asked for afresh",
+        )
+
+
+class Flown(Exception):
+    """A flight has begun."""
 
 
 def test_a_worker_that_takes_over_flies_only_what_is_left(mission: Mission, person: User) -> None:
