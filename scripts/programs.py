@@ -2,10 +2,10 @@
 
 import os
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from scripts.places import DATABASE_USER, PROJECT_DIR, WEB_PROGRAMS, CannotStart, Places
+from scripts.places import DATABASE_USER, PROJECT_DIR, TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.postgresql_installations import server_for
 from scripts.system_packages import find_program
 
@@ -22,6 +22,7 @@ class Program:
     patience_s: int = 10
     user: str | None = None
     stale_files: list[Path] = field(default_factory=list)
+    environment: dict[str, str] = field(default_factory=dict)
 
     def start_command(self) -> list[str]:
         """The command as the supervisor runs it: through scripts.start_program, which clears up after a killed instance."""
@@ -133,8 +134,21 @@ def _simulator(places: Places) -> Program:
     return Program(name="simulator", stage=PROGRAM_STAGE, command=command, folder=places.process("simulator"), patience_s=12)
 
 
+def _told(places: Places, sockets: Path, program: Program) -> Program:
+    """The same program, which tells how it does. Workers have several processes, which count together in a folder."""
+    environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, program.name)}"}
+    if program.name.startswith("worker-"):
+        environment["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(program.name) / "metrics")
+        environment["REMAP_SIGTERM"] = "SIGQUIT"  # to a worker TERM says the same as QUIT
+    return replace(program, environment=program.environment | environment)
+
+
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
+    return [_told(places, sockets, program) if program.name in TELLING_PROGRAMS else program for program in _programs(places, sockets)]
+
+
+def _programs(places: Places, sockets: Path) -> list[Program]:
     live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
     live += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "5", "--respawn-failed-workers", "--respawn-interval", "0.5"]
     live += ["--log-level", "warning", "config.asgi:application"]

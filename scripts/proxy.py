@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from scripts.places import WEB_PROGRAMS, CannotStart, Places
+from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -149,6 +149,24 @@ def _servers(sockets: Path) -> str:
     return "\n".join(f"        server {_quoted(f'unix:{sockets / name}.sock')} max_fails=0;" for name in WEB_PROGRAMS)
 
 
+def _telling(sockets: Path) -> str:
+    """A port of its own for whoever collects metrics: /web-1/metrics and so on. Never that of the pages, and only where it is wanted."""
+    port = os.environ.get("SPANWISE_METRICS_PORT", "")
+    if not port:
+        return ""
+    if not port.isdigit():
+        raise CannotStart(f"SPANWISE_METRICS_PORT is no port: {port!r}")
+    asked = {name: _quoted(f"http://unix:{telling_socket(sockets, name)}:/") for name in TELLING_PROGRAMS}
+    locations = "\n".join(f"        location /{name}/ {{ proxy_pass {address}; }}" for name, address in asked.items())
+    return f"""
+    server {{
+        listen 127.0.0.1:{port};
+        access_log off;
+{locations}
+        location / {{ return 404; }}
+    }}"""
+
+
 def _file_limit() -> int:
     """How many files nginx may have open: a connection to a browser is one, and the one behind it another."""
     return min(MOST_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
@@ -208,8 +226,9 @@ http {{
         "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
         default $request;
     }}
+    map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
-    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
+    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id';
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
@@ -253,6 +272,6 @@ http {{
         }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}{links}{_websockets(scheme)}
 {failures_for_people}
 {failures_for_programs}
-    }}
+    }}{_telling(sockets)}
 }}
 """
