@@ -50,6 +50,7 @@ def environment(program: str) -> dict[str, str]:
         usual["SPANWISE_METRICS"] = METRICS
     if program.startswith("worker-"):
         usual |= WORKER_ENVIRONMENT
+        usual["PROMETHEUS_MULTIPROC_DIR"] = str(state_directory() / "metrics")  # its processes count together
     return usual | os.environ
 
 
