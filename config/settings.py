@@ -98,6 +98,7 @@ INSTALLED_APPS = [
 ]
 
 MIDDLEWARE = [
+    "config.observed_requests.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
@@ -287,7 +288,7 @@ CELERY_ACCEPT_CONTENT = ["json"]
 CELERY_TASK_TIME_LIMIT = 900
 CELERY_TASK_SOFT_TIME_LIMIT = 870
 CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
-CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 10
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 6  # what is not done by then goes back to the queue: a program ends within 10 s
 CELERY_BROKER_TRANSPORT_OPTIONS = {
     "visibility_timeout": 1_000,  # longer than the longest task
     "unacked_restore_interval": 2,
@@ -330,6 +331,7 @@ CELERY_BEAT_SCHEDULE = {
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
+CELERY_BEAT_SCHEDULER = "config.watched_tasks:WatchedScheduler"
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 
 # The field's own rules, each with a unit in its name.
@@ -432,11 +434,15 @@ SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 # Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
 OUTGOING_ALLOWED_HOSTS = _list("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
 
+LOG_FORMAT = os.environ.get("SPANWISE_LOG_FORMAT", "line")  # or json
+LOG_REQUESTS = _flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
 LOGGING = {
     "version": 1,
     "disable_existing_loggers": False,
-    "formatters": {"line": {"format": "{asctime} {levelname} {name} {message}", "style": "{"}},
-    "filters": {"without links": {"()": "config.log_lines.WithoutLinks"}},
-    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "line", "filters": ["without links"]}},
+    "formatters": {
+        "line": {"()": "operation.log_lines.LineFormatter"},
+        "json": {"()": "operation.log_lines.JsonFormatter", "program": os.environ.get("SPANWISE_PROGRAM", "")},
+    },
+    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "json" if LOG_FORMAT == "json" else "line"}},
     "root": {"handlers": ["console"], "level": os.environ.get("SPANWISE_LOG_LEVEL", "INFO")},
 }

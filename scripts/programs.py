@@ -2,11 +2,11 @@
 
 import os
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from scripts import commands
-from scripts.places import DATABASE_USER, WEB_PROGRAMS, CannotStart, Places
+from scripts.places import DATABASE_USER, TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.postgresql_installations import server_for
 from scripts.system_packages import find_program
 
@@ -23,6 +23,7 @@ class Program:
     patience_s: int = 10
     user: str | None = None
     stale_files: list[Path] = field(default_factory=list)
+    environment: dict[str, str] = field(default_factory=dict)
 
     def start_command(self) -> list[str]:
         """The command as the supervisor runs it: through scripts.start_program, which clears up after a killed instance."""
@@ -106,8 +107,21 @@ def _simulator(places: Places) -> Program:
     return Program("simulator", PROGRAM_STAGE, commands.management("run_simulator"), places.process("simulator"), patience_s=12)
 
 
+def _told(places: Places, sockets: Path, program: Program) -> Program:
+    """The same program, which tells how it does. Workers have several processes, which count together in a folder."""
+    environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, program.name)}"}
+    if program.name.startswith("worker-"):
+        environment["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(program.name) / "metrics")
+        environment["REMAP_SIGTERM"] = "SIGQUIT"  # to a worker TERM says the same as QUIT
+    return replace(program, environment=program.environment | environment)
+
+
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
+    return [_told(places, sockets, program) if program.name in TELLING_PROGRAMS else program for program in _programs(places, sockets)]
+
+
+def _programs(places: Places, sockets: Path) -> list[Program]:
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
     return [

@@ -5,7 +5,7 @@ import resource
 from pathlib import Path
 
 from scripts import page_headers
-from scripts.places import WEB_PROGRAMS, Places
+from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, upstreams
 
 MOST_FILES = 65_536
@@ -101,6 +101,24 @@ def _websockets(scheme: str, *, to: str) -> str:
         }}"""
 
 
+def _telling(sockets: Path) -> str:
+    """A port of its own for whoever collects metrics: /web-1/metrics and so on. Never that of the pages, and only where it is wanted."""
+    port = os.environ.get("SPANWISE_METRICS_PORT", "")
+    if not port:
+        return ""
+    if not port.isdigit():
+        raise CannotStart(f"SPANWISE_METRICS_PORT is no port: {port!r}")
+    asked = {name: quoted(f"http://unix:{telling_socket(sockets, name)}:/") for name in TELLING_PROGRAMS}
+    locations = "\n".join(f"        location /{name}/ {{ proxy_pass {address}; }}" for name, address in asked.items())
+    return f"""
+    server {{
+        listen 127.0.0.1:{port};
+        access_log off;
+{locations}
+        location / {{ return 404; }}
+    }}"""
+
+
 def _file_limit() -> int:
     """How many files nginx may have open: a connection to a browser is one, and the one behind it another."""
     return min(MOST_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
@@ -120,12 +138,13 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
             live=(f"unix:{sockets / 'live.sock'}",),
             listens_at=f"127.0.0.1:{port}",
             is_behind_https=is_https_asked_for(),
-        )
+        ),
+        beside=_telling(sockets),
     )
 
 
-def site_configuration(site: Site) -> str:
-    """The text of nginx.conf."""
+def site_configuration(site: Site, *, beside: str = "") -> str:
+    """The text of nginx.conf; `beside` are more servers in it."""
     folder = site.folder
     tiles = (os.environ.get(name, "") for name in ("SPANWISE_BASE_MAP_TILES", "SPANWISE_SATELLITE_TILES"))
     headers = page_headers.headers(tiles, is_https=site.is_https)
@@ -181,8 +200,9 @@ http {{
         "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
         default $request;
     }}
+    map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
-    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
+    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id';
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
@@ -219,6 +239,6 @@ http {{
         }}{pages}{plans}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
 {failures_for_people}
 {failures_for_programs}
-    }}{plain_server(site)}
+    }}{plain_server(site)}{beside}
 }}
 """

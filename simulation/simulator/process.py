@@ -8,6 +8,7 @@ from uuid import UUID
 
 from django.db import close_old_connections, connection
 
+from operation import pulse
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulationChange
 from simulation.rehearsing.sky import sky_from_json
@@ -32,6 +33,7 @@ logger = logging.getLogger(__name__)
 EVERY_S = 0.5
 TELL_EVERY_S = 1.0
 AWAY_EVERY_S = 60.0  # one line of log
+LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that neither answers nor refuses may hold it up for minutes
 
 
 @dataclass
@@ -48,12 +50,14 @@ class Simulator:
     def run(self) -> None:
         logger.info("simulator %s has begun", self.options.holder)
         while not self._stop.is_set():
+            pulse.beat(LOOP, within_s=HANGS_AFTER_S)
             try:
                 close_old_connections()
                 self.round()
             except DATABASE_AWAY as error:
                 self._go_on_without_database(error)
             self._stop.wait(EVERY_S)
+        pulse.rest(LOOP)
         self._give_back()
 
     def stop(self) -> None:
