@@ -61,6 +61,8 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
     tracks = RehearsalTrack.objects.filter(run=run)
     assert [track.uav for track in tracks] == [0, 1]
     assert all(track.flights[0]["altitude_relative_m"][-1] == pytest.approx(0.0, abs=0.3) for track in tracks)
+    leaning = [max(map(abs, track.flights[0]["pitch_deg"])) for track in tracks]
+    assert all(1.0 < most_deg < 60.0 for most_deg in leaning)  # it leans to move, and never falls over
     assert AuditEntry.objects.filter(action="rehearse", subject_id=str(mission.pk), actor=person).count() == 1
 
 
