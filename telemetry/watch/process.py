@@ -59,6 +59,11 @@ class Watched:
     has_learnt: bool = False
     judged_s: float = 0.0
 
+    def keep_time(self) -> None:
+        """From its newest report on, by its own clock as it runs now."""
+        newest = self.tracker.newest
+        self.tracker.time.run_at(self.flight.clock_rate, 0.0 if newest is None else newest.measured_s)
+
     def note(self, report: Report) -> None:
         if self.newest is None or report.measured_s > self.newest.measured_s:
             self.newest = report
@@ -128,6 +133,7 @@ class Watch:
         changed = {uav_id for uav_id, watched in self.held.items() if _flight_of(watched.flight) != _flight_of(flying[uav_id])}
         for uav_id in self.held.keys() - changed:
             self.held[uav_id].flight = flying[uav_id]
+            self.held[uav_id].keep_time()
         self._begin([flying[uav_id] for uav_id in sorted(taken | changed)])
         forget_what_is_over(flying=flying.keys())
 
@@ -139,6 +145,8 @@ class Watch:
             flight.uav_id: Watched(flight, Tracker(knowledge_of(flight.approval_id, flight.uav_id, flight.flight))) for flight in flights
         }
         newest = newest_reports(list(begun), most=READ_BACK)
+        for watched in begun.values():
+            watched.keep_time()
         self.held |= begun
         for stored in newest:
             self._take(self.held[stored.uav_id], stored.report)
