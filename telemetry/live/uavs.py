@@ -99,4 +99,5 @@ def _link_json(kind: str, link: UavLink) -> dict[str, Any]:
         "autopilot": link.autopilot,
         "loaded": loaded if link.loaded_sha256 else None,
         "waypoint_sequence": link.waypoint_sequence,
+        "clock_rate": None if link.clock_rate is None else round(link.clock_rate, 1),
     }

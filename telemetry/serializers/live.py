@@ -24,6 +24,9 @@ class LiveLinkSerializer(serializers.Serializer):
     autopilot = serializers.CharField(allow_blank=True)
     loaded = LoadedSerializer(allow_null=True, help_text="the approved mission found on it by reading back; null: none")
     waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route")
+    clock_rate = serializers.FloatField(
+        allow_null=True, help_text="its seconds a second: a simulated UAV may fly faster than real time; null: not known, as ours"
+    )
 
 
 class MeasuredAtSerializer(serializers.Serializer):

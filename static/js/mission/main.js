@@ -37,9 +37,11 @@ import { isUnsaved } from "./plan_view.js";
 import { createGrounds } from "./profile.js";
 import { createRehearsing, NOTHING as NO_REHEARSAL } from "./rehearsal_actions.js";
 import { EMPTY, uavOf } from "./selection.js";
+import { mountStages } from "./stages.js";
 import { watchMission } from "./together.js";
 
 const page = readPage();
+const isStage = page.stage === "rehearse";
 const store = createStore({
   ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
   plan: null, groundRevision: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
@@ -58,11 +60,12 @@ let uavPanel = null;
 const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
 const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
+mountStages(store);
 mountHeader(store, actions, page.canPlan, { canCopy: page.canFly, showPlace: (position) => map.goTo({ position, zoom: 14 }) });
 const flyingKeys = page.isFrozen ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) }) : [];
 if (page.canPlan) mountApprove(store, flying);
 const scene = mountSceneOpener(sceneOfMission);
-const rehearsalKeys = mountRehearsal(store, createRehearsing(store), { canRehearse: page.canFly, isFrozen: page.isFrozen, seeInSpace: () => void scene.open() });
+const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), { canRehearse: page.canFly, isFrozen: page.isFrozen, isStage, seeInSpace: () => void scene.open() });
 flying.watch();
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));

@@ -9,6 +9,7 @@ import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
 const LEAST_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
+const MOST_CONE = 1.6; // times that, from far away
 const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
 const LEAST_BOUND_M = 1.5;
 const LEAST_BOUND_PX = 14; // radius
@@ -99,7 +100,7 @@ export function createUavs(count) {
         }
         if (uav.isInAir && (kind === MEASURED || kind === PLANNED)) {
           turn.setFromUnitVectors(down, aim.set(...uav.camera));
-          matrix.compose(at, turn, size.setScalar(Math.min(scale, 6)));
+          matrix.compose(at, turn, size.setScalar(Math.min(scale, MOST_CONE)));
           put(cones, numbers.cones++, uav.colour);
         }
         if (kind === ESTIMATED && bound) {
