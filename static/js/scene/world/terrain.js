@@ -3,6 +3,7 @@
 import { BufferAttribute, BufferGeometry, Color, Mesh, MeshLambertMaterial } from "../three.js";
 import { groundMesh } from "../geometry/ground.js";
 
+const RELIEF = 2.2;
 const PARS = /* glsl */ `
   uniform vec3 lineColour;
   uniform vec3 contourColour;
@@ -49,7 +50,7 @@ export function makeTerrain() {
       const { vertices, normals, index } = groundMesh(ground);
       mesh.geometry = new BufferGeometry();
       mesh.geometry.setAttribute("position", new BufferAttribute(vertices, 3));
-      mesh.geometry.setAttribute("normal", new BufferAttribute(normals, 3));
+      mesh.geometry.setAttribute("normal", new BufferAttribute(steeper(normals), 3));
       mesh.geometry.setIndex(new BufferAttribute(index, 1));
       const heights = ground.heights;
       const range_m = heights.reduce((most, height) => Math.max(most, height), -Infinity) - heights.reduce((least, height) => Math.min(least, height), Infinity);
@@ -67,4 +68,15 @@ export function makeTerrain() {
       material.dispose();
     },
   };
+}
+
+/** Slopes are lit as if they were steeper, so that gentle hills show; the surface stays as it is. */
+function steeper(normals) {
+  const lit = new Float32Array(normals.length);
+  for (let at = 0; at < normals.length; at += 3) {
+    const [x, y, z] = [normals[at] * RELIEF, normals[at + 1], normals[at + 2] * RELIEF];
+    const length = Math.hypot(x, y, z) || 1;
+    lit.set([x / length, y / length, z / length], at);
+  }
+  return lit;
 }
