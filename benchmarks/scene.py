@@ -220,9 +220,9 @@ def report(rows: Sequence[Measured], minutes: float) -> str:
         for row in rows
     ]  # fmt: skip
     words = (
-        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, 1440 x 900, the view "
-        f"playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, {BAR_CALLS} draw calls, {BAR_SCRIPT_MS:g} ms of script a "
-        "frame (our code and three.js, without the graphics), memory that does not grow. Drawn by the processor: no frame rate is told."
+        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, 1440 x 900, the "
+        f"view playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, {BAR_CALLS} draw calls, {BAR_SCRIPT_MS:g} ms of "
+        "script a frame (our code and three.js, without the graphics), flat memory. Drawn by the processor: no frame rate is told."
     )
     return f"{words}\n\n{table(head, lines)}\n\n{machine('playwright')}"
 
