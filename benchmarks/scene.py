@@ -21,6 +21,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import date, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -152,7 +153,8 @@ def planned_mission(page: Page) -> str:
     starts = [places[targets[0]] + (0.002, 0.002), places[targets[1]] + (0.002, 0.002)]
     uavs = [posts(page, "/uavs", {"name": f"UAV {number}", "position": start.tolist()})["id"] for number, start in enumerate(starts)]
     body = {"name": "Benchmark", "uavs": [{"id": uav} for uav in uavs], "targets": [{"asset": ids[target]} for target in targets]}
-    mission = posts(page, "/missions", {**body, "return_to_start": False, "plan": True, "departs_at": "2030-06-20T15:00:00Z"})
+    departs_at = f"{date.today() + timedelta(days=20)}T15:00:00Z"
+    mission = posts(page, "/missions", {**body, "return_to_start": False, "plan": True, "departs_at": departs_at})
     until = time.monotonic() + PATIENCE_MS / 1_000
     while asks(page, f"/missions/{mission['id']}")["plan"] is None and time.monotonic() < until:
         time.sleep(1)
