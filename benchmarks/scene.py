@@ -4,9 +4,9 @@
 
 For each region a whole installation (./run) is started over its OpenStreetMap file, with a planned mission of two UAVs whose targets lie so
 far apart that a thousand towers stand in the picture. Chromium draws without a graphics card here, so that no frame rate says anything:
-counted are the draw calls of a frame (three.js), the milliseconds of processor time that scripts (our own code and three.js) take for it in
-the page's main thread, and after each half minute of a playing view the heap after a collection and what the graphics hold. With --write the table goes to
-docs/performance.md. Exits with 1 where a bar is missed.
+counted are the draw calls of a frame (three.js), the milliseconds of processor time that scripts (our own code and three.js) take for it
+in the page's main thread, and after each half minute of a playing view the heap after a collection and what the graphics hold. With
+--write the table goes to docs/performance.md. Exits with 1 where a bar is missed.
 """
 
 import argparse
