@@ -26,6 +26,10 @@ REASONS = {
     "simulator-lost": gettext_lazy("The simulator was lost while the UAV was in the air: the UAV is lost with it."),
     "simulator-fault": gettext_lazy("It failed inside Spanwise; the error is in the simulator's log."),
     "no-socket": gettext_lazy("The simulator could not listen at its port."),
+    "port-taken": gettext_lazy(
+        "Another program on the simulator's machine has its port, such as another installation of Spanwise. Start it again, or give this "
+        "installation ports of its own (SPANWISE_SIMULATOR_PORTS)."
+    ),
 }
 
 

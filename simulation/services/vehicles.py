@@ -13,6 +13,7 @@ from simulation.rehearsing.ground import BlockedGround, Heights
 from simulation.rehearsing.sky import Sky
 from simulation.rehearsing.sky_weather import weather_of
 from simulation.services.fleet import StandIn
+from simulation.vehicle_protocol.havens import havens_of
 
 
 class RehearsedUav:
@@ -32,7 +33,8 @@ class RehearsedUav:
     def step(self) -> None:
         self._uav.step()
 
-    def load(self, items: Sequence[MissionItem]) -> Outcome:
+    def load(self, items: Sequence[MissionItem], rally: Sequence[MissionItem]) -> Outcome:
+        self._uav.havens = havens_of(rally, self._uav.state.home_amsl_m)
         return self._uav.load(items)
 
     def arm(self) -> Outcome:

@@ -4,7 +4,7 @@ from django.db import migrations, models
 class Migration(migrations.Migration):
 
     dependencies = [
-        ('simulation', '0002_simulations_in_real_time'),
+        ('simulation', '0003_ground_of_rehearsals'),
     ]
 
     operations = [
