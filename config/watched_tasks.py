@@ -16,9 +16,9 @@ from django.conf import settings
 from prometheus_client.multiprocess import mark_process_dead
 
 from operation import pulse
-from operation.exposition import tell_how_it_does
 from operation.log_context import about, facts
 from operation.metrics import PROCESSES_FOLDER, TASK_SECONDS, TASKS
+from operation.program import program_begins
 
 logger = logging.getLogger(__name__)
 
@@ -38,7 +38,7 @@ def watch_tasks() -> None:
     signals.task_postrun.connect(_end)
     signals.setup_logging.connect(_set_up_logging)
     signals.worker_init.connect(_before_processes)
-    signals.worker_ready.connect(lambda **_: tell_how_it_does("worker"), weak=False)
+    signals.worker_ready.connect(lambda **_: program_begins("worker"), weak=False)
     signals.worker_process_shutdown.connect(_process_has_gone)
 
 
