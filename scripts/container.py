@@ -1,6 +1,7 @@
 """Become one of the programs, in a container: spanwise NAME [ARGUMENT...]
 
 web live proxy · gateway estimator simulator · worker-data worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
+backup [FOLDER] · restore FOLDER [--replace]     (of the database and the flights' logs; the key is the site's to keep)
 
 The image's entry point. Everything comes from the environment: docs/deployment.md. SIGTERM ends each of them softly.
 """
@@ -9,14 +10,17 @@ import os
 import resource
 import sys
 from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
 from typing import NoReturn
 
 from config.private_servers import state_directory
+from config.secret_files import secret
 from scripts import commands, container_health, container_proxy
 
 WEB_PORT, LIVE_PORT = 8000, 8001
 METRICS = "0.0.0.0:9464"
 SECRETS = ("DATABASE_URL", "REDIS_URL", "SPANWISE_SECRET_KEY")
+BACKUPS = "/var/lib/spanwise-backups"
 EXIT_WRONG = 2
 
 # What a container is told beside its command; what the environment says already is kept.
@@ -54,6 +58,15 @@ def environment(program: str) -> dict[str, str]:
     return usual | os.environ
 
 
+def _backups(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "scripts.backups", *arguments]
+
+
+def _with_database() -> dict[str, str]:
+    """For programs that take the address itself alone."""
+    return os.environ | {"DATABASE_URL": secret("DATABASE_URL")}
+
+
 def _become(command: list[str], told: Mapping[str, str]) -> NoReturn:
     _open_as_many_files_as_allowed()
     os.execvpe(command[0], command, told)  # noqa: S606 - no shell
@@ -77,13 +90,18 @@ def main(arguments: list[str]) -> int:
     if name == "proxy":
         _open_as_many_files_as_allowed()
         return container_proxy.main()
-    if name not in PROGRAMS and name != "manage":
+    if name not in PROGRAMS and name not in {"manage", "backup", "restore"}:
         print(f"No program is called {name!r}. {__doc__}", file=sys.stderr)
         return EXIT_WRONG
     if missing := missing_secrets():
         print(f"Not set, neither itself nor with _FILE: {', '.join(missing)}. See docs/deployment.md", file=sys.stderr)
         return EXIT_WRONG
     state_directory().mkdir(parents=True, exist_ok=True)
+    if name == "backup":
+        place = rest or [f"{BACKUPS}/spanwise-{datetime.now(UTC):%Y-%m-%dT%H-%M-%SZ}"]
+        _become(_backups(name, *place, "--without-key"), _with_database())
+    if name == "restore":
+        _become(_backups(name, *rest), _with_database())
     if name == "manage":
         _become(commands.management(*rest), os.environ)
     _become([*PROGRAMS[name](), *rest], environment(name))

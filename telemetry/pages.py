@@ -49,3 +49,9 @@ class MissionFlyPage(MissionStagePage):
 
 class MissionReportPage(MissionStagePage):
     template_name = "report.html"
+
+
+class MissionScenePage(MissionStagePage):
+    """The flight in space: planned, rehearsed, live or on record, as the address says."""
+
+    template_name = "scene.html"

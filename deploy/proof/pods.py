@@ -35,9 +35,7 @@ class Podman:
         self._environment = os.environ | {"CONTAINERS_CONF": str(settings)}
 
     def __call__(self, *arguments: str, check: bool = True, timeout_s: float = 300.0) -> str:
-        done = subprocess.run(
-            ["podman", *arguments], env=self._environment, capture_output=True, text=True, check=False, timeout=timeout_s
-        )
+        done = subprocess.run(["podman", *arguments], env=self._environment, capture_output=True, text=True, check=False, timeout=timeout_s)
         if check and done.returncode != 0:
             raise RuntimeError(f"podman {' '.join(arguments[:4])}: {done.stderr.strip()[-2000:]}")
         return done.stdout.strip()

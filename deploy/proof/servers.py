@@ -70,7 +70,7 @@ def running_servers(folder: Path, subnet: str) -> Iterator[Servers]:
     redis_settings = folder / "redis.conf"
     redis_settings.write_text(f"requirepass {(secrets / 'redis-password').read_text()}")
     redis_settings.chmod(0o600)
-    redis_options = ["--port", "0", "--tls-port", str(redis_port), "--tls-auth-clients", "no", "--bind", "0.0.0.0", "--save", ""]
+    redis_options = ["--port", "0", "--tls-port", str(redis_port), "--tls-auth-clients", "no", "--bind", "*", "--save", ""]
     for name, file in (("cert", "redis.crt"), ("key", "redis.key"), ("ca-cert", "ca.crt")):
         redis_options += [f"--tls-{name}-file", str(secrets / file)]
     log = (folder / "servers.log").open("wb")

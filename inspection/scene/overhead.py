@@ -48,7 +48,10 @@ class Overhead:
 
 
 def overhead(supports: Places, lines: Ways, box: Box) -> Overhead:
-    """What stands in a box, and every span that touches it, with both its ends. The lines have to be all that come to any of these supports."""
+    """What stands in a box, and every span that touches it, with both its ends.
+
+    The lines have to be all that come to any of these supports.
+    """
     joined = join_vertices(supports, lines)
     tagged_m = support_heights_m(supports, lines, joined)
     count = len(supports)

@@ -6,8 +6,9 @@ EARTH_SHARE = 0.85  # an earth wire is drawn tighter than the phases below it
 
 
 def sag_m(length_m: float, lowest_slot_m: float) -> float:
-    """Of a phase, below the straight line between its ends, in the middle. lowest_slot_m: the lower of both ends' lowest slots above ground.
+    """Of a phase, below the straight line between its ends, in the middle.
 
-    A catenary hangs nowhere above the straight line, so a wire is never higher than planners count it.
+    lowest_slot_m: above ground, the lower of both ends' lowest slots. A catenary hangs nowhere above the straight line between its ends,
+    so a wire is never higher than planners count it.
     """
     return min(length_m**2 / (8.0 * CATENARY_M), MOST_OF_HEIGHT * max(lowest_slot_m, 0.0))

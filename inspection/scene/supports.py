@@ -64,8 +64,8 @@ NO_LINE = LineFacts(None, None, {})
 def phases_of(line: LineFacts) -> int:
     """Wires to draw of a line, without earth wires: as its cables or circuits say, else one circuit."""
     cables = line.tags.get("cables", "")
-    if cables.isascii() and cables.isdigit() and int(cables) > 0:
-        return min(int(cables), MOST_PHASES)
+    if cables.isascii() and cables.isdigit() and cables.strip("0"):
+        return MOST_PHASES if len(cables) > 3 else min(int(cables), MOST_PHASES)
     of_circuit = 2 if line.tags.get("frequency", "") in _ONE_PHASE_HZ else PHASES_OF_CIRCUIT
     return min((line.circuits or 1) * of_circuit, MOST_PHASES)
 

@@ -223,7 +223,7 @@ def _railway_json(asset: Asset, line: shapely.LineString) -> dict[str, Any]:
         "id": asset.pk,
         "label": asset_label(asset),
         "kind": asset.subtype,
-        "tracks": min(int(tracks), 8) if tracks.isascii() and tracks.isdigit() and int(tracks) > 0 else 1,
+        "tracks": min(int(tracks), 8) if tracks.isascii() and tracks.isdigit() and len(tracks) < 4 and int(tracks) > 0 else 1,
         "is_electrified": asset.tags.get("electrified") in {"contact_line", "yes"},
         "line": _positions(line),
     }

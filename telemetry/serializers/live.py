@@ -54,6 +54,8 @@ class MeasuredSerializer(serializers.Serializer):
     speed_mps = serializers.FloatField(allow_null=True, help_text="over ground")
     climb_mps = serializers.FloatField(allow_null=True)
     heading_deg = serializers.FloatField(allow_null=True)
+    roll_deg = serializers.FloatField(allow_null=True, help_text="right side down")
+    pitch_deg = serializers.FloatField(allow_null=True, help_text="nose up")
     battery_percent = serializers.FloatField(allow_null=True)
     mode = serializers.CharField(allow_null=True)
     is_armed = serializers.BooleanField(allow_null=True)

@@ -61,6 +61,8 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
     tracks = RehearsalTrack.objects.filter(run=run)
     assert [track.uav for track in tracks] == [0, 1]
     assert all(track.flights[0]["altitude_relative_m"][-1] == pytest.approx(0.0, abs=0.3) for track in tracks)
+    leaning = [max(map(abs, track.flights[0]["pitch_deg"])) for track in tracks]
+    assert all(1.0 < most_deg < 60.0 for most_deg in leaning)  # it leans to move, and never falls over
     assert AuditEntry.objects.filter(action="rehearse", subject_id=str(mission.pk), actor=person).count() == 1
 
 
@@ -215,12 +217,15 @@ def test_nobody_asks_for_a_rehearsal_unless_told(mission: Mission, person: User)
 def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mission, person: User) -> None:
     set_rule(organisation=person.organisation, actor=person, requires=True)
     assert reasons(mission, person) == ["not_rehearsed"]
-    rehearsal = rehearsed(mission, person, "calm")
+    rehearsal = rehearsed(mission, person, "as-planned")
     Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail")
     assert reasons(mission, person) == ["rehearsal_failed"]
     Rehearsal.objects.filter(pk=rehearsal.pk).update(level="pass", content_sha256="0" * 64)
     assert reasons(mission, person) == ["rehearsal_outdated"]
     Rehearsal.objects.filter(pk=rehearsal.pk).update(content_sha256=content(mission))
+    rehearsed(mission, person, "calm")
+    assert reasons(mission, person) == ["rehearsal_without_planned_conditions"]
+    rehearsed(mission, person, "calm", "as-planned")
     assert reasons(mission, person) == []
     assert mission_of_organisation(person.organisation, mission.pk).state == MissionState.APPROVED
 
@@ -228,7 +233,7 @@ def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mi
 def test_what_was_rehearsed_on_other_ground_is_not_approved(mission: Mission, person: User, here: World) -> None:
     """A new zone beside the routes counts, one far away does not, and one that is taken away again never was."""
     set_rule(organisation=person.organisation, actor=person, requires=True)
-    rehearsed(mission, person, "calm")
+    rehearsed(mission, person, "as-planned")
     lon, lat = here.towers[0].centre.coords[:2]
     zone_around((lon, lat + 0.7), with_graph=False, name="Far away")
     assert reasons_without_rehearsal(loaded(mission)) == []

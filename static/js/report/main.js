@@ -4,6 +4,7 @@ import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { t } from "../text.js";
+import { numberText } from "../units.js";
 import { createDock } from "./dock.js";
 import { offerFollowUp } from "./follow_up.js";
 import { labelsOf } from "./labels.js";
@@ -147,7 +148,7 @@ function step(direction) {
   return true;
 }
 
-byId("replay-speeds").append(...SPEEDS.map((speed) => h("label", {}, h("input", { type: "radio", name: "speed", id: `speed-${speed}`, onchange: () => player.setSpeed(speed) }), h("span", { class: "segment" }, `${speed}×`))));
+byId("replay-speeds").append(...SPEEDS.map((speed) => h("label", {}, h("input", { type: "radio", name: "speed", id: `speed-${speed}`, onchange: () => player.setSpeed(speed) }), h("span", { class: "segment" }, `${numberText(speed, Number.isInteger(speed) ? 0 : 1)}×`))));
 byId("replay-play").addEventListener("click", player.toggle);
 byId("replay-previous").addEventListener("click", () => step(-1));
 byId("replay-next").addEventListener("click", () => step(1));
