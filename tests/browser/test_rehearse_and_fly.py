@@ -68,7 +68,7 @@ def plans(page: Page, towers: list[list[float]], picture: Picture) -> None:
     page.get_by_role("checkbox", name=NAME).check()
     page.get_by_role("switch", name="Return to start").check()
     page.get_by_role("button", name="Plan P").click()
-    expect(page.locator("#plan-sentence")).to_contain_text("2", timeout=SOON_MS)
+    expect(page.locator("#plan-sentence")).to_contain_text("All back in", timeout=SOON_MS)
     assert len(targets(page)) == 2
     expect(page.locator(".mission-title .simulated-mark")).to_be_visible()
     page.get_by_role("button", name="Save", exact=True).click()
@@ -132,7 +132,7 @@ def flies(page: Page, key: str, picture: Picture) -> None:
 def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     """At real time, so that the flight waits for whoever looks at it."""
     panel = panel_of(page)
-    panel.get_by_label("Pace").select_option(label="Real time")
+    panel.get_by_role("combobox", name="Pace").select_option(label="Real time")
     expect(panel.locator("#simulation-state")).to_contain_text("in real time", timeout=SOON_MS)
     panel.get_by_label("Link or GPS lost for").fill(SILENT_S)
     panel.get_by_role("button", name="Lose the link").click()
@@ -150,7 +150,7 @@ def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
 
 
 def comes_home(page: Page, picture: Picture) -> None:
-    panel_of(page).get_by_label("Pace").select_option(label="10 times real time")
+    panel_of(page).get_by_role("combobox", name="Pace").select_option(label="10 times real time")
     expect(page.locator("#mission-state")).to_have_text("Completed", timeout=FLIGHT_MS)
     expect(page.locator("#board .complete")).to_have_count(2)
     assert faults(page) == []

@@ -3,7 +3,7 @@
 import { byId, h } from "../dom.js";
 import { t } from "../text.js";
 
-const STAGES = [["", t("Plan")], ["/rehearse", t("Rehearse")], ["/fly", t("Fly")], ["/report", t("Report")]];
+const STAGES = [["", t("Plan")], ["/rehearse", t("Rehearse")], ["/fly", t("Fly")], ["/report", t("Report")], ["/3d", "3D"]];
 
 export function mountStages(store) {
   if (document.querySelector(".stages")) return; // the page was made with them
