@@ -6,7 +6,8 @@ import { Color, Group } from "../three.js";
 import { memberMesh } from "./members.js";
 
 const NEAR_M = 900;
-const MOST_NEAR = 60; // supports with bracing
+const MOST_NEAR = 50; // supports with bracing
+const MOST_A_FRAME = 6; // supports that get their bracing
 const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were chosen
 
 /** Gives { group, show(supports, frame), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
@@ -20,6 +21,8 @@ export function makeSupports({ hasBracing = true } = {}) {
   let near = new Map(); // place in supports → its fine members
   let colours = null;
   let lookedFrom = null;
+  let wanted = [];
+  let isStale = false;
 
   function paintOutlines() {
     const all = supports.map((support) => supportMembers(support, frame).outline);
@@ -31,9 +34,11 @@ export function makeSupports({ hasBracing = true } = {}) {
     let at = 0;
     for (const [support, { tone }] of pairs) {
       const own = colours.of(support);
-      for (const kind of tone) {
-        const { r, g, b } = kind === INSULATOR ? colours.insulator : kind === FOUNDATION ? colours.foundation : own;
-        values.set([r, g, b], at);
+      for (let member = 0; member < tone.length; member += 1) {
+        const colour = tone[member] === INSULATOR ? colours.insulator : tone[member] === FOUNDATION ? colours.foundation : own;
+        values[at] = colour.r;
+        values[at + 1] = colour.g;
+        values[at + 2] = colour.b;
         at += 3;
       }
     }
@@ -41,11 +46,11 @@ export function makeSupports({ hasBracing = true } = {}) {
   }
 
   function paintNear() {
-    const pairs = [...near].map(([place, members]) => [supports[place], members]);
+    const pairs = [...near].filter(([, members]) => members).map(([place, members]) => [supports[place], members]);
     fine.set(joined(pairs.map(([, members]) => members)), coloursOf(pairs));
   }
 
-  /** The nearest supports within reach. What is already worked out stays, what is far is let go. */
+  /** The nearest supports within reach become wanted; what is already worked out stays, what is far is let go. */
   function choose({ x, y, z }) {
     const found = [];
     for (let place = 0; place < supports.length; place += 1) {
@@ -54,16 +59,24 @@ export function makeSupports({ hasBracing = true } = {}) {
     }
     found.sort((one, other) => one[0] - other[0]);
     const chosen = found.slice(0, MOST_NEAR).map(([, place]) => place);
-    if (chosen.length === near.size && chosen.every((place) => near.has(place))) return false;
-    near = new Map(chosen.map((place) => [place, near.get(place) ?? supportMembers(supports[place], frame).fine]));
+    if (chosen.length === near.size && chosen.every((place) => near.has(place))) return;
+    near = new Map(chosen.map((place) => [place, near.get(place) ?? null]));
+    wanted = chosen.filter((place) => near.get(place) === null);
+    isStale = true;
+  }
+
+  /** A few a frame, so that no frame is late; drawn once all are there. */
+  function workOut() {
+    for (const place of wanted.splice(0, MOST_A_FRAME)) near.set(place, supportMembers(supports[place], frame).fine);
+    if (wanted.length) return;
+    isStale = false;
     paintNear();
-    return true;
   }
 
   return {
     group,
     show(next, ownFrame) {
-      [supports, frame, near, lookedFrom] = [next, ownFrame, new Map(), null];
+      [supports, frame, near, lookedFrom, wanted, isStale] = [next, ownFrame, new Map(), null, [], false];
       feet = Float32Array.from(supports.flatMap(({ position, ground_amsl_m, height_m }) => ownFrame.toLocal(...position, ground_amsl_m + height_m / 2)));
       group.visible = supports.length > 0;
     },
@@ -81,9 +94,14 @@ export function makeSupports({ hasBracing = true } = {}) {
       paintNear();
     },
     update(camera) {
-      if (!hasBracing || !supports.length || (lookedFrom && lookedFrom.distanceTo(camera.position) < LOOK_AGAIN_M)) return false;
-      lookedFrom = camera.position.clone();
-      return choose(camera.position);
+      if (!hasBracing || !supports.length) return false;
+      if (!lookedFrom || lookedFrom.distanceTo(camera.position) >= LOOK_AGAIN_M) {
+        lookedFrom = camera.position.clone();
+        choose(camera.position);
+      }
+      if (!isStale) return false;
+      workOut();
+      return true;
     },
     shadowPixel(metres) {
       outline.shadowPixel(metres);
