@@ -62,7 +62,6 @@ class SupportSerializer(serializers.Serializer):
 class SpanSerializer(serializers.Serializer):
     """Wires between two supports; never above the straight line between their tops."""
 
-    start = serializers.IntegerField(source="from", help_text="place in supports")
     to = serializers.IntegerField(help_text="place in supports")
     lines = serializers.ListField(child=serializers.IntegerField())
     voltage_v = serializers.IntegerField(allow_null=True)
@@ -72,8 +71,8 @@ class SpanSerializer(serializers.Serializer):
     sag_m = serializers.FloatField(help_text="of a phase in the middle, below the straight line between its ends")
 
     def get_fields(self) -> dict[str, Any]:
-        fields = super().get_fields()
-        return {"from": fields.pop("start"), **fields}
+        """With the one whose name Python keeps for itself."""
+        return {"from": serializers.IntegerField(help_text="place in supports"), **super().get_fields()}
 
 
 class RailwaySerializer(serializers.Serializer):

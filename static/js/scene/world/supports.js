@@ -10,13 +10,16 @@ const MOST_NEAR = 50; // supports with bracing
 const MOST_A_FRAME = 6; // supports that get their bracing
 const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were chosen
 
-/** Gives { group, show(supports, frame), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
+const MAST = { isMast: true };
+
+/** Gives { group, show(supports, frame, masts), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
 export function makeSupports({ hasBracing = true } = {}) {
   const group = new Group();
   const [outline, fine] = [memberMesh(), memberMesh({ leastPx: 0.55 })];
   group.add(outline.mesh, fine.mesh);
   let supports = [];
   let frame = null;
+  let masts = [];
   let feet = new Float32Array(0);
   let near = new Map(); // place in supports → its fine members
   let colours = null;
@@ -26,7 +29,7 @@ export function makeSupports({ hasBracing = true } = {}) {
 
   function paintOutlines() {
     const all = supports.map((support) => supportMembers(support, frame).outline);
-    outline.set(joined(all), coloursOf(supports.map((support, place) => [support, all[place]])));
+    outline.set(joined([...all, ...masts]), coloursOf([...supports.map((support, place) => [support, all[place]]), ...masts.map((own) => [MAST, own])]));
   }
 
   function coloursOf(pairs) {
@@ -75,17 +78,20 @@ export function makeSupports({ hasBracing = true } = {}) {
 
   return {
     group,
-    show(next, ownFrame) {
-      [supports, frame, near, lookedFrom, wanted, isStale] = [next, ownFrame, new Map(), null, [], false];
+    /** along: masts of railways, as members. */
+    show(next, ownFrame, along = []) {
+      [supports, frame, masts, near, lookedFrom, wanted, isStale] = [next, ownFrame, along, new Map(), null, [], false];
       feet = Float32Array.from(supports.flatMap(({ position, ground_amsl_m, height_m }) => ownFrame.toLocal(...position, ground_amsl_m + height_m / 2)));
-      group.visible = supports.length > 0;
+      group.visible = supports.length + masts.length > 0;
     },
     apply(palette) {
       const body = new Map();
+      const railway = new Color(palette.railway);
       colours = {
         insulator: new Color(palette.tower).lerp(new Color(palette.raised), palette.isDark ? 0.1 : 0.45),
         foundation: new Color(palette.pressed).lerp(new Color(palette.inkSecond), 0.25),
-        of({ voltage_v }) {
+        of({ voltage_v, isMast }) {
+          if (isMast) return railway;
           if (!body.has(voltage_v)) body.set(voltage_v, new Color(voltage_v === null ? palette.tower : voltageColour(palette, voltage_v / 1_000)));
           return body.get(voltage_v);
         },

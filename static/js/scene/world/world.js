@@ -11,7 +11,7 @@ import { wiresOf } from "../geometry/wires.js";
 import { zoneVolume } from "../geometry/zones.js";
 import { Color, Fog, Group } from "../three.js";
 import { makeLights, mood, nightPalette } from "./lighting.js";
-import { edgeSegments, railSegments, wireSegments } from "./line_kinds.js";
+import { edgeSegments, railSegments, railWireSegments, wireSegments } from "./line_kinds.js";
 import { screenLines } from "./lines.js";
 import { makeSky } from "./sky.js";
 import { makeBeds, makeBridges } from "./solids.js";
@@ -61,7 +61,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.ties.set(own.railway).lerp(new Color(own.ground), 0.25);
     zones.apply(own);
     supports.apply(own);
-    wires.set(...joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own)]));
+    wires.set(...joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own)]));
     edges.set(...edgeSegments(shown.volumes, own));
   }
 
@@ -89,7 +89,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.show(shown.beds);
     bridges.show(shown.bridges);
     zones.show(shown.volumes);
-    supports.show(sceneData?.supports ?? [], frame);
+    supports.show(sceneData?.supports ?? [], frame, shown.masts);
     paintThings();
   }
 
@@ -132,17 +132,19 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
 function emptyShown(frame) {
   const [lon, lat] = frame.origin.position;
   const flat = { ...FLAT, west_deg: lon - 0.05, north_deg: lat + 0.05, altitude_amsl_m: Array(4).fill(frame.origin.altitude_amsl_m) };
-  return { ground: makeGround(flat, frame), wires: NO_WIRES, rails: [], beds: [], bridges: [], volumes: [] };
+  return { ground: makeGround(flat, frame), wires: NO_WIRES, rails: [], railWires: [], masts: [], beds: [], bridges: [], volumes: [] };
 }
 
 function shownOf(scene, frame) {
   const ground = makeGround(scene.ground, frame);
   const deckAt = deckUnder(scene.bridges, frame);
-  const tracks = railwayTracks(scene.railways, { frame, ground, deckAt });
+  const tracks = railwayTracks(scene.railways, { frame, ground, deckAt, wire_agl_m: scene.rules.rail_wire_agl_m });
   return {
     ground,
     wires: wiresOf(scene, frame),
     rails: tracks.map(({ rails }) => rails),
+    railWires: tracks.map((track) => track.wires),
+    masts: tracks.map(({ masts }) => masts),
     beds: tracks.map(({ bed }) => bed),
     bridges: scene.bridges.map((bridge) => bridgeSolid(bridge, { frame, ground })),
     volumes: scene.zones.map((zone) => zoneVolume(zone, { frame, ground, clip: scene.clip, rules: scene.rules })),
