@@ -33,7 +33,7 @@ export function railSegments(rails, palette) {
 }
 
 export function railWireSegments(wires, palette) {
-  return ofOneLook(wires, new Color(palette.railway), RAIL_WIRE);
+  return ofOneLook(wires, new Color(palette.tower), RAIL_WIRE);
 }
 
 /** pieces: arrays of segments (x, y, z, x, y, z). */

@@ -86,12 +86,12 @@ export function makeSupports({ hasBracing = true } = {}) {
     },
     apply(palette) {
       const body = new Map();
-      const railway = new Color(palette.railway);
+      const mast = new Color(palette.tower);
       colours = {
         insulator: new Color(palette.tower).lerp(new Color(palette.raised), palette.isDark ? 0.1 : 0.45),
         foundation: new Color(palette.pressed).lerp(new Color(palette.inkSecond), 0.25),
         of({ voltage_v, isMast }) {
-          if (isMast) return railway;
+          if (isMast) return mast;
           if (!body.has(voltage_v)) body.set(voltage_v, new Color(voltage_v === null ? palette.tower : voltageColour(palette, voltage_v / 1_000)));
           return body.get(voltage_v);
         },

@@ -56,9 +56,12 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   function paintThings() {
     const own = nightPalette(palette, now.night);
     paintedNight = now.night;
-    bridges.apply(new Color(own.bridge).lerp(new Color(own.ground), palette.isDark ? 0.25 : 0.35));
-    beds.apply(new Color(own.railway).lerp(new Color(own.ground), 0.62));
-    beds.ties.set(own.railway).lerp(new Color(own.ground), 0.25);
+    const calm = palette.isDark ? 0.72 + 0.14 * now.night : 0; // in the dark theme surfaces are darker than lines
+    const near = (name, share) => new Color(own[name]).lerp(new Color(own.ground), Math.max(share, calm));
+    bridges.apply(near("bridge", 0.35));
+    beds.apply(near("railway", 0.62));
+    beds.ties.copy(near("railway", 0.25));
+    beds.dams.copy(near("railway", palette.isDark ? 0.92 : 0.8));
     zones.apply(own);
     supports.apply(own);
     wires.set(...joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own)]));
