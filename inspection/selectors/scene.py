@@ -29,8 +29,8 @@ from inspection.selectors.zone_table import zone_table
 RECIPE = 1  # part of the ETag: counts the changes to what a scene holds
 SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
 NEAREST_POLE_DEG = 85.0
-MOST_POSTS = 193  # of the ground, along each side
-AROUND_M = 1_500.0  # railways, bridges and zones reach so far beyond the box
+MOST_POSTS = 225  # of the ground, along each side
+AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
 REACH_DEG = 0.15  # a span is not longer than that in degrees
 MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
 SIMPLER_DEG = 5e-6  # half a metre: of the outlines of zones
@@ -113,8 +113,8 @@ def check_box(box: Box) -> None:
 def scene_in(box: Box) -> Scene:
     """Raises UnfitBox."""
     check_box(box)
-    ground = _ground(box)
     clip = _wider(box, AROUND_M)
+    ground = _ground(clip)
     west, south, east, north = box
     middle = np.array([(west + east) / 2, (south + north) / 2])
     found, left_out = _overhead(box, middle)

@@ -20,6 +20,7 @@ export function makeSupports({ hasBracing = true } = {}) {
   let supports = [];
   let frame = null;
   let masts = [];
+  let outlines = [];
   let feet = new Float32Array(0);
   let near = new Map(); // place in supports → its fine members
   let colours = null;
@@ -27,9 +28,8 @@ export function makeSupports({ hasBracing = true } = {}) {
   let wanted = [];
   let isStale = false;
 
-  function paintOutlines() {
-    const all = supports.map((support) => supportMembers(support, frame).outline);
-    outline.set(joined([...all, ...masts]), coloursOf([...supports.map((support, place) => [support, all[place]]), ...masts.map((own) => [MAST, own])]));
+  function outlineColours() {
+    return coloursOf([...supports.map((support, place) => [support, outlines[place]]), ...masts.map((own) => [MAST, own])]);
   }
 
   function coloursOf(pairs) {
@@ -83,6 +83,9 @@ export function makeSupports({ hasBracing = true } = {}) {
       [supports, frame, masts, near, lookedFrom, wanted, isStale] = [next, ownFrame, along, new Map(), null, [], false];
       feet = Float32Array.from(supports.flatMap(({ position, ground_amsl_m, height_m }) => ownFrame.toLocal(...position, ground_amsl_m + height_m / 2)));
       group.visible = supports.length + masts.length > 0;
+      outlines = supports.map((support) => supportMembers(support, frame).outline);
+      outline.set(joined([...outlines, ...masts]), colours ? outlineColours() : new Float32Array(0));
+      paintNear();
     },
     apply(palette) {
       const body = new Map();
@@ -96,7 +99,7 @@ export function makeSupports({ hasBracing = true } = {}) {
           return body.get(voltage_v);
         },
       };
-      paintOutlines();
+      outline.recolour(outlineColours());
       paintNear();
     },
     update(camera) {

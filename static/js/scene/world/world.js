@@ -53,7 +53,8 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     lights.apply(now, sun);
   }
 
-  function paintThings() {
+  /** isNew: other things than before, not the same in other colours. */
+  function paintThings({ isNew = false } = {}) {
     const own = nightPalette(palette, now.night);
     paintedNight = now.night;
     const calm = palette.isDark ? 0.72 + 0.14 * now.night : 0; // in the dark theme surfaces are darker than lines
@@ -64,8 +65,14 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.dams.copy(near("railway", palette.isDark ? 0.92 : 0.8));
     zones.apply(own);
     supports.apply(own);
-    wires.set(...joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own)]));
-    edges.set(...edgeSegments(shown.volumes, own));
+    const [lines, borders] = [joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own)]), edgeSegments(shown.volumes, own)];
+    if (isNew) {
+      wires.set(...lines);
+      edges.set(...borders);
+    } else {
+      wires.recolour(lines[1]);
+      edges.recolour(borders[1]);
+    }
   }
 
   function tellForce() {
@@ -81,7 +88,8 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     paint();
     const isOtherForce = tellForce();
     if (isOtherForce) zones.show(shown.volumes);
-    if (isOtherForce || Math.abs(now.night - paintedNight) > NIGHT_STEP) paintThings();
+    if (isOtherForce) edges.set(...edgeSegments(shown.volumes, nightPalette(palette, now.night)));
+    if (Math.abs(now.night - paintedNight) > NIGHT_STEP) paintThings();
   }
 
   function show(sceneData) {
@@ -93,7 +101,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     bridges.show(shown.bridges);
     zones.show(shown.volumes);
     supports.show(sceneData?.supports ?? [], frame, shown.masts);
-    paintThings();
+    paintThings({ isNew: true });
   }
 
   sun = sunAt(moment, frame.origin.position);
