@@ -5,15 +5,13 @@ import { FOUNDATION, INSULATOR, supportMembers } from "../geometry/towers.js";
 import { Color, Group } from "../three.js";
 import { memberMesh } from "./members.js";
 
-const NEAR_M = 900;
-const MOST_NEAR = 50; // supports with bracing
 const MOST_A_FRAME = 6; // supports that get their bracing
 const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were chosen
 
 const MAST = { isMast: true };
 
-/** Gives { group, show(supports, frame, masts), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
-export function makeSupports({ hasBracing = true } = {}) {
+/** bracing: of supports within near_m, at most so many. Gives { group, show(supports, frame, masts), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
+export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
   const group = new Group();
   const [outline, fine] = [memberMesh(), memberMesh({ leastPx: 0.55 })];
   group.add(outline.mesh, fine.mesh);
@@ -58,10 +56,10 @@ export function makeSupports({ hasBracing = true } = {}) {
     const found = [];
     for (let place = 0; place < supports.length; place += 1) {
       const far = Math.hypot(feet[place * 3] - x, feet[place * 3 + 1] - y, feet[place * 3 + 2] - z);
-      if (far < NEAR_M) found.push([far, place]);
+      if (far < bracing.near_m) found.push([far, place]);
     }
     found.sort((one, other) => one[0] - other[0]);
-    const chosen = found.slice(0, MOST_NEAR).map(([, place]) => place);
+    const chosen = found.slice(0, bracing.most).map(([, place]) => place);
     if (chosen.length === near.size && chosen.every((place) => near.has(place))) return;
     near = new Map(chosen.map((place) => [place, near.get(place) ?? null]));
     wanted = chosen.filter((place) => near.get(place) === null);
@@ -103,7 +101,7 @@ export function makeSupports({ hasBracing = true } = {}) {
       paintNear();
     },
     update(camera) {
-      if (!hasBracing || !supports.length) return false;
+      if (!supports.length) return false;
       if (!lookedFrom || lookedFrom.distanceTo(camera.position) >= LOOK_AGAIN_M) {
         lookedFrom = camera.position.clone();
         choose(camera.position);

@@ -19,18 +19,19 @@ import { makeSupports } from "./supports.js";
 import { makeTerrain } from "./terrain.js";
 import { makeZones } from "./zones.js";
 
+const BRACING = { high: { near_m: 900, most: 50 }, low: { near_m: 300, most: 8 } };
 const NIGHT_STEP = 0.06; // things get other colours after so much of dusk
 const FOG_M = [4_000, 30_000];
 const FLAT = { columns: 2, rows: 2, step_lon_deg: 0.1, step_lat_deg: 0.1 };
 const NO_WIRES = { points: new Float64Array(0), first: new Uint32Array(1), span: new Uint32Array(0), isEarth: new Uint8Array(0) };
 
-/** quality: "high", or "low" without shadows and bracing. */
+/** quality: "high", or "low" without shadows and with little bracing. */
 export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   const group = new Group();
   const fog = new Fog(0xffffff, ...FOG_M);
   const lights = makeLights({ shadows: quality !== "low" });
   const [sky, terrain, beds, bridges, zones] = [makeSky(), makeTerrain(), makeBeds(), makeBridges(), makeZones()];
-  const supports = makeSupports({ hasBracing: quality !== "low" });
+  const supports = makeSupports({ bracing: BRACING[quality] });
   const wires = screenLines({ fade: [5_000, 0.35], order: 2 });
   const edges = screenLines({ fade: [16_000, 0.5], order: 4 });
   const parts = [sky, terrain, beds, bridges, supports, wires, edges, zones];
