@@ -238,10 +238,10 @@ def report(rows: Sequence[Measured], minutes: float) -> str:
         for row in rows
     ]
     words = (
-        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, the view playing for "
-        f"{minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, or nearly all of a region that has fewer; {BAR_CALLS} draw calls; "
-        f"{BAR_SCRIPT_MS:g} ms of script a frame (our code and three.js, without the graphics), of the processor's time; flat memory. Drawn "
-        "by the processor: no frame rate is told."
+        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, the view "
+        f"playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, or nearly all of a region that has fewer; "
+        f"{BAR_CALLS} draw calls; {BAR_SCRIPT_MS:g} ms of script a frame (our code and three.js, without the graphics), "
+        "of the processor's time; flat memory. Drawn by the processor: no frame rate is told."
     )
     return f"{words}\n\n{table(head, lines)}\n\n{machine('playwright')}"
 

@@ -70,11 +70,11 @@ def rehearsed(page: Page, name: str, uavs: dict[str, list[float]], targets: list
     return mission
 
 
-def events_of(page: Page, mission: str) -> dict[int, float]:
-    """Seconds after departure at which each target was reached in its rehearsal."""
+def reached_s(page: Page, mission: str) -> list[list[float]]:
+    """For each UAV the seconds after departure at which it reached its targets in the rehearsal, in the order of time."""
     rehearsal = asks(page, f"/missions/{mission}/rehearsals")["results"][0]["id"]
     verdict = asks(page, f"/missions/{mission}/rehearsals/{rehearsal}")["runs"][0]["verdict"]
-    return {target["target"]: target["at_s"] for route in verdict["routes"] for target in route["targets"] if target["at_s"] is not None}
+    return [sorted(target["at_s"] for target in route["targets"] if target["at_s"] is not None) for route in verdict["routes"]]
 
 
 def ends_s(page: Page, mission: str, uav: int = 0) -> float:
@@ -94,48 +94,40 @@ def looks(page: Page, picture: Picture, address: str, name: str) -> None:
     picture(page, name)
 
 
-def test_flights_among_towers(visitor: Visitor, towers: Towers, zone: str, picture: Picture) -> None:
+def test_flights_among_towers(visitor: Visitor, towers: Towers, picture: Picture) -> None:
     page = visitor.signs_in("ada")
     uavs = {"Curlew": beside(towers[2]), "Whimbrel": beside(towers[12])}
-    day = rehearsed(page, "Line 40, both ways", uavs, [towers[number] for number in (4, 12, 3, 11)], DAYTIME, 2)
-    reached = events_of(page, day)
-    first, last = min(reached.values()), max(reached.values())
-    base = f"/missions/{day}/3d?source=rehearsal"
+    key = rehearsed(page, "Line 40, both ways", uavs, [towers[number] for number in (4, 12, 3, 11)], DAYTIME, 2)
+    first, last = reached_s(page, key)[0][0], reached_s(page, key)[0][-1]
+    landing = ends_s(page, key) - 12
+    base = f"/missions/{key}/3d?source=rehearsal&t="
     for theme in ("light", "dark"):
         page = visitor.signs_in("vera", **VIEWS[theme])
-        looks(page, picture, f"{base}&t={at(DAYTIME, first - 9)}&uav=0&camera=chase&view=-28,18,10", f"scene-approach-{theme}")
-        looks(page, picture, f"{base}&t={at(DAYTIME, first + 5)}&uav=0&camera=orbit&view=200,12,120", f"scene-target-{theme}")
-        looks(page, picture, f"{base}&t={at(DAYTIME, (first + last) / 2)}&uav=0&camera=chase&view=35,24,22", f"scene-line-{theme}")
-        looks(page, picture, f"{base}&t={at(DAYTIME, (first + last) / 2)}&uav=1&camera=orbit&view=150,22,520", f"scene-two-{theme}")
-        looks(page, picture, f"{base}&t={at(DAYTIME, first + 3)}&uav=0&camera=onboard&view=0,-18,0", f"scene-onboard-{theme}")
-        looks(page, picture, f"{base}&t={at(DAYTIME, ends_s(page, day) - 9)}&uav=0&camera=chase&view=40,16,12", f"scene-landing-{theme}")
-        looks(page, picture, f"{base}&t={at(DAYTIME, first + 5)}&camera=top&view=0,90,900", f"scene-top-{theme}")
-    phone = visitor.signs_in("vera", **VIEWS["phone-light"])
-    looks(phone, picture, f"{base}&t={at(DAYTIME, first - 7)}&uav=0&camera=chase&view=-28,20,13", "scene-phone-light")
-    phone = visitor.signs_in("vera", **VIEWS["phone-dark"])
-    looks(phone, picture, f"{base}&t={at(DAYTIME, first + 5)}&uav=0&camera=orbit&view=200,12,150", "scene-phone-dark")
+        looks(page, picture, f"{base}{at(DAYTIME, first - 7)}&uav=0&camera=chase&view=-28,18,9", f"scene-approach-{theme}")
+        looks(page, picture, f"{base}{at(DAYTIME, first + 4)}&uav=0&camera=orbit&view=200,12,120", f"scene-target-{theme}")
+        looks(page, picture, f"{base}{at(DAYTIME, (first + last) / 2)}&uav=0&camera=chase&view=35,24,22", f"scene-line-{theme}")
+        looks(page, picture, f"{base}{at(DAYTIME, (first + last) / 2)}&uav=1&camera=orbit&view=150,22,520", f"scene-two-{theme}")
+        looks(page, picture, f"{base}{at(DAYTIME, first - 5)}&uav=0&camera=onboard&view=0,-18,0", f"scene-onboard-{theme}")
+        looks(page, picture, f"{base}{at(DAYTIME, landing)}&uav=0&camera=chase&view=40,16,12", f"scene-landing-{theme}")
+        looks(page, picture, f"{base}{at(DAYTIME, first + 4)}&camera=top&view=0,90,900", f"scene-top-{theme}")
+    for view, camera in (("phone-light", "chase&view=-28,20,13"), ("phone-dark", "orbit&view=200,12,150")):
+        page = visitor.signs_in("vera", **VIEWS[view])
+        looks(page, picture, f"{base}{at(DAYTIME, first - 6)}&uav=0&camera={camera}", f"scene-{view}")
 
 
 def test_round_a_zone_and_at_night(visitor: Visitor, towers: Towers, zone: str, picture: Picture) -> None:
     page = visitor.signs_in("ada")
-    night = rehearsed(page, "Night patrol", {"Nightjar": beside(towers[4])}, [towers[5], towers[11]], NIGHT, 2)
-    reached = events_of(page, night)
-    halfway = (min(reached.values()) + max(reached.values())) / 2
-    base = f"/missions/{night}/3d?source=rehearsal"
+    targets = [towers[5], towers[11]]
+    night = rehearsed(page, "Night patrol", {"Nightjar": beside(towers[4])}, targets, NIGHT, 2)
+    day = rehearsed(page, "Round the works", {"Godwit": beside(towers[4])}, targets, DAYTIME, 2)
+    at_tower = reached_s(page, night)[0][0] + 4
+    between = sum(reached_s(page, day)[0]) / 2
     for theme in ("light", "dark"):
         page = visitor.signs_in("vera", **VIEWS[theme])
-        looks(page, picture, f"{base}&t={at(NIGHT, min(reached.values()) + 4)}&camera=orbit&view=215,14,110", f"scene-night-{theme}")
-    day = rehearsed(page := visitor.signs_in("ada"), "Round the works", {"Godwit": beside(towers[4])}, [towers[5], towers[11]], DAYTIME, 2)
-    reached = events_of(page, day)
-    halfway = (min(reached.values()) + max(reached.values())) / 2
-    for theme in ("light", "dark"):
-        page = visitor.signs_in("vera", **VIEWS[theme])
-        looks(
-            page,
-            picture,
-            f"/missions/{day}/3d?source=rehearsal&t={at(DAYTIME, halfway)}&camera=chase&view=25,30,150",
-            f"scene-zone-{theme}",
-        )
+        night_at = f"/missions/{night}/3d?source=rehearsal&t={at(NIGHT, at_tower)}"
+        looks(page, picture, f"{night_at}&camera=orbit&view=215,14,110", f"scene-night-{theme}")
+        day_at = f"/missions/{day}/3d?source=rehearsal&t={at(DAYTIME, between)}"
+        looks(page, picture, f"{day_at}&camera=chase&view=25,30,150", f"scene-zone-{theme}")
     expect(page.locator("[data-reading=zone]")).to_contain_text(zone, timeout=PATIENCE_MS)
 
 
