@@ -124,7 +124,7 @@ def test_flights_among_towers(visitor: Visitor, towers: Towers, picture: Picture
 def test_round_a_zone_and_at_night(visitor: Visitor, towers: Towers, zone: str, picture: Picture) -> None:
     page = visitor.signs_in("ada")
     targets = [towers[5], towers[11]]
-    night = rehearsed(page, "Night patrol", {"Gadwall": beside(towers[4])}, targets, NIGHT, 2)
+    night = rehearsed(page, "Night patrol", {"Pratincole": beside(towers[4])}, targets, NIGHT, 2)
     day = rehearsed(page, "Round the works", {"Phalarope": beside(towers[4])}, targets, DAYTIME, 2)
     at_tower = reached_s(page, night)[0][0] + 4
     between = sum(reached_s(page, day)[0]) / 2
