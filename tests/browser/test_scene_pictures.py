@@ -133,7 +133,7 @@ def test_round_a_zone_and_at_night(visitor: Visitor, towers: Towers, zone: str, 
         night_at = f"/missions/{night}/3d?source=rehearsal&t={at(NIGHT, at_tower)}"
         looks(page, picture, f"{night_at}&camera=orbit&view=215,14,110", f"scene-night-{theme}")
         day_at = f"/missions/{day}/3d?source=rehearsal&t={at(DAYTIME, between)}"
-        looks(page, picture, f"{day_at}&camera=chase&view=25,30,150", f"scene-zone-{theme}")
+        looks(page, picture, f"{day_at}&camera=chase&view=40,28,330", f"scene-zone-{theme}")
     expect(page.locator("[data-reading=zone]")).to_contain_text(zone, timeout=PATIENCE_MS)
 
 
