@@ -54,6 +54,7 @@ def asked_for_rehearsals(visitor: Visitor) -> Iterator[None]:
         yield
     finally:
         writes(page, "PUT", "/rehearsal-rule", {"requires_green": False})
+    visitor.complaints[:] = [words for words in visitor.complaints if "409 (Conflict)" not in words]  # the refusal that is looked for
 
 
 def opened(page: Page, key: str) -> Page:
