@@ -1,6 +1,7 @@
 /** German: simulated UAVs that fly in real time. */
 
 export default {
+  "Times are of the clock on the wall: it was flown faster than real time.": "Zeiten sind die der Uhr an der Wand: Es wurde schneller als in Echtzeit geflogen.",
   "Fly": "Fliegen",
   "Report": "Bericht",
   "Stages of the mission": "Abschnitte der Mission",
@@ -29,7 +30,7 @@ export default {
   "This machine is too slow for that pace: {seconds} s behind.": "Dieser Rechner ist für dieses Tempo zu langsam: {seconds} s zurück.",
   "Real time": "Echtzeit",
   "{count} simulated UAV in real time.": ["{count} simuliertes UAV in Echtzeit.", "{count} simulierte UAVs in Echtzeit."],
-  "{speed} times real time": "{speed}-fache Echtzeit",
+  "{speed}× real time": "{speed}× Echtzeit",
   "Simulated UAVs are being started.": "Simulierte UAVs werden gestartet.",
   "The wind has changed.": "Der Wind hat sich geändert.",
   "{fault}: done.": "{fault}: erledigt.",
