@@ -196,7 +196,9 @@ class TrackFlightSerializer(serializers.Serializer):
     used_wh = serializers.ListField(child=serializers.FloatField())
     roll_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="right side down; not in tracks of before")
     pitch_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="nose up; not in tracks of before")
-    heading_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="from true north; not in tracks of before")
+    heading_deg = serializers.ListField(
+        child=serializers.FloatField(), required=False, help_text="from true north; not in tracks of before"
+    )
     waypoint = serializers.ListField(child=serializers.IntegerField(allow_null=True), help_text="that was flown to")
 
 
