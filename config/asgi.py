@@ -12,9 +12,9 @@ from channels.sessions import SessionMiddlewareStack  # noqa: E402
 
 from config.live import OriginCheck, probed_or_upgrade_required  # noqa: E402
 from config.websocket_urls import websocket_urlpatterns  # noqa: E402
-from operation.exposition import tell_how_it_does  # noqa: E402
+from operation.program import program_begins  # noqa: E402
 
-tell_how_it_does("live")
+program_begins("live")
 application = ProtocolTypeRouter(
     {
         "http": probed_or_upgrade_required,

@@ -6,7 +6,8 @@ from celery import Celery
 from celery.signals import beat_init, worker_process_init
 
 from config.watched_tasks import LoopPulse, watch_tasks
-from operation.exposition import tell_how_it_does
+from operation.program import program_begins
+from operation.tracing import begin_tracing
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 app = Celery("spanwise")
@@ -26,6 +27,7 @@ def warm_up_process(**_: object) -> None:
         return
     from missions.services import warm_up  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
+    begin_tracing("worker")
     warm_up()
 
 
@@ -35,4 +37,4 @@ def tell_of_the_installation(**_: object) -> None:
     from config.state_figures import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
     InstallationState(app).snapshot().__enter__()
-    tell_how_it_does("beat")
+    program_begins("beat")

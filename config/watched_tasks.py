@@ -16,9 +16,10 @@ from django.conf import settings
 from prometheus_client.multiprocess import mark_process_dead
 
 from operation import pulse
-from operation.exposition import tell_how_it_does
 from operation.log_context import about, facts
 from operation.metrics import PROCESSES_FOLDER, TASK_SECONDS, TASKS
+from operation.program import program_begins
+from operation.readiness import redis_faults
 
 logger = logging.getLogger(__name__)
 
@@ -26,7 +27,7 @@ HEADER = "spanwise_about"
 JOB_ARGUMENT = "job_id"  # the first one, of tasks that do a job
 CARRIED = ("request", "mission", "uav")
 OUTCOMES = {"SUCCESS": "done", "FAILURE": "failed", "RETRY": "retried", "REJECTED": "rejected", "IGNORED": "ignored", "REVOKED": "revoked"}
-BEAT_EVERY_S, BEAT_WITHIN_S = 10.0, 120.0  # a loop waits for Redis for a while before it tries again
+BEAT_EVERY_S, BEAT_WITHIN_S = 10.0, 120.0
 
 _under_way: dict[str, tuple[float, AbstractContextManager[None]]] = {}
 
@@ -38,7 +39,7 @@ def watch_tasks() -> None:
     signals.task_postrun.connect(_end)
     signals.setup_logging.connect(_set_up_logging)
     signals.worker_init.connect(_before_processes)
-    signals.worker_ready.connect(lambda **_: tell_how_it_does("worker"), weak=False)
+    signals.worker_ready.connect(lambda **_: program_begins("worker"), weak=False)
     signals.worker_process_shutdown.connect(_process_has_gone)
 
 
@@ -60,12 +61,16 @@ class WatchedScheduler(PersistentScheduler):
     """Celery's own, which says that it goes round."""
 
     def tick(self, *arguments: Any, **named: Any) -> Any:
-        pulse.beat("the schedule", within_s=BEAT_WITHIN_S)
+        pulse.beat("the schedule", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
         return super().tick(*arguments, **named)
 
 
 def _worker_goes_round() -> None:
-    pulse.beat("the worker", within_s=BEAT_WITHIN_S)
+    pulse.beat("the worker", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
+
+
+def _is_redis_away() -> bool:
+    return bool(redis_faults())
 
 
 def _send_along(headers: dict[str, Any] | None = None, **_: Any) -> None:

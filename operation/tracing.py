@@ -14,6 +14,7 @@ from operation.version import VERSION
 logger = logging.getLogger(__name__)
 
 VARIABLE = "SPANWISE_TRACING"
+NOT_TRACED = "healthz,readyz,invitation/,new-password/"  # the last two let their holder in, and a span names its address
 _MISSING = "%s is set, but OpenTelemetry is not installed (requirements-tracing.txt): nothing is traced"
 
 _begun = False
@@ -53,6 +54,7 @@ def _provide(program: str) -> None:
 def _instrument(program: str) -> None:
     """Requests and tasks, joined by the header that goes with them, and statements without what is put into them."""
     if program == "web":
+        os.environ.setdefault("OTEL_PYTHON_DJANGO_EXCLUDED_URLS", NOT_TRACED)
         _of("opentelemetry.instrumentation.django", "DjangoInstrumentor")().instrument()
     if program in {"web", "worker", "beat"}:
         _of("opentelemetry.instrumentation.celery", "CeleryInstrumentor")().instrument()

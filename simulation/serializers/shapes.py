@@ -196,9 +196,7 @@ class TrackFlightSerializer(serializers.Serializer):
     used_wh = serializers.ListField(child=serializers.FloatField())
     roll_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="right side down; not in tracks of before")
     pitch_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="nose up; not in tracks of before")
-    heading_deg = serializers.ListField(
-        child=serializers.FloatField(), required=False, help_text="from true north; not in tracks of before"
-    )
+    heading_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="from north; not in tracks of before")
     waypoint = serializers.ListField(child=serializers.IntegerField(allow_null=True), help_text="that was flown to")
 
 
@@ -239,7 +237,7 @@ class AirframeListSerializer(serializers.Serializer):
 
 
 class TypeAirframeSerializer(serializers.Serializer):
-    airframe = serializers.CharField(allow_null=True, help_text="code of what was chosen; null: the nearest by mass and endurance")
+    airframe = serializers.CharField(allow_null=True, help_text="code of what was chosen; null: the nearest by speed, mass and endurance")
     flown = serializers.CharField(read_only=True, help_text="code of what flies")
 
 

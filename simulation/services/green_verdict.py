@@ -1,4 +1,4 @@
-"""What an organisation may ask for before a mission is approved: a rehearsal of this very plan, in the air it is planned for, without a fail."""
+"""What an organisation may ask for before a mission is approved: a rehearsal of this plan, in the air it is planned for, without a fail."""
 
 from django.db import transaction
 from django.utils.translation import gettext as _

@@ -9,7 +9,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
-from operation.exposition import tell_how_it_does
+from operation.program import program_begins
 from simulation.simulator.figures import figures_of
 from simulation.simulator.options import options_of_settings
 from simulation.simulator.process import Simulator
@@ -49,5 +49,5 @@ class Command(BaseCommand):
         self.stdout.write(f"simulating as {simulator.options.holder}")
         self.stdout.flush()
         with figures_of(simulator):
-            tell_how_it_does("simulator")
+            program_begins("simulator")
             simulator.run()
