@@ -82,6 +82,7 @@ def rehearses(page: Page, picture: Picture) -> None:
     expect(page).to_have_url(re.compile("/rehearse"))
     panel = page.get_by_role("region", name="Rehearsal")
     expect(panel).to_contain_text("Not rehearsed yet")
+    picture(page, "flow-3-not-rehearsed")
     panel.get_by_role("button", name="Rehearse", exact=True).click()
     expect(panel.locator("#rehearsal-sentence")).to_have_text(re.compile("^It passes.*As planned"), timeout=FLIGHT_MS)
     expect(panel.get_by_role("img", name="Height above take-off by time")).to_be_visible()
@@ -121,7 +122,7 @@ def flies(page: Page, key: str, picture: Picture) -> None:
     page.get_by_role("link", name="Fly", exact=True).click()
     wait_for_map(page)
     expect(page.locator("#mission-state")).to_have_text("Active", timeout=SOON_MS)
-    marker = page.locator(".map-flyer")
+    marker = page.locator("#map .map-flyer")
     expect(marker).to_have_class(re.compile("measured"), timeout=SOON_MS)
     expect(card(page, NAME).locator(".figures")).to_contain_text("over take-off")
     first = marker.get_attribute("style") or ""
@@ -140,13 +141,13 @@ def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     alert = page.locator(".alert").filter(has_text=re.compile("is late|is lost"))
     expect(alert.first).to_be_visible(timeout=SOON_MS)
     expect(alert.first.locator(".simulated-mark")).to_be_visible()
-    expect(page.locator(".map-flyer")).to_have_class(re.compile("estimated"), timeout=SOON_MS)
+    expect(page.locator("#map .map-flyer")).to_have_class(re.compile("estimated"), timeout=SOON_MS)
     expect(card(page, NAME).locator(".estimate")).to_contain_text("95 of 100 times")
     picture(page, "flow-7-link-lost")
     alert.first.get_by_role("button", name="Acknowledge").click()
     expect(page.locator(".alert.known").filter(has_text="Acknowledged by opal").first).to_be_visible(timeout=SOON_MS)
     panel.get_by_role("button", name="All well again").click()
-    expect(page.locator(".map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
+    expect(page.locator("#map .map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
     is_told(page, "Resume")
 
 
