@@ -29,6 +29,10 @@ from tests.telemetry.estimation.truth import fly
 LOWEST, HIGHEST = 0.93, 0.97
 MOST_CORES = 0.3
 MEASURED_S = 60
+HEAD = [
+    "a report each", "seconds", "RMS error [m]", "last position held", "straight on", "inside the ellipse", "height", "speed", "arrivals",
+    "mean radius of the ellipse, median [m]",
+]  # fmt: skip
 
 
 def row(every_s: float, score: Score) -> list[str]:
@@ -82,9 +86,7 @@ def main() -> None:
     asked = parser.parse_args()
     lines = [line for path in asked.lines for line in lines_of(path)]
     scores = scores_of(range(asked.first, asked.first + asked.flights), lines)
-    head = ["a report each", "seconds", "RMS error [m]", "last position held", "straight on", "inside the ellipse", "height", "speed",
-            "arrivals", "mean radius of the ellipse, median [m]"]  # fmt: skip
-    found = table(head, [row(every_s, score) for every_s, score in scores.items()])
+    found = table(HEAD, [row(every_s, score) for every_s, score in scores.items()])
     cores = {every_s: cores_for(asked.uavs, every_s) for every_s in (1.0, 10.0)}
     cost = f"{asked.uavs} UAVs a second take " + ", ".join(
         f"{share_of:.2f} of a core with a report each {every_s:.0f} s" for every_s, share_of in cores.items()

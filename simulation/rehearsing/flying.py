@@ -193,7 +193,7 @@ class _Flyer:
         lon, lat = state.true_position
         self._rows.rows.append((
             self._begins_s + vehicle.now_s, lon, lat, state.altitude_amsl_m, state.altitude_relative_m, state.battery_percent,
-            state.battery_used_wh, waypoint, state.is_in_air, is_coming_down,
+            state.battery_used_wh, waypoint, state.is_in_air, is_coming_down, state.roll_deg, state.pitch_deg, state.heading_deg,
         ))  # fmt: skip
         self._rows.texts += vehicle.take_texts()
 
@@ -209,6 +209,7 @@ class _Flyer:
             waypoint=columns[:, 7].astype(np.int64),
             is_in_air=columns[:, 8].astype(bool),
             is_coming_down=columns[:, 9].astype(bool),
+            attitude_deg=columns[:, 10:13],
             ending=ending,
             said=tuple(self._rows.texts),
         )

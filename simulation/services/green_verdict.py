@@ -1,4 +1,4 @@
-"""What an organisation may ask for before a mission is approved: a rehearsal of this very plan that no run of failed."""
+"""What an organisation may ask for before a mission is approved: a rehearsal of this plan, in the air it is planned for, without a fail."""
 
 from django.db import transaction
 from django.utils.translation import gettext as _
@@ -7,6 +7,7 @@ from inspection.selectors.planning import planning_read
 from missions.models import Mission
 from missions.services.refused import Reason, Refused
 from simulation.models import Rehearsal, RehearsalRule, VerdictLevel
+from simulation.rehearsing.sky import Named
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan
@@ -31,6 +32,9 @@ def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
     if newest.level == VerdictLevel.FAIL:
         words = _("The rehearsal failed. Change the plan for what its verdict says, plan and rehearse it again.")
         return [Reason("rehearsal_failed", words)]
+    if not newest.runs.filter(conditions__code=str(Named.AS_PLANNED)).exists():
+        words = _("The rehearsal left out the conditions that the mission is planned for. Rehearse it again with them.")
+        return [Reason("rehearsal_without_planned_conditions", words)]
     if not _is_on_this_ground(newest, plan):
         words = _("Zones, terrain, towers or wires about the routes have changed since the mission was rehearsed. Rehearse it again.")
         return [Reason("rehearsal_on_other_ground", words)]

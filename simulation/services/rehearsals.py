@@ -18,6 +18,7 @@ from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from simulation.rehearsing.flying import fly
 from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
 from simulation.services.fleet import stand_in_to_json
+from simulation.services.flown_before import take_flown_before
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan, surroundings_of
 from simulation.services.vehicles import vehicle_maker
@@ -40,8 +41,11 @@ class PlanChanged(Exception):
     """The mission is no longer as it was asked for."""
 
 
-def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7) -> Rehearsal:
-    """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs."""
+def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7, afresh: bool = False) -> Rehearsal:
+    """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs.
+
+    What was flown alike lately is taken over and not flown again, unless `afresh`.
+    """
     plan, ground = plan_to_fly(mission), planning_read().ground()
     with transaction.atomic():
         job = create_job_within(
@@ -49,7 +53,7 @@ def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed
             organisation=mission.organisation,
             created_by=actor,
             task=REHEARSE,
-            parameters={"mission": str(mission.pk)},
+            parameters={"mission": str(mission.pk), "afresh": afresh},
             message="Waiting for a worker",
         )
         rehearsal = Rehearsal.objects.create(
@@ -88,11 +92,12 @@ def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
     plan = plan_to_fly(mission)
     if plan.content_sha256 != rehearsal.content_sha256:
         raise PlanChanged
-    runs = list(rehearsal.runs.all())
+    runs = list(rehearsal.runs.select_related("rehearsal"))
+    is_afresh = bool(job.parameters.get("afresh"))
     for number, run in enumerate(runs):
-        if run.finished_at is None:
-            share = _shares(progress, number, len(runs))
-            _fly_run(run, plan, planning_read().ground(), rehearsal.seed, share)
+        if run.finished_at is not None or (not is_afresh and take_flown_before(run, planning_read().edition[0])):
+            continue
+        _fly_run(run, plan, planning_read().ground(), rehearsal.seed, _shares(progress, number, len(runs)))
     _finish(rehearsal.pk, job)
 
 

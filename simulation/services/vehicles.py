@@ -47,8 +47,11 @@ class RehearsedUav:
         return self._uav.set_mode(Mode.MISSION)
 
     def take_texts(self) -> list[str]:
-        """What it has said of trouble since it was last asked."""
-        return [text for event in self._uav.take_events() if (text := _told(event))]
+        """What it has said of trouble since it was last asked. Why it has crashed is told once."""
+        events = self._uav.take_events()
+        reasons = [event.reason for event in events if isinstance(event, Crashed)]
+        said = [event.text for event in events if isinstance(event, Said) and event.severity is not Severity.INFO]
+        return [text for text in said if not any(text.endswith(reason) for reason in reasons)] + reasons
 
 
 def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | None) -> MakeVehicle:
@@ -68,9 +71,3 @@ def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | Non
         return RehearsedUav(uav)
 
     return make
-
-
-def _told(event: object) -> str:
-    if isinstance(event, Crashed):
-        return event.reason
-    return event.text if isinstance(event, Said) and event.severity is not Severity.INFO else ""

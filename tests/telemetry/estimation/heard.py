@@ -52,7 +52,7 @@ def _report(truth: Truth, at_s: float, begun_s: float, delay_s: float, error: li
         velocity_down_mps=-float(v_up) + chance.gauss(0.0, SPEED_M),
         heading_deg=math.degrees(math.atan2(v_east, v_north)) % 360.0 if speed > 1.0 else None,
         mode=truth.modes[row],
-        is_armed=True,
+        is_armed=truth.armed[row] if truth.armed else True,
         is_in_air=truth.in_air[row],
         waypoint_sequence=truth.sequence[row],
     )

@@ -29,9 +29,10 @@ class _Point(NamedTuple):
 
 HOME = LonLat(9.8, 55.4)
 TRANSIT_M = 60.0
+SPEEDS_MPS = (8.0, 10.0, 12.0, 14.0)
 
 
-def drawn_route(seed: int) -> FrozenRoute:
+def drawn_route(seed: int, speeds_mps: Sequence[float] = SPEEDS_MPS) -> FrozenRoute:
     """Along a line that bends now and then."""
     chance = random.Random(seed)
     bearing = chance.uniform(0.0, 2.0 * math.pi)
@@ -42,10 +43,10 @@ def drawn_route(seed: int) -> FrozenRoute:
         bearing += chance.choice([0.0, 0.0, chance.gauss(0.0, 0.3), chance.gauss(0.0, 1.2)])
         span_m = chance.uniform(120.0, 420.0)
         at = (at[0] + span_m * math.sin(bearing), at[1] + span_m * math.cos(bearing))
-    return _route(f"seed {seed}", HOME, towers, chance)
+    return _route(f"seed {seed}", HOME, towers, chance, speeds_mps)
 
 
-def route_on_line(seed: int, lines: Sequence[Sequence[LonLat]]) -> FrozenRoute:
+def route_on_line(seed: int, lines: Sequence[Sequence[LonLat]], speeds_mps: Sequence[float] = SPEEDS_MPS) -> FrozenRoute:
     """Along a stretch of a real line, from a place some hundred metres beside its first tower."""
     chance = random.Random(f"line {seed}")
     line = chance.choice(lines)
@@ -57,7 +58,7 @@ def route_on_line(seed: int, lines: Sequence[Sequence[LonLat]]) -> FrozenRoute:
     lon, lat = frame.to_degrees(np.array([[far_m * math.sin(angle), far_m * math.cos(angle)]]))[0]
     home = LonLat(float(lon), float(lat))
     towers = [(float(east), float(north)) for east, north in LocalFrame.around(*home).to_metres(np.array(stretch))]
-    return _route(f"line {seed}", home, towers, chance)
+    return _route(f"line {seed}", home, towers, chance, speeds_mps)
 
 
 def lines_of(path: Path) -> list[list[LonLat]]:
@@ -81,7 +82,9 @@ class _Lines(osmium.SimpleHandler):
             self.lines.append(places)
 
 
-def _route(name: str, home: LonLat, towers: Sequence[tuple[float, float]], chance: random.Random) -> FrozenRoute:
+def _route(
+    name: str, home: LonLat, towers: Sequence[tuple[float, float]], chance: random.Random, speeds_mps: Sequence[float]
+) -> FrozenRoute:
     """A target at every few towers; the way back over the same towers, or straight home, or none."""
     points: list[_Point] = [_Point((0.0, 0.0), TRANSIT_M, WaypointKind.START)]
     target = 0
@@ -106,7 +109,7 @@ def _route(name: str, home: LonLat, towers: Sequence[tuple[float, float]], chanc
         FrozenWaypoint(number, LonLat(float(lon), float(lat)), point.kind, point.height_m, point.height_m, None, point.task, point.target)
         for number, ((lon, lat), point) in enumerate(zip(degrees, points, strict=True))
     )
-    return FrozenRoute(name, TakeOff(home, 0.0), chance.choice([8.0, 10.0, 12.0, 14.0]), end, waypoints)
+    return FrozenRoute(name, TakeOff(home, 0.0), chance.choice(speeds_mps), end, waypoints)
 
 
 def knowledge_for(route: FrozenRoute, flight: Flight, seed: int) -> Knowledge:

@@ -36,7 +36,10 @@ class Events:
 
 @dataclass
 class Truth:
-    """Every STEP_S: columns time since the start, east, north, height, their speeds; the mode, whether in the air, the waypoint."""
+    """Every STEP_S: columns time since the start, east, north, height, their speeds; the mode, whether in the air, the waypoint.
+
+    `armed` is left empty where it was armed all the time.
+    """
 
     frame: LocalFrame
     rows: FloatArray
@@ -44,6 +47,7 @@ class Truth:
     in_air: list[bool]
     sequence: list[int]
     reached: dict[int, float] = field(default_factory=dict)  # waypoint's sequence: seconds
+    armed: list[bool] = field(default_factory=list)
 
     @property
     def duration_s(self) -> float:
