@@ -3,17 +3,38 @@
 import os
 
 from celery import Celery
-from celery.signals import worker_process_init
+from celery.signals import beat_init, worker_process_init
+
+from config.watched_tasks import LoopPulse, watch_tasks
+from operation.program import program_begins
+from operation.tracing import begin_tracing
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 app = Celery("spanwise")
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.autodiscover_tasks()
+app.steps["worker"].add(LoopPulse)
+watch_tasks()
+
+
+MAKES_NO_PLANS = {"simulation"}
 
 
 @worker_process_init.connect
 def warm_up_process(**_: object) -> None:
-    """A worker's process loads what plans are made with before it takes a task."""
+    """A worker's process loads what plans are made with before it takes a task, unless its queues bring it none."""
+    if set(app.amqp.queues.consume_from) <= MAKES_NO_PLANS:
+        return
     from missions.services import warm_up  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
+    begin_tracing("worker")
     warm_up()
+
+
+@beat_init.connect
+def tell_of_the_installation(**_: object) -> None:
+    """The schedule runs once, so it is the one that tells how long queues are."""
+    from config.state_figures import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
+
+    InstallationState(app).snapshot().__enter__()
+    program_begins("beat")

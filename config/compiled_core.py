@@ -68,6 +68,8 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def _processor() -> str:
+    if named := os.environ.get("NUMBA_CPU_NAME"):  # an image is compiled for every processor of a level, not for the one at hand
+        return named
     with suppress(OSError):
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith("model name"):

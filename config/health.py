@@ -1,17 +1,15 @@
-"""For whoever watches over the program: is the process alive, and can it work?"""
+"""For whoever watches over the program: is the process alive, can it work, and could a mission be planned now?"""
 
+from collections.abc import Callable
 from typing import Any
 
-from django.core.cache import cache
 from django.db import Error as DatabaseError
-from django.db import connection
-from django.db.migrations.executor import MigrationExecutor
-from django.http import HttpRequest, JsonResponse
+from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_safe
 
 from inspection.models import Asset, GraphSnapshot
-from workspace.cache_absence import CACHE_AWAY
+from operation.readiness import NO_DATABASE, database_faults, redis_faults
 
 
 @never_cache
@@ -24,32 +22,29 @@ def healthz(request: HttpRequest) -> JsonResponse:
 @never_cache
 @require_safe
 def readyz(request: HttpRequest) -> JsonResponse:
-    """200 when a mission could be planned now, else 503 with what is missing."""
-    reasons = [*_database_faults(), *_redis_faults()]
+    """200 when database, migrations and Redis are there, else 503 with the reasons. `missing` is what keeps missions from being planned:
+    people bring it, so it keeps nobody out.
+    """
+    reasons = [*database_faults(), *redis_faults()]
     answer: dict[str, Any] = {"ready": not reasons}
     if reasons:
         answer["reasons"] = reasons
+    if not reasons and (missing := missing_ground()):
+        answer["missing"] = missing
     return JsonResponse(answer, status=503 if reasons else 200)
 
 
-def _database_faults() -> list[str]:
+def missing_ground() -> list[str]:
+    """Without which nothing can be planned."""
     try:
-        executor = MigrationExecutor(connection)
-        if executor.migration_plan(executor.loader.graph.leaf_nodes()):
-            return ["migrations are not applied"]
-        faults = []
+        missing = []
         if not Asset.objects.filter(vanished_at=None).exists():
-            faults.append("no data is imported")
+            missing.append("no data is imported")
         if not GraphSnapshot.objects.exists():
-            faults.append("no graph is built")
-        return faults
+            missing.append("no graph is built")
+        return missing
     except DatabaseError:
-        return ["the database cannot be reached"]
+        return [NO_DATABASE]
 
 
-def _redis_faults() -> list[str]:
-    try:
-        cache.get("ready")
-    except CACHE_AWAY:
-        return ["Redis cannot be reached"]
-    return []
+PROBES: dict[str, Callable[[HttpRequest], HttpResponse]] = {"/healthz": healthz, "/readyz": readyz}

@@ -1,12 +1,17 @@
-"""What the websocket program answers to plain HTTP."""
+"""What the websocket program answers to plain HTTP: whether it lives and can work, and that all else is for websockets."""
 
+import asyncio
 import json
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 from channels.security.websocket import AllowedHostsOriginValidator
+from django.db import connections
 
+from operation.readiness import Readiness
 from workspace.authentication import bearer_token
+
+_readiness = Readiness()
 
 BODY = json.dumps({"error": {"code": "upgrade_required", "message": "This address is for websockets.", "details": None}}).encode()
 
@@ -26,6 +31,30 @@ class OriginCheck:
         names_none = all(name != b"origin" for name, _ in scope["headers"])
         through = self.application if names_none and bearer_token(scope) is not None else self.checked
         await through(scope, receive, send)
+
+
+async def probed_or_upgrade_required(scope: dict[str, Any], receive: Receive, send: Send) -> None:
+    if scope["path"] == "/healthz":
+        await _answer(send, 200, {"alive": True})
+    elif scope["path"] == "/readyz":
+        faults = await asyncio.get_running_loop().run_in_executor(None, _faults)
+        await _answer(send, 503 if faults else 200, {"ready": not faults} | ({"reasons": faults} if faults else {}))
+    else:
+        await upgrade_required(scope, receive, send)
+
+
+def _faults() -> list[str]:
+    try:
+        return _readiness.faults()
+    finally:
+        connections.close_all()  # this thread's alone
+
+
+async def _answer(send: Send, status: int, told: dict[str, Any]) -> None:
+    body = json.dumps(told).encode()
+    headers = [(b"content-type", b"application/json"), (b"cache-control", b"no-store"), (b"content-length", str(len(body)).encode())]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
 
 
 async def upgrade_required(scope: dict[str, Any], receive: Receive, send: Send) -> None:

@@ -10,6 +10,7 @@ import dj_database_url
 
 from config.mail import mail_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
+from config.secret_files import secret
 from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.rules import LinkingRules
 from inspection.zones.rules import ZoneRules
@@ -41,7 +42,7 @@ def _mebibytes(name: str, default: int) -> int:
 
 def _secret_key() -> str:
     """SPANWISE_SECRET_KEY, else a key made once and kept in the state folder, readable by its owner alone."""
-    if key := os.environ.get("SPANWISE_SECRET_KEY"):
+    if key := secret("SPANWISE_SECRET_KEY"):
         return key
     path = STATE_DIR / "secret_key"
     if not path.exists():
@@ -56,6 +57,7 @@ def _secret_key() -> str:
 
 
 SECRET_KEY = _secret_key()
+SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions and links that were signed with these still hold
 DEBUG = _flag("SPANWISE_DEBUG", default=False)
 ALLOWED_HOSTS = _list("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
 CSRF_TRUSTED_ORIGINS = _list("SPANWISE_TRUSTED_ORIGINS", "")
@@ -97,6 +99,7 @@ INSTALLED_APPS = [
 ]
 
 MIDDLEWARE = [
+    "config.observed_requests.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
@@ -131,7 +134,7 @@ FORM_RENDERER = "django.forms.renderers.TemplatesSetting"  # widgets' templates 
 
 DATABASES = {
     "default": dj_database_url.parse(
-        os.environ.get("DATABASE_URL") or private_database_url(STATE_DIR),
+        secret("DATABASE_URL") or private_database_url(STATE_DIR),
         engine="django.contrib.gis.db.backends.postgis",
         conn_max_age=60,
         conn_health_checks=True,
@@ -141,7 +144,7 @@ DATABASES = {
 DATABASES["default"].setdefault("OPTIONS", {})["prepare_threshold"] = 0
 DEFAULT_AUTO_FIELD = "django.db.models.BigAutoField"
 
-REDIS_URL = os.environ.get("REDIS_URL") or private_redis_url(STATE_DIR)
+REDIS_URL = secret("REDIS_URL") or private_redis_url(STATE_DIR)
 CACHES = {
     "default": {
         "BACKEND": "django.core.cache.backends.redis.RedisCache",
@@ -181,7 +184,7 @@ LOGOUT_REDIRECT_URL = "sign-in"
 PASSWORD_RESET_TIMEOUT = 3_600  # seconds that the link of a mail works
 SIGN_IN_LOG_DAYS = int(_float("SPANWISE_SIGN_IN_LOG_DAYS", 180))
 
-globals().update(mail_settings(os.environ.get("SPANWISE_EMAIL_URL", "console://")))
+globals().update(mail_settings(secret("SPANWISE_EMAIL_URL", "console://")))
 DEFAULT_FROM_EMAIL = os.environ.get("SPANWISE_EMAIL_FROM", "Spanwise <spanwise@localhost>")
 
 LANGUAGE_CODE = "en-gb"
@@ -192,14 +195,15 @@ USE_I18N = True
 USE_TZ = True
 
 STATIC_URL = "/static/"
-STATIC_ROOT = STATE_DIR / "static"
+STATIC_ROOT = Path(os.environ.get("SPANWISE_STATIC_DIR") or STATE_DIR / "static")
 STORAGES = {
     "default": {"BACKEND": "django.core.files.storage.FileSystemStorage"},
     "staticfiles": {"BACKEND": "config.static_files.HashedStaticFiles"},
 }
 STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".spanwise")]
 
-# What users may send in one request. Files come in as uploads, part by part.
+# What users may send in one request. Files come in as uploads, part by part, into a folder that web and worker-data share.
+UPLOAD_DIR = Path(os.environ.get("SPANWISE_UPLOAD_DIR") or STATE_DIR / "uploads")
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
 LARGEST_FILE_BYTES = {
     "osm": _mebibytes("SPANWISE_LARGEST_OSM_MIB", 512),
@@ -285,7 +289,7 @@ CELERY_ACCEPT_CONTENT = ["json"]
 CELERY_TASK_TIME_LIMIT = 900
 CELERY_TASK_SOFT_TIME_LIMIT = 870
 CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
-CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 10
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 6  # what is not done by then goes back to the queue: a program ends within 10 s
 CELERY_BROKER_TRANSPORT_OPTIONS = {
     "visibility_timeout": 1_000,  # longer than the longest task
     "unacked_restore_interval": 2,
@@ -328,6 +332,7 @@ CELERY_BEAT_SCHEDULE = {
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
+CELERY_BEAT_SCHEDULER = "config.watched_tasks:WatchedScheduler"
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 
 # The field's own rules, each with a unit in its name.
@@ -430,11 +435,15 @@ SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 # Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
 OUTGOING_ALLOWED_HOSTS = _list("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
 
+LOG_FORMAT = os.environ.get("SPANWISE_LOG_FORMAT", "line")  # or json
+LOG_REQUESTS = _flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
 LOGGING = {
     "version": 1,
     "disable_existing_loggers": False,
-    "formatters": {"line": {"format": "{asctime} {levelname} {name} {message}", "style": "{"}},
-    "filters": {"without links": {"()": "config.log_lines.WithoutLinks"}},
-    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "line", "filters": ["without links"]}},
+    "formatters": {
+        "line": {"()": "operation.log_lines.LineFormatter"},
+        "json": {"()": "operation.log_lines.JsonFormatter", "program": os.environ.get("SPANWISE_PROGRAM", "")},
+    },
+    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "json" if LOG_FORMAT == "json" else "line"}},
     "root": {"handlers": ["console"], "level": os.environ.get("SPANWISE_LOG_LEVEL", "INFO")},
 }

@@ -22,7 +22,7 @@ class HashedStaticFiles(ManifestStaticFilesStorage):
     def url_converter(self, name: str, *args: Any, **kwargs: Any) -> Any:
         """Libraries are served as they came: only our own modules and style sheets are looked into."""
         convert = super().url_converter(name, *args, **kwargs)
-        if name.startswith(("js/", "css/", "lib/maplibre-gl/")):
+        if name.startswith(("js/", "css/", "lib/maplibre-gl/", "lib/three/")):
             return convert
         return _unchanged
 

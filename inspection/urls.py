@@ -2,7 +2,21 @@
 
 from django.urls import path
 
-from inspection.views import assets, gaps, geometry_checks, ground, history, imports, picking, regions, terrain, uploads, zone_sets, zones
+from inspection.views import (
+    assets,
+    gaps,
+    geometry_checks,
+    ground,
+    history,
+    imports,
+    picking,
+    regions,
+    scene,
+    terrain,
+    uploads,
+    zone_sets,
+    zones,
+)
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -50,6 +64,7 @@ urlpatterns = [
     path("terrain/height", terrain.GroundHeight.as_view(), name="api-ground-height"),
     path("terrain/profile", terrain.Profile.as_view(), name="api-terrain-profile"),
     path("terrain/heights", terrain.Heights.as_view(), name="api-heights"),
+    path("scene", scene.SceneOfBox.as_view(), name="api-scene"),
     path("ground", ground.Ground.as_view(), name="api-ground"),
     path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),
 ]

@@ -100,6 +100,7 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[Mission]:
             target_count=_count_of(InspectionTarget.objects.all()),
             unassigned_count=_count_of(InspectionTarget.objects.exclude(unassigned_reason="")),
             uav_count=_count_of(MissionUav.objects.all()),
+            is_simulated=Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav__is_simulated=True)),
             duration_s=Subquery(longest, output_field=FloatField()),
             # with fields of their own: a page's cursor reads these values, not those of the columns they are made from
             sort_name=Lower("name", output_field=CharField()),

@@ -9,4 +9,5 @@ urlpatterns = [
     path("uavs", FleetPage.as_view(), name="fleet"),
     path("missions/new", MissionPage.as_view(), name="mission-new"),
     path("missions/<uuid:mission_id>", MissionPage.as_view(), name="mission"),
+    path("missions/<uuid:mission_id>/rehearse", MissionPage.as_view(stage="rehearse"), name="mission-rehearse"),
 ]

@@ -18,10 +18,11 @@ class MissionsPage(SignedInPage):
 class MissionPage(SignedInPage):
     """The operator's map, for a new mission or a stored one of the user's organisation.
 
-    One that is approved is shown as to those who cannot plan: nothing of it can be changed.
+    One that is approved is shown as to those who cannot plan: nothing of it can be changed. `stage`: what of it stands beside the map.
     """
 
     template_name = "mission.html"
+    stage = "plan"
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         mission_id = kwargs.get("mission_id")
@@ -34,6 +35,7 @@ class MissionPage(SignedInPage):
             "canPlan": user.can_plan and not is_frozen,
             "canFly": user.can_plan,
             "isFrozen": is_frozen,
+            "stage": self.stage,
             "mission": str(mission_id) if mission_id else None,
             "extent": ground_extent(),
             "bounds": mission_bounds(mission_id) if mission_id else None,

@@ -20,7 +20,9 @@ def mission_of_organisation(organisation: Organisation, mission_id: UUID, *, del
     return (
         Mission.objects.filter(organisation=organisation, deleted_at__isnull=not deleted)
         .select_related("author", "organisation")
-        .prefetch_related("mission_uavs", Prefetch("targets", targets), Prefetch("routes", routes))
+        .prefetch_related(
+            Prefetch("mission_uavs", MissionUav.objects.select_related("uav")), Prefetch("targets", targets), Prefetch("routes", routes)
+        )
         .get(pk=mission_id)
     )
 

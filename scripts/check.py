@@ -1,6 +1,6 @@
 """./check: private servers, then one step after the other, the browser tests and those that mostly wait beside them, and a summary.
 
-All steps run, even when one has failed.
+All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.second_try).
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
 """
@@ -14,15 +14,18 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import FrameType
 from typing import BinaryIO, NoReturn
+
+import pytest
 
 from config.private_servers import private_database_url, private_redis_url, state_directory
 from scripts import database_cluster
 from scripts.places import PROJECT_DIR, CannotStart, prepare_sockets, prepare_state, remove_sockets
 from scripts.programs import Program, database_server, queue_server
+from scripts.second_try import cache_arguments, failed_tests, second_command
 from scripts.supervision import Supervisor
 
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
@@ -47,6 +50,7 @@ class Step:
     environment: dict[str, str] = field(default_factory=dict)
     runs_beside: bool = False  # it starts first and is told last
     has_own_database: bool = False  # on the servers of all, since two runs of pytest on one database would be in each other's way
+    cache: Path | None = None  # pytest's, of a step that has a second try
 
 
 def _python(*arguments: str) -> list[str]:
@@ -57,8 +61,10 @@ def _pytest(expression: str, arguments: list[str]) -> list[str]:
     return _python("-m", "pytest", "-m", expression, *arguments)
 
 
-def _browser_tests(lane: str, expression: str, arguments: list[str]) -> list[str]:
-    return _python("-m", "scripts.browser_tests", lane, "-m", expression, *arguments)
+def _waiting(step: Step) -> Step:
+    """A step of pytest as one that has a second try."""
+    cache = state_directory() / "check" / f"pytest-{step.name.replace(' ', '-')}"
+    return replace(step, command=[*step.command, *cache_arguments(cache)], cache=cache)
 
 
 def steps(arguments: list[str]) -> list[Step]:
@@ -69,6 +75,7 @@ def steps(arguments: list[str]) -> list[Step]:
     if rest:
         expression = "not browser" if is_fast else "browser or not browser"
         return [Step("pytest", _pytest(f"({expression}){without_long}", rest))]
+    quick = f"not browser{without_long}"
     found = [
         Step("ruff check", [str(PROGRAMS / "ruff"), "check", "."]),
         Step("ruff format", [str(PROGRAMS / "ruff"), "format", "--check", "."]),
@@ -76,16 +83,18 @@ def steps(arguments: list[str]) -> list[Step]:
         Step("import contracts", [str(PROGRAMS / "lint-imports")]),
         Step("migrations complete", _python("manage.py", "makemigrations", "--check", "--dry-run")),
         Step("check --deploy", _python("manage.py", "check", "--deploy", "--fail-level", "WARNING"), {"SPANWISE_HTTPS": "1"}),
-        Step("pytest", _pytest(f"not browser{without_long}", [f"--ignore={place}" for place in WAITING_TESTS])),
-        Step("tests that wait", _pytest(f"not browser{without_long}", list(WAITING_TESTS)), runs_beside=True, has_own_database=True),
+        Step("pytest", _pytest(quick, [f"--ignore={place}" for place in WAITING_TESTS])),
+        _waiting(
+            Step("tests that wait", _pytest(f"not browser{without_long}", list(WAITING_TESTS)), runs_beside=True, has_own_database=True)
+        ),
     ]
     if scripts := sorted(str(path) for path in (PROJECT_DIR / "tests" / "javascript").glob("**/*.test.*js")):
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
     if not is_fast:
         expression = f"browser{without_long}"
-        found.append(Step("browser tests of the ground and its people", _browser_tests("ground", expression, list(BROWSER_TESTS_AFTER))))
+        found.append(_waiting(Step("browser tests of the ground and its people", _pytest(expression, list(BROWSER_TESTS_AFTER)))))
         others = [f"--ignore={folder}" for folder in BROWSER_TESTS_AFTER]
-        found.append(Step("browser tests", _browser_tests("others", expression, ["tests/browser", *others]), runs_beside=True))
+        found.append(_waiting(Step("browser tests", _pytest(expression, ["tests/browser", *others]), runs_beside=True)))
     return found
 
 
@@ -134,6 +143,7 @@ class Result:
     name: str
     code: int
     duration_s: float
+    late: tuple[str, ...] = ()  # tests that passed only the second time
 
 
 def _headline(step: Step) -> None:
@@ -202,6 +212,17 @@ def _tell(step: Step, log: Path, process: subprocess.Popen[bytes]) -> None:
                 time.sleep(POLL_S)
 
 
+def _with_second_try(step: Step, result: Result, environment: dict[str, str]) -> Result:
+    """What became of a step once its few failed tests have run again alone."""
+    if step.cache is None or result.code != pytest.ExitCode.TESTS_FAILED:
+        return result
+    late, command = tuple(failed_tests(step.cache)), second_command(step.command, step.cache)
+    if command is None:
+        return result
+    again = _run_here(replace(step, name=f"{step.name}: a second time", command=command), environment)
+    return Result(step.name, again.code, result.duration_s + again.duration_s, () if again.code else late)
+
+
 def run_all(to_run: list[Step], environment: dict[str, str], logs: Path) -> list[Result]:
     """One step after the other, beside those that run beside them, whose output is kept in the folder `logs` until the others are done."""
     began_s = time.time()
@@ -218,7 +239,8 @@ def run_all(to_run: list[Step], environment: dict[str, str], logs: Path) -> list
         finally:
             for _, _, process in started:
                 _end(process)
-    return results
+    by_name = {step.name: step for step in to_run}
+    return [_with_second_try(by_name[result.name], result, environment) for result in results]
 
 
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
@@ -243,6 +265,8 @@ def main(arguments: list[str]) -> int:
         print("\nSummary")
         for result in results:
             print(f"  {'ok' if result.code == 0 else f'FAILED ({result.code})':<12} {result.duration_s:7.1f} s  {result.name}")
+            for name in result.late:
+                print(f"  {'':<24}passed only alone: {name}")
         print(f"  {'':<12} {time.monotonic() - began:7.1f} s  in all", flush=True)
     return next((result.code for result in results if result.code), 0)
 

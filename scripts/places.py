@@ -16,6 +16,9 @@ SOCKET_PATH_LIMIT = 107  # bytes, sun_path of Linux
 DATABASE_USER = "postgres"  # PostgreSQL refuses to run as root
 DEMO_USER = "demo"
 WEB_PROGRAMS = ("web-1", "web-2")  # pages and API, each with a socket of its own
+TELLING_PROGRAMS = (  # that tell how they do, each at a socket of its own
+    *WEB_PROGRAMS, "live", "worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat",
+)  # fmt: skip
 
 
 class CannotStart(Exception):
@@ -75,6 +78,11 @@ class Places:
     def process(self, program: str) -> Path:
         """The working folder of a program. It belongs to that program alone: whatever stands in it is ours to end."""
         return self.state / "processes" / program
+
+
+def telling_socket(sockets: Path, program: str) -> Path:
+    """Where a program tells how it does; the proxy makes one port of them all."""
+    return sockets / f"{program}.told.sock"
 
 
 def database_user_id() -> int:

@@ -2,10 +2,11 @@
 
 import os
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from scripts.places import DATABASE_USER, PROJECT_DIR, WEB_PROGRAMS, CannotStart, Places
+from scripts import commands
+from scripts.places import DATABASE_USER, TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.postgresql_installations import server_for
 from scripts.system_packages import find_program
 
@@ -22,6 +23,7 @@ class Program:
     patience_s: int = 10
     user: str | None = None
     stale_files: list[Path] = field(default_factory=list)
+    environment: dict[str, str] = field(default_factory=dict)
 
     def start_command(self) -> list[str]:
         """The command as the supervisor runs it: through scripts.start_program, which clears up after a killed instance."""
@@ -33,7 +35,6 @@ class Program:
         return [sys.executable, "-m", "scripts.start_program", *options, "--", *self.command]
 
 
-BACKLOG = "4096"  # connections that wait for a program: as many as Linux allows unless told (net.core.somaxconn)
 SERVERS_STAGE, PROGRAM_STAGE = 1, 2
 SERVERS = ("postgresql", "redis")
 
@@ -80,64 +81,47 @@ def queue_server(places: Places, sockets: Path) -> Program:
     return Program(name="redis", stage=SERVERS_STAGE, command=command, folder=places.redis, patience_s=20)
 
 
-def _celery(places: Places, name: str, *arguments: str) -> Program:
-    return Program(
-        name=name,
-        stage=PROGRAM_STAGE,
-        command=[sys.executable, "-m", "celery", "--app", "config.celery", "--quiet", *arguments],
-        folder=places.process(name),
-        # QUIT is Celery's soft shutdown: running tasks get CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT, then go back to the queue.
-        stop_signal="TERM" if name == "beat" else "QUIT",
-        patience_s=20,
-    )
-
-
 def _worker(places: Places, queue: str, processes: int) -> Program:
-    arguments = [
-        "--loglevel",
-        os.environ.get("SPANWISE_LOG_LEVEL", "WARNING"),
-        "--queues",
-        queue,
-        "--hostname",
-        f"{queue}@%h",
-        "--concurrency",
-        str(processes),
-    ]
-    quick_start = ["--without-gossip", "--without-mingle", "--without-heartbeat"]  # workers need not know of each other
-    return _celery(places, f"worker-{queue}", "worker", *arguments, *quick_start)
+    # QUIT is Celery's soft shutdown: running tasks get CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT, then go back to the queue.
+    name = f"worker-{queue}"
+    return Program(name, PROGRAM_STAGE, commands.worker(queue, processes), places.process(name), stop_signal="QUIT", patience_s=20)
 
 
 def _web(places: Places, name: str, socket: Path) -> Program:
-    """Pages and API. One process a program: of several on one socket the first to wake takes most of the work."""
-    granian = [sys.executable, "-m", "granian", "--interface", "wsgi", "--uds", str(socket), "--workers", "1"]
-    granian += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "10"]
-    granian += ["--respawn-failed-workers", "--respawn-interval", "0.5", "--log-level", "warning", "config.wsgi:application"]
-    return Program(name=name, stage=PROGRAM_STAGE, command=granian, folder=places.process(name), patience_s=20, stale_files=[socket])
+    command = commands.web("--uds", str(socket))
+    return Program(name, PROGRAM_STAGE, command, places.process(name), patience_s=20, stale_files=[socket])
 
 
 def _gateway(places: Places) -> Program:
     """Where vehicles connect. It waits for a port that another installation on the machine holds."""
-    command = [sys.executable, str(PROJECT_DIR / "manage.py"), "run_gateway"]
-    return Program(name="gateway", stage=PROGRAM_STAGE, command=command, folder=places.process("gateway"), patience_s=12)
+    return Program("gateway", PROGRAM_STAGE, commands.management("run_gateway"), places.process("gateway"), patience_s=12)
 
 
 def _estimator(places: Places) -> Program:
     """Where UAVs are between their reports. Another one beside it takes over when it is gone."""
-    command = [sys.executable, str(PROJECT_DIR / "manage.py"), "run_estimator"]
-    return Program(name="estimator", stage=PROGRAM_STAGE, command=command, folder=places.process("estimator"), patience_s=12)
+    return Program("estimator", PROGRAM_STAGE, commands.management("run_estimator"), places.process("estimator"), patience_s=12)
 
 
 def _simulator(places: Places) -> Program:
     """Where simulated UAVs fly in real time."""
-    command = [sys.executable, str(PROJECT_DIR / "manage.py"), "run_simulator"]
-    return Program(name="simulator", stage=PROGRAM_STAGE, command=command, folder=places.process("simulator"), patience_s=12)
+    return Program("simulator", PROGRAM_STAGE, commands.management("run_simulator"), places.process("simulator"), patience_s=12)
+
+
+def _told(places: Places, sockets: Path, program: Program) -> Program:
+    """The same program, which tells how it does. Workers have several processes, which count together in a folder."""
+    environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, program.name)}"}
+    if program.name.startswith("worker-"):
+        environment["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(program.name) / "metrics")
+        environment["REMAP_SIGTERM"] = "SIGQUIT"  # to a worker TERM says the same as QUIT
+    return replace(program, environment=program.environment | environment)
 
 
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
-    live = [sys.executable, "-m", "granian", "--interface", "asginl", "--uds", str(sockets / "live.sock"), "--workers", "1"]
-    live += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "5", "--respawn-failed-workers", "--respawn-interval", "0.5"]
-    live += ["--log-level", "warning", "config.asgi:application"]
+    return [_told(places, sockets, program) if program.name in TELLING_PROGRAMS else program for program in _programs(places, sockets)]
+
+
+def _programs(places: Places, sockets: Path) -> list[Program]:
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
     return [
@@ -145,7 +129,7 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
         Program(
             name="live",
             stage=PROGRAM_STAGE,
-            command=live,
+            command=commands.live("--uds", str(sockets / "live.sock")),
             folder=places.process("live"),
             patience_s=10,
             stale_files=[sockets / "live.sock"],
@@ -156,6 +140,6 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
         _gateway(places),
         _estimator(places),
         _simulator(places),
-        _celery(places, "beat", "beat", "--loglevel", "WARNING", "--pidfile", ""),
+        Program("beat", PROGRAM_STAGE, commands.beat(), places.process("beat"), patience_s=20),
         Program(name="proxy", stage=PROGRAM_STAGE, command=nginx, folder=places.process("proxy")),
     ]

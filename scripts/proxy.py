@@ -2,15 +2,14 @@
 
 import os
 import resource
-from collections.abc import Iterable
 from pathlib import Path
-from urllib.parse import urlsplit
 
-from scripts.places import WEB_PROGRAMS, CannotStart, Places
+from scripts import page_headers
+from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
+from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
-BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)
 LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
 
 # A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
@@ -38,52 +37,6 @@ COMPRESSED = (
 )
 
 
-def origins(addresses: Iterable[str]) -> list[str]:
-    """Scheme and host of tile addresses, for those that `https:` does not cover."""
-    found = []
-    for address in addresses:
-        parts = urlsplit(address)
-        if parts.scheme == "http" and parts.netloc and not set(parts.netloc) & set(" ;,'\"{}"):
-            found.append(f"http://{parts.netloc}")
-    return sorted(set(found))
-
-
-def content_security_policy(tile_addresses: Iterable[str] = ()) -> str:
-    """What a page may load: everything from here, raster tiles from any https host (and from plain hosts the settings name)."""
-    tiles = " ".join(["https:", *origins(tile_addresses)])
-    rules = [
-        "default-src 'self'",
-        "script-src 'self'",
-        "worker-src 'self' blob:",
-        "style-src 'self' 'unsafe-inline'",  # MapLibre and Django's admin set style attributes
-        f"img-src 'self' data: blob: {tiles}",
-        f"connect-src 'self' {tiles}",  # MapLibre fetches tiles
-        "font-src 'self'",
-        "object-src 'none'",
-        "base-uri 'none'",
-        "form-action 'self'",
-        "frame-ancestors 'none'",
-    ]
-    return "; ".join(rules)
-
-
-def _quoted(path: object) -> str:
-    """A path as nginx reads it; spaces are fine, a dollar sign would be a variable."""
-    text = str(path)
-    if set(text) & set('"\\$\n'):
-        raise CannotStart(f"nginx cannot be given the path {text!r}: it holds a quotation mark, a backslash or a dollar sign")
-    return f'"{text}"'
-
-
-def _headers(tile_addresses: Iterable[str]) -> str:
-    """Headers that every answer carries. nginx inherits none into a block that adds one of its own, so each block has them all."""
-    return f"""\
-            add_header Content-Security-Policy "{content_security_policy(tile_addresses)}" always;
-            add_header X-Content-Type-Options nosniff always;
-            add_header Referrer-Policy strict-origin-when-cross-origin always;
-            add_header Permissions-Policy "camera=(), microphone=(), geolocation=(self)" always;"""
-
-
 def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too_large: str) -> str:
     """What nginx answers itself: where the application is away, and where a body is too large to be passed on."""
     return f"""
@@ -102,12 +55,14 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
         }}"""
 
 
-def _proxied(location: str, name: str, headers: str, scheme: str, *, compression: str = "on", faults: str = "warn") -> str:
+def _proxied(
+    location: str, name: str, headers: str, scheme: str, *, to: str, compression: str = "on", faults: str = "warn", again: str = "error"
+) -> str:
     return f"""
         location {location} {{
             gzip {compression};
             error_log stderr {faults};
-            proxy_pass http://web;
+            proxy_pass http://{to};
             proxy_http_version 1.1;
             proxy_set_header Connection "";
             proxy_set_header Host $http_host;
@@ -115,22 +70,23 @@ def _proxied(location: str, name: str, headers: str, scheme: str, *, compression
             proxy_set_header X-Forwarded-Proto {scheme};
             proxy_connect_timeout 5s;
             proxy_read_timeout 120s;
-            proxy_next_upstream error;
+            proxy_next_upstream {again};
             proxy_buffers 16 32k;
             proxy_buffer_size 32k;
             proxy_hide_header X-Content-Type-Options;
             proxy_hide_header Referrer-Policy;
+            proxy_hide_header Strict-Transport-Security;
             error_page 502 504 = @{name}_unavailable;
             error_page 413 = @{name}_too_large;
 {headers}
         }}"""
 
 
-def _websockets(scheme: str) -> str:
+def _websockets(scheme: str, *, to: str) -> str:
     """What /ws/ is passed on to. A socket may be silent for as long as the program that speaks on it, three times over."""
     return f"""
         location /ws/ {{
-            proxy_pass http://live;
+            proxy_pass http://{to};
             proxy_http_version 1.1;
             proxy_set_header Upgrade $http_upgrade;
             proxy_set_header Connection $connection_upgrade;
@@ -145,8 +101,22 @@ def _websockets(scheme: str) -> str:
         }}"""
 
 
-def _servers(sockets: Path) -> str:
-    return "\n".join(f"        server {_quoted(f'unix:{sockets / name}.sock')} max_fails=0;" for name in WEB_PROGRAMS)
+def _telling(sockets: Path) -> str:
+    """A port of its own for whoever collects metrics: /web-1/metrics and so on. Never that of the pages, and only where it is wanted."""
+    port = os.environ.get("SPANWISE_METRICS_PORT", "")
+    if not port:
+        return ""
+    if not port.isdigit():
+        raise CannotStart(f"SPANWISE_METRICS_PORT is no port: {port!r}")
+    asked = {name: quoted(f"http://unix:{telling_socket(sockets, name)}:/") for name in TELLING_PROGRAMS}
+    locations = "\n".join(f"        location /{name}/ {{ proxy_pass {address}; }}" for name, address in asked.items())
+    return f"""
+    server {{
+        listen 127.0.0.1:{port};
+        access_log off;
+{locations}
+        location / {{ return 404; }}
+    }}"""
 
 
 def _file_limit() -> int:
@@ -154,20 +124,39 @@ def _file_limit() -> int:
     return min(MOST_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
 
 
+def is_https_asked_for() -> bool:
+    return os.environ.get("SPANWISE_HTTPS", "0").lower() in {"1", "true", "yes", "on"}
+
+
 def configuration(places: Places, sockets: Path, port: int) -> str:
-    """The text of nginx.conf."""
-    folder = places.process("proxy")
-    headers = _headers(os.environ.get(name, "") for name in ("SPANWISE_BASE_MAP_TILES", "SPANWISE_SATELLITE_TILES"))
-    is_behind_https = os.environ.get("SPANWISE_HTTPS", "0").lower() in {"1", "true", "yes", "on"}
+    """The text of nginx.conf for `./run`."""
+    return site_configuration(
+        Site(
+            folder=places.process("proxy"),
+            static=places.static,
+            web=tuple(f"unix:{sockets / name}.sock" for name in WEB_PROGRAMS),
+            live=(f"unix:{sockets / 'live.sock'}",),
+            listens_at=f"127.0.0.1:{port}",
+            is_behind_https=is_https_asked_for(),
+        ),
+        beside=_telling(sockets),
+    )
+
+
+def site_configuration(site: Site, *, beside: str = "") -> str:
+    """The text of nginx.conf; `beside` are more servers in it."""
+    folder = site.folder
+    tiles = (os.environ.get(name, "") for name in ("SPANWISE_BASE_MAP_TILES", "SPANWISE_SATELLITE_TILES"))
+    headers = page_headers.headers(tiles, is_https=site.is_https)
+    is_behind_https = site.is_behind_https and site.certificate is None
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
+    web, live = ("$web", "$live") if site.resolver else ("web", "live")
     # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
     visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
     if not is_behind_https:
         visitor = "map $remote_addr $visitor { default $remote_addr; }"
     media_types = "\n".join(f"        {kind} {endings};" for kind, endings in MEDIA_TYPES.items())
-    temporary = "\n".join(
-        f"    {kind}_temp_path {_quoted(folder / kind)};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
-    )
+    temporary = "\n".join(f"    {kind}_temp_path {quoted(folder / kind)};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi"))
     failures_for_programs = _failures(
         "api",
         "application/json",
@@ -183,12 +172,15 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
         too_large="This is more than Spanwise takes in one request.",
     )
     # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
-    places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, compression="off")
-    api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme)
-    links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, faults="emerg")
+    places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off")
+    # A plan that was asked for changes nothing: when its program dies over it, another one is asked.
+    plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again="error non_idempotent")
+    api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web)
+    links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg")
+    pages = _proxied("/", "page", headers, scheme, to=web)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;
-pid {_quoted(folder / "nginx.pid")};
+pid {quoted(folder / "nginx.pid")};
 error_log stderr warn;
 worker_processes 1;
 worker_rlimit_nofile {_file_limit()};
@@ -208,8 +200,9 @@ http {{
         "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
         default $request;
     }}
+    map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
-    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time';
+    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id';
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
@@ -226,33 +219,26 @@ http {{
     gzip_min_length 512;
     gzip_comp_level 2;
     gzip_types {COMPRESSED};
-    upstream web {{
-        least_conn;
-{_servers(sockets)}
-        keepalive 64;
-    }}
-    upstream live {{
-        server {_quoted(f"unix:{sockets / 'live.sock'}")} max_fails=0;
-    }}
+{upstreams(site)}
     map $http_upgrade $connection_upgrade {{
         "" close;
         default upgrade;
     }}
     server {{
-        listen 127.0.0.1:{port} backlog={BACKLOG};
+{entrances(site)}        location = {ALIVE} {{ access_log off; return 204; }}
         location /static/ {{
-            alias {_quoted(f"{places.static}/")};
+            alias {quoted(f"{site.static}/")};
             add_header Cache-Control no-cache;
 {headers}
         }}
         # A name that changes with the content: browsers keep such a file for a year and do not ask again.
         location ~ "^/static/(?<hashed>.+\\.[0-9a-f]{{12}}\\.[a-z0-9]+)$" {{
-            alias "{_quoted(places.static)[1:-1]}/$hashed";
+            alias "{quoted(site.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
-        }}{_proxied("/", "page", headers, scheme)}{places_of_edits}{api}{links}{_websockets(scheme)}
+        }}{pages}{plans}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
 {failures_for_people}
 {failures_for_programs}
-    }}
+    }}{plain_server(site)}{beside}
 }}
 """

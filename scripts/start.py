@@ -55,7 +55,7 @@ def reasons_not_ready(port: int) -> list[str]:
     request = urllib.request.Request(f"{address(port)}/readyz", headers={"Host": host, "X-Forwarded-Proto": "https"})  # noqa: S310
     try:
         with urllib.request.urlopen(request, timeout=10) as response:  # noqa: S310 - our own http address
-            return [] if response.status == 200 else [f"/readyz answers {response.status}"]
+            return [str(missing) for missing in json.loads(response.read()).get("missing", [])]
     except urllib.error.HTTPError as error:
         try:
             return [str(reason) for reason in json.loads(error.read())["reasons"]]

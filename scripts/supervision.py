@@ -82,11 +82,19 @@ def configuration(places: Places, sockets: Path, programs: Iterable[Program]) ->
             f"stopwaitsecs={program.patience_s}",
             "killasgroup=true",
             "redirect_stderr=true",
+            *([f"environment={_environment(program.environment)}"] if program.environment else []),
             f"stdout_logfile={places.logs / program.name}.log".replace("%", "%%"),
             "stdout_logfile_maxbytes=10MB",
             "stdout_logfile_backups=3",
         ]
     return "".join(f"{line.replace('%', '%%')}\n" for line in lines)
+
+
+def _environment(variables: dict[str, str]) -> str:
+    for value in variables.values():
+        if set(value) & set('"\n'):
+            raise CannotStart(f"a program cannot be given {value!r}: it holds a quotation mark")
+    return ",".join(f'{name}="{value}"' for name, value in variables.items())
 
 
 @dataclass(frozen=True)

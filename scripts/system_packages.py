@@ -1,6 +1,6 @@
 """Which Debian packages are missing; root gets them installed, anybody else gets the apt line. Needs Python alone.
 
-python -m scripts.system_packages run|check|check-fast
+python -m scripts.system_packages run|check|check-fast|image
 """
 
 import ctypes.util
@@ -69,7 +69,7 @@ def _browser_packages() -> list[str]:
 
 
 def missing_packages(purpose: str) -> list[str]:
-    """Names of the Debian packages that this purpose (run, check, check-fast) still needs."""
+    """Names of the Debian packages that this purpose (run, check, check-fast, image) still needs."""
     missing = []
     if not os.environ.get("DATABASE_URL"):
         missing += _database_packages()

@@ -33,6 +33,9 @@ class Rehearsal(models.Model):
     content_sha256 = models.CharField(max_length=64, editable=False, help_text="of the routes, what flies them and when")
     mission_revision = models.PositiveIntegerField(help_text="of the mission when it was asked for")
     ground_revision = models.PositiveBigIntegerField(help_text="zones, assets and terrain that it is held against")
+    ground_sha256 = models.CharField(
+        max_length=64, blank=True, default="", db_default="", editable=False, help_text="of zones, heights and what stands about the routes"
+    )
     uavs = models.JSONField(default=list, help_text="by place in the mission: airframe, why, battery; see services/fleet.py")
     seed = models.PositiveIntegerField(default=7, help_text="of gusts and turbulence: the same seed, the same flight")
     level = models.CharField(max_length=10, choices=VerdictLevel.choices, blank=True, help_text="of all runs; empty until they are done")

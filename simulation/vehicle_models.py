@@ -89,6 +89,7 @@ class SimulatedVehicle(models.Model):
     port = models.PositiveIntegerField(null=True, blank=True, help_text="UDP, at which it listens; empty: it talks to the gateway")
     state = models.CharField(max_length=10, choices=SimulationState.choices, default=SimulationState.WANTED)
     reason = models.CharField(max_length=40, blank=True)
+    end_wanted_at = models.DateTimeField(null=True, blank=True, help_text="since when it alone is to be gone")
     restarts = models.PositiveIntegerField(default=0, help_text="how often it was put on the ground anew")
     told = models.JSONField(default=dict, help_text="how it does, as its simulator said last")
     told_at = models.DateTimeField(null=True, blank=True)

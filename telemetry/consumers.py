@@ -38,6 +38,9 @@ class LiveConsumer(SignedInSocket):
             if self._reader is not None:
                 self._hub.leave(self._reader)
 
+    def kind(self) -> str:
+        return "organisation" if self.scope["url_route"]["kwargs"].get("mission_id") is None else "mission"
+
     async def connect(self) -> None:
         mission: UUID | None = self.scope["url_route"]["kwargs"].get("mission_id")
         user = await self._user()

@@ -31,7 +31,10 @@ class MissionStagePage(SignedInPage):
         name = own.values_list("name", flat=True).first()
         if name is None:
             raise Http404
+        simulated = MissionUav.objects.filter(mission=mission_id).values_list("uav__is_simulated", flat=True)
         return {
+            "hasSimulated": any(simulated),
+            "isSimulated": bool(simulated) and all(simulated),
             "canFly": user.can_plan,
             "mission": str(mission_id),
             "missionName": name,
@@ -43,10 +46,12 @@ class MissionStagePage(SignedInPage):
 class MissionFlyPage(MissionStagePage):
     template_name = "live.html"
 
-    def page(self, **kwargs: Any) -> dict[str, Any]:
-        simulated = MissionUav.objects.filter(mission=kwargs["mission_id"], uav__is_simulated=True)
-        return super().page(**kwargs) | {"hasSimulated": simulated.exists()}
-
 
 class MissionReportPage(MissionStagePage):
     template_name = "report.html"
+
+
+class MissionScenePage(MissionStagePage):
+    """The flight in space: planned, rehearsed, live or on record, as the address says."""
+
+    template_name = "scene.html"

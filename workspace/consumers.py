@@ -33,6 +33,9 @@ class JobConsumer(SignedInSocket):
     with 4401 soon after whoever listens may not any more.
     """
 
+    def kind(self) -> str:
+        return "job"
+
     async def connect(self) -> None:
         self._job_id: UUID = self.scope["url_route"]["kwargs"]["job_id"]
         self._word = asyncio.Event()

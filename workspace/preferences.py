@@ -13,7 +13,6 @@ from workspace.models import User
 
 TIME_ZONES = frozenset(available_timezones())
 SEEN_EVERY = timedelta(minutes=1)
-WITHOUT_PERSON = ("/healthz", "/readyz")  # they answer also where nobody can be looked up
 
 
 class PreferencesMiddleware:
@@ -23,8 +22,6 @@ class PreferencesMiddleware:
         self.get_response = get_response
 
     def __call__(self, request: HttpRequest) -> HttpResponse:
-        if request.path in WITHOUT_PERSON:
-            return self.get_response(request)
         user = _whoever_has_signed_in(request)
         own_language = user.language if user else ""
         zone = user.time_zone if user and not request.path.startswith("/api/") else ""

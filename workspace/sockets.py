@@ -13,6 +13,8 @@ from channels.generic.websocket import AsyncWebsocketConsumer
 from django.conf import settings
 from django.db import Error as DatabaseError
 
+from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
+from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
 from workspace.authentication import bearer_token, user_of_token
 from workspace.models import User
 
@@ -28,12 +30,14 @@ class SignedInSocket(AsyncWebsocketConsumer):
     """For browsers by their session, for programs by `Authorization: Bearer`."""
 
     channel_layer_alias = "none"  # it listens by itself: a socket lives on while Redis is away
+    _counted_as: str | None = None  # once it is accepted
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
         self._tasks: list[asyncio.Task[None]] = []
         self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
+        with about(**_facts_of(scope)):  # whatever is begun here knows it, too
+            spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
         try:
             await asyncio.wait({spoken, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
             if spoken.done():
@@ -45,6 +49,22 @@ class SignedInSocket(AsyncWebsocketConsumer):
         finally:
             for task in (spoken, *self._tasks):
                 task.cancel()
+            if self._counted_as is not None:
+                WEBSOCKETS.labels(self._counted_as).dec()
+
+    def kind(self) -> str:
+        """What its page follows, one of a few words."""
+        raise NotImplementedError
+
+    async def accept(self, *arguments: Any, **named: Any) -> None:
+        await super().accept(*arguments, **named)
+        self._counted_as = self.kind()
+        WEBSOCKETS.labels(self._counted_as).inc()
+        self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
+
+    async def send(self, *arguments: Any, **named: Any) -> None:
+        await super().send(*arguments, **named)
+        self._messages.inc()
 
     def _hang_up(self, code: int) -> None:
         if not self._hung_up.done():
@@ -87,3 +107,10 @@ class SignedInSocket(AsyncWebsocketConsumer):
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:
                     return self._hang_up(SIGNED_OUT)
+
+
+def _facts_of(scope: Any) -> dict[str, Any]:
+    told = next((value for name, value in scope["headers"] if name == REQUEST_ID_HEADER.lower().encode()), None)
+    named = scope.get("url_route", {}).get("kwargs", {})
+    request = sane_request_id(None if told is None else told.decode("latin-1"))
+    return {"request": request, "mission": named.get("mission_id"), "job": named.get("job_id")}

@@ -66,6 +66,27 @@ TEMPLATES = (
     gettext_noop("The mission was changed while it was being rehearsed. Rehearse it again."),
     gettext_noop("Not flown within %(minutes)s min. Rehearse fewer conditions at once, or split the mission."),
     gettext_noop("The rehearsal failed inside Spanwise; the error is in the log."),
+    # what simulated UAVs say of trouble; those that begin alike stand in front of the shorter ones
+    gettext_noop("Battery low: %(percent)s %%: return"),
+    gettext_noop("Battery low: %(percent)s %%: land"),
+    gettext_noop("Battery low: %(percent)s %%"),
+    gettext_noop("Battery critical: %(percent)s %%: return"),
+    gettext_noop("Battery critical: %(percent)s %%: land"),
+    gettext_noop("Battery critical: %(percent)s %%"),
+    gettext_noop("Battery empty: the motors stop"),
+    gettext_noop("Battery %(percent)s %%"),
+    gettext_noop("No GPS fix, dead reckoning"),
+    gettext_noop("GPS lost: return"),
+    gettext_noop("GPS lost: land"),
+    gettext_noop("GPS lost"),
+    gettext_noop("Touched the ground outside of a landing"),
+    gettext_noop("It overturned."),
+    gettext_noop("It hit the ground at %(speed)s m/s."),
+    gettext_noop("The flight model: %(error)s."),
+    gettext_noop("The battery holds %(percent)s %%."),
+    gettext_noop("There is no GPS fix."),
+    gettext_noop("There is no mission."),
+    gettext_noop("A take-off to %(height)s m is not flown."),
     # of offers of another plan while a mission flies
     gettext_noop("Working out what is left"),
     gettext_noop("Looking up what is left"),
@@ -105,7 +126,9 @@ TEMPLATES = (
 
 def _pattern(template: str) -> re.Pattern[str]:
     parts = re.split(r"%\((\w+)\)s", template)
-    return re.compile("".join(f"(?P<{part}>.+)" if index % 2 else re.escape(part) for index, part in enumerate(parts)), re.S)
+    return re.compile(
+        "".join(f"(?P<{part}>.+)" if index % 2 else re.escape(part.replace("%%", "%")) for index, part in enumerate(parts)), re.S
+    )
 
 
 _PATTERNS = {template: _pattern(template) for template in TEMPLATES}

@@ -128,7 +128,7 @@ def _nodes_and_edges(ground: GroundData, rules: LinkingRules) -> tuple[Edges, No
         ),
         height_m=np.concatenate(
             [
-                _support_heights_m(ground, on_lines),
+                support_heights_m(ground.supports, ground.lines, on_lines),
                 ground.lines.height_m[vertices],
                 ground.railways.height_m[railways.way],
                 ground.bridges.height_m,
@@ -151,13 +151,13 @@ def _nodes_and_edges(ground: GroundData, rules: LinkingRules) -> tuple[Edges, No
     return without_seam(joined(along_lines, along_railways, crossings, changeovers, between_bridges), nodes.position), nodes
 
 
-def _support_heights_m(ground: GroundData, on_lines: JoinedVertices) -> FloatArray:
-    """As stated; else that of the tallest line on it, if it is taller than supports are otherwise taken to be."""
+def support_heights_m(supports: Places, lines: Ways, on_lines: JoinedVertices) -> FloatArray:
+    """As stated; else that of the tallest line on it, if it is taller than supports are otherwise taken to be; NaN where neither tells."""
     heights_m = np.full(len(on_lines.position), UNTAGGED_HEIGHT_M[NodeKind.SUPPORT])
-    np.fmax.at(heights_m, on_lines.node_of_vertex, ground.lines.height_m[ground.lines.way_of_vertex])
-    by_line_m = heights_m[: len(ground.supports)]
+    np.fmax.at(heights_m, on_lines.node_of_vertex, lines.height_m[lines.way_of_vertex])
+    by_line_m = heights_m[: len(supports)]
     taller_m = np.where(by_line_m > UNTAGGED_HEIGHT_M[NodeKind.SUPPORT], by_line_m, np.nan)
-    return np.where(np.isnan(ground.supports.height_m), taller_m, ground.supports.height_m)
+    return np.where(np.isnan(supports.height_m), taller_m, supports.height_m)
 
 
 def _edges_along(kind: EdgeKind, ways: Ways, node_of_vertex: IntArray) -> Edges:

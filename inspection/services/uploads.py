@@ -140,7 +140,7 @@ def private_folder() -> Iterator[Path]:
 
 
 def upload_folder() -> Path:
-    folder = settings.STATE_DIR / "uploads"
+    folder = Path(settings.UPLOAD_DIR)
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     return folder
 

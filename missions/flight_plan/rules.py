@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Manoeuvres:
-    """What no speed tells: how a UAV leaves the ground, stops, goes on and comes down; as simulated flights do (decision 0038).
+    """What no speed tells: how a UAV leaves the ground, stops, goes on and comes down; as simulated flights do (decision 0039).
 
     acceleration_mps2   along its way: PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5, neither from the first moment on
     settle_s            from coming to a stand until it counts as standing

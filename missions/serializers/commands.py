@@ -94,6 +94,7 @@ class CommandInputSerializer(WhyInputSerializer):
 class CommandUavSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     name = serializers.CharField()
+    is_simulated = serializers.BooleanField(help_text="no real aircraft")
 
 
 class ProgressSerializer(serializers.Serializer):
@@ -168,7 +169,7 @@ def approval_json(approval: Approval | None) -> dict[str, Any] | None:
 def command_json(command: UavCommand) -> dict[str, Any]:
     return {
         "id": str(command.pk),
-        "uav": {"id": command.uav_id, "name": command.uav.name},
+        "uav": {"id": command.uav_id, "name": command.uav.name, "is_simulated": command.uav.is_simulated},
         "mission": None if command.mission_id is None else str(command.mission_id),
         "approval": None if command.approval_id is None else str(command.approval_id),
         "sequence": command.sequence,

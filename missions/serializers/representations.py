@@ -76,6 +76,7 @@ def mission_summary(
         "target_count": mission.target_count,
         "unassigned_count": mission.unassigned_count,
         "uav_count": mission.uav_count,
+        "is_simulated": mission.is_simulated,
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,
         "duration_s": mission.duration_s,
@@ -115,6 +116,7 @@ def _uav(row: MissionUav) -> dict[str, Any]:
         "most_targets": row.most_targets,
         "sensors": row.sensors,
         "sorties": row.sorties,
+        "is_simulated": row.uav is not None and row.uav.is_simulated,
         "own_figures": row.own_figures,
         **performance_to_json(performance_from_json(row.performance)),
     }

@@ -139,6 +139,7 @@ def _routes(routes: list[Route], mission: Mission, longest_leg_m: float | None) 
                 "place": uav.sequence,
                 "uav": uav.uav_id,
                 "name": uav.name,
+                "is_simulated": uav.uav is not None and uav.uav.is_simulated,
                 "figures": {
                     "max_range_m": uav.max_range_m, "cruise_speed_mps": uav.cruise_speed_mps, "performance": uav.performance,
                     "sorties": uav.sorties, "sensors": uav.sensors,

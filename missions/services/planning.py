@@ -24,6 +24,7 @@ from missions.services.lacks import OUT_OF_REACH, least_missing, with_lacks
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
 from missions.services.places import Place, places_of, whole_assets
+from missions.services.plan_figures import counted
 from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
@@ -199,6 +200,7 @@ class _Planner:
         return routes, separation, others
 
 
+@counted
 def make_plan(
     *,
     request: PlanRequest,

@@ -14,7 +14,7 @@ from simulation.flight.ground import Ground
 from simulation.flight.guidance import Gate, Guidance
 from simulation.flight.orders import Above, Place
 from simulation.flight.settings import Settings
-from simulation.flight.states import Severity
+from simulation.flight.states import Haven, Severity
 
 
 @dataclass
@@ -39,6 +39,7 @@ class Cockpit:
     velocity: Vector = (0.0, 0.0, 0.0)
     agl_m: float = 0.0
     facing_deg: float = 0.0
+    havens: tuple[Haven, ...] = ()
     flown_m: float = 0.0
     is_armed: bool = False
     is_in_air: bool = False
@@ -69,6 +70,11 @@ class Cockpit:
             return east_m, north_m, place.height_m - self.home_amsl_m
         ground_m = self.ground.elevation_m(self.position_of((east_m, north_m, 0.0)))
         return east_m, north_m, place.height_m + (ground_m - self.home_amsl_m if math.isfinite(ground_m) else 0.0)
+
+    def nearest_haven(self) -> Vector:
+        """Where a return leads: home, or the rally point that is nearer; its height is the point's own."""
+        points = [(*self.level_of(haven.position), haven.height_relative_m) for haven in self.havens]
+        return min([(0.0, 0.0, 0.0), *points], key=lambda point: math.dist(point[:2], self.here[:2]))
 
     def fly_through(self, vias: list[Via], gates: dict[int, Gate] | None = None) -> None:
         """From here through these points to a stand at the last."""

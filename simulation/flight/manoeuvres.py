@@ -3,8 +3,9 @@
 import math
 from typing import Protocol
 
+from simulation.flight.circle import around
 from simulation.flight.cockpit import Cockpit
-from simulation.flight.course import Vector
+from simulation.flight.course import Vector, Via
 from simulation.flight.states import Mode
 
 AT_HEIGHT_M = 0.5
@@ -85,6 +86,24 @@ class GoTo:
         pass
 
 
+class Around:
+    """To the nearest point of a circle, so many times around its centre, and to a stand; see circle.around."""
+
+    mode = Mode.GO_TO
+    lifts_off = False
+    is_landing = False
+
+    def __init__(self, centre: Vector, turns: float, radius_m: float) -> None:
+        self._centre, self._turns, self._radius_m = centre, turns, radius_m
+        self.is_done = False
+
+    def begin(self, cockpit: Cockpit) -> None:
+        cockpit.fly_through([Via(point, cockpit.speed_mps) for point in around(self._centre, cockpit.here, self._turns, self._radius_m)])
+
+    def step(self, cockpit: Cockpit) -> None:
+        self.is_done = self.is_done or cockpit.is_there(AT_HEIGHT_M)
+
+
 class Land:
     """Flies over the place at the height it has, or stays over where it is, and descends to the ground. Touching it ends the manoeuvre."""
 
@@ -111,7 +130,7 @@ class Land:
 
 
 class Return:
-    """Up to the height of returns, home at that height, and down. Near home it does not climb."""
+    """Up to the height of returns, at that height home or to the rally point that is nearer, and down. Near there it does not climb."""
 
     mode = Mode.RETURN
     lifts_off = False
@@ -120,6 +139,7 @@ class Return:
         self._land: Land | None = None
         self._is_climbing = False
         self._level_m = 0.0
+        self._goal: Vector = (0.0, 0.0, 0.0)
         self.is_done = False
 
     @property
@@ -128,23 +148,27 @@ class Return:
 
     def begin(self, cockpit: Cockpit) -> None:
         east_m, north_m, up_m = cockpit.here
-        is_near = math.hypot(east_m, north_m) <= cockpit.settings.return_near_m
-        self._level_m = up_m if is_near else max(up_m, cockpit.settings.return_height_m)
+        settings = cockpit.settings
+        self._goal = cockpit.nearest_haven()
+        haven_m = self._goal[2]
+        wanted_m = haven_m + settings.return_height_m if settings.return_adds_to_haven else max(haven_m, settings.return_height_m)
+        is_near = math.dist(self._goal[:2], cockpit.here[:2]) <= settings.return_near_m
+        self._level_m = up_m if is_near else max(up_m, wanted_m)
         self._is_climbing = self._level_m > up_m + AT_HEIGHT_M
         if self._is_climbing:
             cockpit.fly_to((east_m, north_m, self._level_m))
         else:
-            self._go_home(cockpit)
+            self._go_there(cockpit)
 
-    def _go_home(self, cockpit: Cockpit) -> None:
+    def _go_there(self, cockpit: Cockpit) -> None:
         self._is_climbing = False
-        self._land = Land((0.0, 0.0, 0.0))
+        self._land = Land(self._goal)
         self._land.begin(cockpit)
 
     def step(self, cockpit: Cockpit) -> None:
         if self._is_climbing:
             if cockpit.is_there(AT_HEIGHT_M):
-                self._go_home(cockpit)
+                self._go_there(cockpit)
         elif self._land is not None:
             self._land.step(cockpit)
             self.is_done = self._land.is_done

@@ -5,7 +5,7 @@ from simulation.flight.cockpit import Cockpit
 from simulation.flight.course import Via
 from simulation.flight.events import ItemReached, MissionEnded
 from simulation.flight.guidance import Gate
-from simulation.flight.manoeuvres import Land, Manoeuvre, Return, TakeOff
+from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOff
 from simulation.flight.states import Mode
 
 LEAST_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
@@ -65,11 +65,13 @@ class Mission:
         return self._begins(cockpit, self.orders[self.index])
 
     def _begins(self, cockpit: Cockpit, order: flown.Order) -> bool:
+        if isinstance(order, flown.FlyTo | flown.FlyAround) and not cockpit.is_in_air:
+            return self._starts(cockpit, TakeOff(max(cockpit.vector_of(order.place)[2], cockpit.settings.take_off_height_m)))
         if isinstance(order, flown.FlyTo):
-            if not cockpit.is_in_air:
-                return self._starts(cockpit, TakeOff(max(cockpit.vector_of(order.place)[2], cockpit.settings.take_off_height_m)))
             self._begin_run(cockpit)
             return True
+        if isinstance(order, flown.FlyAround):
+            return self._starts(cockpit, Around(cockpit.vector_of(order.place), order.turns, order.radius_m))
         if isinstance(order, flown.TakeOff):
             height_m = cockpit.settings.take_off_height_m if order.place.height_m is None else cockpit.vector_of(order.place)[2]
             return self._starts(cockpit, TakeOff(max(height_m, 1.0)))
@@ -97,8 +99,9 @@ class Mission:
         if not part.is_done:
             return False
         self._part = None
-        # A waypoint that was begun on the ground is flown to now.
-        return True if isinstance(self.orders[self.index], flown.FlyTo) else self._reached(cockpit)
+        if isinstance(part, TakeOff) and not isinstance(self.orders[self.index], flown.TakeOff):
+            return True  # what was begun on the ground is flown to now
+        return self._reached(cockpit)
 
     def _begin_run(self, cockpit: Cockpit) -> None:
         """Through all waypoints up to the next at which it stops, with the speeds that are set on the way."""
@@ -118,7 +121,7 @@ class Mission:
                     break
             elif isinstance(order, flown.SetSpeed):
                 speed_mps = min(order.speed_mps, cockpit.airframe.max_speed_mps)
-            elif isinstance(order, flown.TakeOff | flown.LandAt | flown.ReturnHome | flown.Wait | flown.Jump):
+            elif isinstance(order, flown.TakeOff | flown.FlyAround | flown.LandAt | flown.ReturnHome | flown.Wait | flown.Jump):
                 break
         self._run_end = end
         self._turn_for(cockpit, self.orders[self.index])

@@ -13,6 +13,8 @@ from missions.mavlink.content import MissionItem
 E7 = 1e7
 MOST_ITEMS = 10_000
 HIGHEST_M, MOST_SPEED_MPS, LONGEST_S = 10_000.0, 100.0, 86_400.0
+USUAL_CIRCLE_M = 10.0  # ArduCopter, CIRCLE_RADIUS
+MOST_CIRCLE_M, MOST_TURNS = 5_000.0, 100.0
 _AMSL = {mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT}
 _RELATIVE = {mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT}
 _TERRAIN = {mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT}
@@ -48,6 +50,15 @@ class FlyTo:
     hold_s: float
     radius_m: float = 0.0
     heading_deg: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FlyAround:
+    """So many turns around a place; a negative radius is against the clock's hands."""
+
+    place: Place
+    turns: float
+    radius_m: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +123,7 @@ class Nothing:
     """An item that this UAV takes and has nothing to do for: servos, gimbals, markers."""
 
 
-Order = TakeOff | FlyTo | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
+Order = TakeOff | FlyTo | FlyAround | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
 NOTHING = Nothing()
 
 
@@ -172,7 +183,12 @@ def _order(index: int, item: MissionItem) -> Order:
         return FlyTo(_place(index, item), _seconds(index, one, 1), _positive(index, two, 2), _heading(index, four))
     if command == mavlink.MAV_CMD_NAV_LOITER_TIME:
         return FlyTo(_place(index, item), _seconds(index, one, 1))
-    if command in (mavlink.MAV_CMD_NAV_LOITER_UNLIM, mavlink.MAV_CMD_NAV_LOITER_TURNS, mavlink.MAV_CMD_NAV_LOITER_TO_ALT):
+    if command == mavlink.MAV_CMD_NAV_LOITER_TURNS:
+        turns, radius_m = 1.0 if math.isnan(one) else one, USUAL_CIRCLE_M if math.isnan(three) or three == 0.0 else three
+        return FlyAround(
+            _place(index, item), _within(index, turns, 0.0, MOST_TURNS, 1), _within(index, radius_m, -MOST_CIRCLE_M, MOST_CIRCLE_M, 3)
+        )
+    if command in (mavlink.MAV_CMD_NAV_LOITER_UNLIM, mavlink.MAV_CMD_NAV_LOITER_TO_ALT):
         return FlyTo(_place(index, item), math.inf if command == mavlink.MAV_CMD_NAV_LOITER_UNLIM else 0.0)
     if command == mavlink.MAV_CMD_NAV_LAND:
         return LandAt(_place(index, item))

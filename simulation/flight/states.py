@@ -39,6 +39,14 @@ class Severity(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Haven:
+    """A rally point; its height counts from the take-off."""
+
+    position: LonLat
+    height_relative_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class Gps:
     """`fix` as MAVLink counts: 0 none, 3 in three dimensions."""
 

@@ -18,7 +18,7 @@ from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, Ta
 from simulation.flight.mission import Mission, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
 from simulation.flight.settings import Settings
-from simulation.flight.states import DONE, MissionState, Mode, Outcome, Refused, UavState
+from simulation.flight.states import DONE, Haven, MissionState, Mode, Outcome, Refused, UavState
 from simulation.flight.telling import told
 from simulation.flight.weather import Weather
 
@@ -100,6 +100,15 @@ class SimulatedUav:
     @settings.setter
     def settings(self, settings: Settings) -> None:
         self._cockpit.settings = settings
+
+    @property
+    def havens(self) -> tuple[Haven, ...]:
+        """Rally points: a return leads to the nearest of them, or home where that is nearer."""
+        return self._cockpit.havens
+
+    @havens.setter
+    def havens(self, havens: tuple[Haven, ...]) -> None:
+        self._cockpit.havens = havens
 
     @property
     def faults(self) -> Faults:

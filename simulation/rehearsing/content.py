@@ -19,6 +19,7 @@ def content_of(
             "uav": route.uav,
             "route": route_to_json(route.route),
             "items": [load_to_json(FlightLoad(items))["mission"] for items in route.items],
+            **({"rally": [load_to_json(FlightLoad((), rally=rally))["rally"] for rally in route.rally]} if any(route.rally) else {}),
             "reserve_percent": route.reserve_percent,
             "airframe": airframe,
             "battery_wh": battery_wh,

@@ -30,7 +30,7 @@ class Vehicle(Protocol):
     @property
     def state(self) -> Any: ...
     def step(self) -> None: ...
-    def load(self, items: Sequence[MissionItem]) -> Any: ...
+    def load(self, items: Sequence[MissionItem], rally: Sequence[MissionItem]) -> Any: ...
     def arm(self) -> Any: ...
     def take_off(self, height_relative_m: float) -> Any: ...
     def start_mission(self) -> Any: ...
@@ -55,7 +55,7 @@ OnProgress = Callable[[float], None]
 
 @dataclass(frozen=True, eq=False)
 class RouteToFly:
-    """A route with the items of each of its flights. planned_s is how long each flight is reckoned to take."""
+    """A route with the items of each of its flights, and the rally points of each. planned_s is how long each is reckoned to take."""
 
     uav: int
     name: str
@@ -64,6 +64,7 @@ class RouteToFly:
     reserve_percent: float
     planned_wh: float | None = None
     planned_s: float | None = None
+    rally: tuple[tuple[MissionItem, ...], ...] = ()
 
 
 def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float, seed: int, on_progress: OnProgress) -> list[FlownRoute]:
@@ -154,7 +155,8 @@ class _Flyer:
         self._note(vehicle)
         has_take_off = bool(self._items) and self._items[0].command == TAKE_OFF
         self._is_waiting_to_start = not has_take_off
-        orders = [vehicle.load(self._items), vehicle.arm()]
+        rally = self._route.rally[len(self._flown)] if self._route.rally else ()
+        orders = [vehicle.load(self._items, rally), vehicle.arm()]
         orders.append(vehicle.start_mission() if has_take_off else vehicle.take_off(flight.waypoints[0].altitude_relative_m))
         refused = next((order for order in orders if not order.is_done), None)
         if refused is not None:
@@ -191,7 +193,7 @@ class _Flyer:
         lon, lat = state.true_position
         self._rows.rows.append((
             self._begins_s + vehicle.now_s, lon, lat, state.altitude_amsl_m, state.altitude_relative_m, state.battery_percent,
-            state.battery_used_wh, waypoint, state.is_in_air, is_coming_down,
+            state.battery_used_wh, waypoint, state.is_in_air, is_coming_down, state.roll_deg, state.pitch_deg, state.heading_deg,
         ))  # fmt: skip
         self._rows.texts += vehicle.take_texts()
 
@@ -207,6 +209,7 @@ class _Flyer:
             waypoint=columns[:, 7].astype(np.int64),
             is_in_air=columns[:, 8].astype(bool),
             is_coming_down=columns[:, 9].astype(bool),
+            attitude_deg=columns[:, 10:13],
             ending=ending,
             said=tuple(self._rows.texts),
         )

@@ -77,7 +77,7 @@ def rehearsal_json(rehearsal: Rehearsal, *, content_sha256: str | None, ground_r
         "uavs": [{**uav, "words": _stand_in_words(uav)} for uav in rehearsal.uavs],
         "created_at": rehearsal.created_at,
         "created_by": rehearsal.created_by.username if rehearsal.created_by else None,
-        "runs": [_run(run) for run in rehearsal.runs.all()],
+        "runs": [_run(run, rehearsal) for run in rehearsal.runs.all()],
     }
 
 
@@ -86,7 +86,7 @@ def rehearsal_detail_json(rehearsal: Rehearsal, mission: Mission, **known: Any) 
     labels = {target.sequence: target.label for target in mission.targets.all()}
     return {
         **rehearsal_json(rehearsal, **known),
-        "runs": [{**_run(run), "verdict": _verdict(run, names, labels)} for run in rehearsal.runs.all()],
+        "runs": [{**_run(run, rehearsal), "verdict": _verdict(run, names, labels)} for run in rehearsal.runs.all()],
         "limits": [
             {"name": name, **limit, "source": _(limit["source"]), "words": _(LIMITS[name]) if name in LIMITS else name}
             for name, limit in rehearsal.limits.items()
@@ -139,7 +139,7 @@ def _stand_in_words(uav: Mapping[str, Any]) -> str:
     return _("%(uav)s: the simulated %(airframe)s, the nearest by speed and mass, with that one's battery of %(battery)s Wh") % values
 
 
-def _run(run: RehearsalRun) -> dict[str, Any]:
+def _run(run: RehearsalRun, rehearsal: Rehearsal) -> dict[str, Any]:
     return {
         "sequence": run.sequence,
         "conditions": run.conditions,
@@ -147,6 +147,7 @@ def _run(run: RehearsalRun) -> dict[str, Any]:
         "level": run.level,
         "took_s": None if run.took_s is None else round(run.took_s, 1),
         "finished_at": run.finished_at,
+        "is_reused": run.finished_at is not None and run.finished_at < rehearsal.created_at,
     }
 
 

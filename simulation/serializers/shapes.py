@@ -22,6 +22,7 @@ class RehearsalInputSerializer(serializers.Serializer):
         ),
     )
     seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7, help_text="of gusts: the same seed, the same flight")
+    afresh = serializers.BooleanField(default=False, help_text="fly also what was flown alike within a day")
 
 
 class RehearsalConditionsSerializer(serializers.Serializer):
@@ -127,7 +128,8 @@ class RehearsalRunSerializer(serializers.Serializer):
     words = serializers.CharField(help_text="what the conditions are called")
     level = serializers.ChoiceField(choices=LEVELS, allow_blank=True, help_text="empty until it has been flown")
     took_s = serializers.FloatField(allow_null=True, help_text="of the worker's time")
-    finished_at = serializers.DateTimeField(allow_null=True)
+    finished_at = serializers.DateTimeField(allow_null=True, help_text="when it was flown")
+    is_reused = serializers.BooleanField(help_text="it was flown for an earlier rehearsal of the same plan in the same air")
 
 
 class RehearsalRunWithVerdictSerializer(RehearsalRunSerializer):
@@ -192,6 +194,9 @@ class TrackFlightSerializer(serializers.Serializer):
     altitude_relative_m = serializers.ListField(child=serializers.FloatField(), help_text="above where this flight took off")
     battery_percent = serializers.ListField(child=serializers.FloatField())
     used_wh = serializers.ListField(child=serializers.FloatField())
+    roll_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="right side down; not in tracks of before")
+    pitch_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="nose up; not in tracks of before")
+    heading_deg = serializers.ListField(child=serializers.FloatField(), required=False, help_text="from north; not in tracks of before")
     waypoint = serializers.ListField(child=serializers.IntegerField(allow_null=True), help_text="that was flown to")
 
 

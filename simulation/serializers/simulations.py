@@ -1,5 +1,6 @@
 """Simulated UAVs in real time, in the shapes of the API."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from django.conf import settings
@@ -26,7 +27,17 @@ REASONS = {
     "simulator-lost": gettext_lazy("The simulator was lost while the UAV was in the air: the UAV is lost with it."),
     "simulator-fault": gettext_lazy("It failed inside Spanwise; the error is in the simulator's log."),
     "no-socket": gettext_lazy("The simulator could not listen at its port."),
+    "port-taken": gettext_lazy(
+        "Another program on the simulator's machine has its port, such as another installation of Spanwise. Start it again, or give this "
+        "installation ports of its own (SPANWISE_SIMULATOR_PORTS)."
+    ),
 }
+
+
+NOT_OF_THE_FLEET = gettext_lazy(
+    "UAVs of the pool are not of the fleet. A UAV of the fleet that is marked as simulated is flown with a mission: start "
+    "its simulated flight."
+)
 
 
 class ConditionsField(serializers.JSONField):
@@ -94,6 +105,11 @@ class PoolUavSerializer(KnownFieldsSerializer):
     ground_amsl_m = serializers.FloatField(
         min_value=-500, max_value=9_000, allow_null=True, default=None, help_text="of the ground there, where no terrain model tells it"
     )
+
+    def to_internal_value(self, data: Any) -> Any:
+        if isinstance(data, Mapping) and "uav" in data:
+            raise serializers.ValidationError({"uav": [NOT_OF_THE_FLEET]})
+        return super().to_internal_value(data)
 
 
 class SimulationInputSerializer(KnownFieldsSerializer):

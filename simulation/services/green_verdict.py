@@ -1,13 +1,16 @@
-"""What an organisation may ask for before a mission is approved: a rehearsal of this very plan that no run of failed."""
+"""What an organisation may ask for before a mission is approved: a rehearsal of this plan, in the air it is planned for, without a fail."""
 
 from django.db import transaction
 from django.utils.translation import gettext as _
 
+from inspection.selectors.planning import planning_read
 from missions.models import Mission
 from missions.services.refused import Reason, Refused
-from simulation.models import RehearsalRule, VerdictLevel
+from simulation.models import Rehearsal, RehearsalRule, VerdictLevel
+from simulation.rehearsing.sky import Named
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
-from simulation.services.plan_to_fly import plan_to_fly
+from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
+from simulation.services.surroundings import ground_of_plan
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
@@ -17,10 +20,10 @@ def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
     if not requires_green(mission.organisation_id):
         return []
     try:
-        content = plan_to_fly(mission).content_sha256
+        plan = plan_to_fly(mission)
     except Refused as refused:
         return list(refused.reasons)
-    newest = newest_finished(mission.pk, content)
+    newest = newest_finished(mission.pk, plan.content_sha256)
     if newest is None:
         if rehearsals_of_mission(mission.organisation, mission.pk).exclude(level="").exists():
             words = _("The plan has changed since it was rehearsed. Rehearse it again: your organisation approves only what has passed.")
@@ -29,7 +32,19 @@ def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
     if newest.level == VerdictLevel.FAIL:
         words = _("The rehearsal failed. Change the plan for what its verdict says, plan and rehearse it again.")
         return [Reason("rehearsal_failed", words)]
+    if not newest.runs.filter(conditions__code=str(Named.AS_PLANNED)).exists():
+        words = _("The rehearsal left out the conditions that the mission is planned for. Rehearse it again with them.")
+        return [Reason("rehearsal_without_planned_conditions", words)]
+    if not _is_on_this_ground(newest, plan):
+        words = _("Zones, terrain, towers or wires about the routes have changed since the mission was rehearsed. Rehearse it again.")
+        return [Reason("rehearsal_on_other_ground", words)]
     return []
+
+
+def _is_on_this_ground(rehearsal: Rehearsal, plan: PlanToFly) -> bool:
+    """Whatever has changed elsewhere since."""
+    ground = planning_read().ground()
+    return rehearsal.ground_revision == ground.edition[0] or rehearsal.ground_sha256 == ground_of_plan(plan, ground)
 
 
 def set_rule(*, organisation: Organisation, actor: User, requires: bool) -> RehearsalRule:

@@ -98,4 +98,5 @@ def _to_fly(uav: MissionUav, route: FrozenRoute, loads: tuple[FlightLoad, ...], 
         reserve_percent=performance_from_json(uav.performance or None).reserve_percent,
         planned_wh=planned_wh,
         planned_s=planned_s,
+        rally=tuple(load.rally for load in loads),
     )

@@ -18,8 +18,9 @@ from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from simulation.rehearsing.flying import fly
 from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
 from simulation.services.fleet import stand_in_to_json
+from simulation.services.flown_before import take_flown_before
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
-from simulation.services.surroundings import surroundings_of
+from simulation.services.surroundings import ground_of_plan, surroundings_of
 from simulation.services.vehicles import vehicle_maker
 from simulation.verdict.finding import Finding, Level, worst
 from simulation.verdict.flown import FlownRoute
@@ -40,16 +41,19 @@ class PlanChanged(Exception):
     """The mission is no longer as it was asked for."""
 
 
-def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7) -> Rehearsal:
-    """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs."""
-    plan = plan_to_fly(mission)
+def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7, afresh: bool = False) -> Rehearsal:
+    """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs.
+
+    What was flown alike lately is taken over and not flown again, unless `afresh`.
+    """
+    plan, ground = plan_to_fly(mission), planning_read().ground()
     with transaction.atomic():
         job = create_job_within(
             settings.MOST_OPEN_REHEARSALS,
             organisation=mission.organisation,
             created_by=actor,
             task=REHEARSE,
-            parameters={"mission": str(mission.pk)},
+            parameters={"mission": str(mission.pk), "afresh": afresh},
             message="Waiting for a worker",
         )
         rehearsal = Rehearsal.objects.create(
@@ -58,7 +62,8 @@ def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed
             job=job,
             content_sha256=plan.content_sha256,
             mission_revision=mission.revision,
-            ground_revision=planning_read().edition[0],
+            ground_revision=ground.edition[0],
+            ground_sha256=ground_of_plan(plan, ground),
             uavs=[stand_in_to_json(stand_in) for stand_in in plan.stand_ins],
             seed=seed,
             limits=limits_to_json(limits_of_settings()),
@@ -87,11 +92,12 @@ def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
     plan = plan_to_fly(mission)
     if plan.content_sha256 != rehearsal.content_sha256:
         raise PlanChanged
-    runs = list(rehearsal.runs.all())
+    runs = list(rehearsal.runs.select_related("rehearsal"))
+    is_afresh = bool(job.parameters.get("afresh"))
     for number, run in enumerate(runs):
-        if run.finished_at is None:
-            share = _shares(progress, number, len(runs))
-            _fly_run(run, plan, planning_read().ground(), rehearsal.seed, share)
+        if run.finished_at is not None or (not is_afresh and take_flown_before(run, planning_read().edition[0])):
+            continue
+        _fly_run(run, plan, planning_read().ground(), rehearsal.seed, _shares(progress, number, len(runs)))
     _finish(rehearsal.pk, job)
 
 
@@ -113,7 +119,7 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
     on_progress(0.0)
     flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
     around = surroundings_of(plan, ground)
-    verdict = judge(flown, around, limits_of_settings(), known=_too_windy(plan, sky))
+    verdict = judge(flown, around, limits_of_settings(), known=[*_too_windy(plan, sky), *_begun_in_air(plan)])
     _store(run, flown, verdict, time.monotonic() - began_s)
 
 
@@ -123,6 +129,11 @@ def _too_windy(plan: PlanToFly, sky: Sky) -> list[Finding]:
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
     )
     return [finding for finding in found if finding is not None]
+
+
+def _begun_in_air(plan: PlanToFly) -> list[Finding]:
+    """Of those that take over in the air: there they have no take-off of their own, and what is left of a battery."""
+    return [Finding(Level.WARNINGS, "begun-in-air", route.uav) for route in plan.routes if route.route.begun_by is not None]
 
 
 def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, took_s: float) -> None:

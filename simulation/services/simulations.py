@@ -1,10 +1,11 @@
 """Simulated UAVs in real time: started for the pool, changed in flight, ended."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
+from uuid import UUID
 
 from django.conf import settings
 from django.contrib.gis.geos import Point
@@ -138,6 +139,28 @@ def end_simulation(*, simulation: Simulation, actor: User) -> None:
         if held.lease_expires_at is None or held.lease_expires_at < now:
             end_now(held, "ended-by-hand")
         note(held, actor, "end", {})
+
+
+def end_vehicle(*, vehicle: SimulatedVehicle, actor: User) -> None:
+    """Of several; with the last one its simulation ends. One that is over stays as it is."""
+    with transaction.atomic():
+        held = Simulation.objects.select_for_update().get(pk=vehicle.simulation_id)
+        wanted = held.vehicles.filter(state__in=PRESENT, end_wanted_at=None)
+        if not held.is_present or held.end_wanted_at is not None or not wanted.filter(pk=vehicle.pk).exists():
+            return
+        if wanted.count() == 1:
+            end_simulation(simulation=held, actor=actor)
+            return
+        now = timezone.now()
+        wanted.filter(pk=vehicle.pk).update(end_wanted_at=now)
+        if held.lease_expires_at is None or held.lease_expires_at < now:
+            end_vehicles_now([vehicle.pk])
+        note(held, actor, "end", {"vehicle": vehicle.name})
+
+
+def end_vehicles_now(keys: Collection[UUID]) -> None:
+    """Single ones, by hand. Whoever calls holds their simulations, or nobody does."""
+    SimulatedVehicle.objects.filter(pk__in=keys, state__in=PRESENT).update(state=SimulationState.ENDED, reason="ended-by-hand")
 
 
 def end_now(simulation: Simulation, reason: str, *, state: SimulationState = SimulationState.ENDED) -> None:

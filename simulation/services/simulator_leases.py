@@ -17,7 +17,7 @@ from django.utils import timezone
 
 from missions.models import LinkKind, MissionState
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState
-from simulation.services.simulations import end_now, note
+from simulation.services.simulations import end_now, end_vehicles_now, note
 from simulation.vehicle_models import PRESENT
 
 AFTER_MISSION = timedelta(minutes=10)  # what stands in for a mission's UAVs stays so long after it is over
@@ -83,6 +83,16 @@ def end_those_over(*, holder: str, ids: Collection[UUID]) -> set[UUID]:
                 _end(simulation, reason)
                 ended.add(simulation.pk)
     return ended
+
+
+def end_single_ones(*, holder: str, ids: Collection[UUID]) -> list[SimulatedVehicle]:
+    """Of simulations that are held and fly on: the vehicles whose own end is wanted. They count as ended from here on."""
+    with transaction.atomic():
+        held = Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT).select_for_update(of=("self",))
+        found = SimulatedVehicle.objects.filter(simulation__in=list(held), state__in=PRESENT, end_wanted_at__isnull=False)
+        vehicles = list(found)
+        end_vehicles_now([vehicle.pk for vehicle in vehicles])
+    return vehicles
 
 
 def fail_simulation(*, simulation: Simulation, reason: str) -> None:

@@ -6,6 +6,7 @@ from inspection.graph.spans import Spans, spans_of
 from inspection.selectors import NoGraph
 from inspection.selectors.planning import PlanningGround, heights_at
 from simulation.rehearsing.ground import Heights
+from simulation.rehearsing.ground_content import ground_content
 from simulation.services.plan_to_fly import PlanToFly
 from simulation.verdict.flown import FloatArray
 from simulation.verdict.judging import Surroundings
@@ -20,6 +21,11 @@ NOTHING_STANDS = Standing(NO_PLACES, NO_PLACES, np.zeros(0), np.zeros(0))
 def surroundings_of(plan: PlanToFly, ground: PlanningGround) -> Surroundings:
     terrain = heights_at(ground.edition)
     return Surroundings(ground.table, _standing(plan, ground, terrain), _flat if terrain is None else terrain, plan.departs_s)
+
+
+def ground_of_plan(plan: PlanToFly, ground: PlanningGround) -> str:
+    """The hash of the ground about a plan's routes; see rehearsing/ground_content.py."""
+    return ground_content([route.route for route in plan.routes], surroundings_of(plan, ground))
 
 
 def _flat(positions: FloatArray) -> FloatArray:

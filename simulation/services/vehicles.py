@@ -13,6 +13,7 @@ from simulation.rehearsing.ground import BlockedGround, Heights
 from simulation.rehearsing.sky import Sky
 from simulation.rehearsing.sky_weather import weather_of
 from simulation.services.fleet import StandIn
+from simulation.vehicle_protocol.havens import havens_of
 
 
 class RehearsedUav:
@@ -32,7 +33,8 @@ class RehearsedUav:
     def step(self) -> None:
         self._uav.step()
 
-    def load(self, items: Sequence[MissionItem]) -> Outcome:
+    def load(self, items: Sequence[MissionItem], rally: Sequence[MissionItem]) -> Outcome:
+        self._uav.havens = havens_of(rally, self._uav.state.home_amsl_m)
         return self._uav.load(items)
 
     def arm(self) -> Outcome:
@@ -45,8 +47,11 @@ class RehearsedUav:
         return self._uav.set_mode(Mode.MISSION)
 
     def take_texts(self) -> list[str]:
-        """What it has said of trouble since it was last asked."""
-        return [text for event in self._uav.take_events() if (text := _told(event))]
+        """What it has said of trouble since it was last asked. Why it has crashed is told once."""
+        events = self._uav.take_events()
+        reasons = [event.reason for event in events if isinstance(event, Crashed)]
+        said = [event.text for event in events if isinstance(event, Said) and event.severity is not Severity.INFO]
+        return [text for text in said if not any(text.endswith(reason) for reason in reasons)] + reasons
 
 
 def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | None) -> MakeVehicle:
@@ -66,9 +71,3 @@ def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | Non
         return RehearsedUav(uav)
 
     return make
-
-
-def _told(event: object) -> str:
-    if isinstance(event, Crashed):
-        return event.reason
-    return event.text if isinstance(event, Said) and event.severity is not Severity.INFO else ""

@@ -25,6 +25,7 @@ class Flight:
     fleet: Fleet
     speed: float
     _thread: threading.Thread = field(init=False, repr=False)
+    _dropped: set[UUID] = field(default_factory=set)
     has_fallen: bool = False
 
     def __post_init__(self) -> None:
@@ -36,6 +37,11 @@ class Flight:
         self.speed = change.speed or self.speed
         self.fleet.post(change)
 
+    def drop(self, vehicle: SimulatedVehicle) -> None:
+        """It is gone at the next step; the others fly on."""
+        self._dropped.add(vehicle.pk)
+        self.fleet.post(Change(system=vehicle.system_id, ends=True))
+
     def end(self) -> None:
         self.fleet.end()
         self._thread.join(ENDS_WITHIN_S)
@@ -44,7 +50,7 @@ class Flight:
     @property
     def load(self) -> float:
         """Simulated seconds a second, over all UAVs."""
-        return len(self.vehicles) * self.speed
+        return (len(self.vehicles) - len(self._dropped)) * self.speed
 
     def pace(self) -> dict[str, Any]:
         report = self.fleet.report()
@@ -54,8 +60,9 @@ class Flight:
         }  # fmt: skip
 
     def told(self) -> dict[UUID, dict[str, Any]]:
-        """By vehicle. A step may be under way: each state is a value of its own."""
-        return {vehicle.pk: _told(flying) for vehicle, flying in zip(self.vehicles, self.fleet.uavs, strict=True)}
+        """By vehicle that flies. A step may be under way: each state is a value of its own."""
+        both = zip(self.vehicles, self.fleet.uavs, strict=True)
+        return {vehicle.pk: _told(flying) for vehicle, flying in both if vehicle.pk not in self._dropped}
 
     def _run(self) -> None:
         try:

@@ -1,18 +1,22 @@
 """The simulator as a whole: it takes simulations by leases, flies each at its pace, passes changes on, and writes down how they do."""
 
+import errno
 import logging
 import threading
 import time
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from django.conf import settings
 from django.db import close_old_connections, connection
 
+from operation import pulse
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulationChange
 from simulation.rehearsing.sky import sky_from_json
 from simulation.rehearsing.sky_weather import weather_of
 from simulation.services.simulator_leases import (
+    end_single_ones,
     end_those_over,
     fail_simulation,
     release_simulations,
@@ -32,6 +36,7 @@ logger = logging.getLogger(__name__)
 EVERY_S = 0.5
 TELL_EVERY_S = 1.0
 AWAY_EVERY_S = 60.0  # one line of log
+LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that neither answers nor refuses may hold it up for minutes
 
 
 @dataclass
@@ -48,12 +53,14 @@ class Simulator:
     def run(self) -> None:
         logger.info("simulator %s has begun", self.options.holder)
         while not self._stop.is_set():
+            pulse.beat(LOOP, within_s=HANGS_AFTER_S)
             try:
                 close_old_connections()
                 self.round()
             except DATABASE_AWAY as error:
                 self._go_on_without_database(error)
             self._stop.wait(EVERY_S)
+        pulse.rest(LOOP)
         self._give_back()
 
     def stop(self) -> None:
@@ -83,6 +90,8 @@ class Simulator:
         self._renewed_s = time.monotonic()
         for key in self.flights.keys() - still:
             self.flights.pop(key).end()
+        for vehicle in end_single_ones(holder=options.holder, ids=list(self.flights)):
+            self.flights[vehicle.simulation_id].drop(vehicle)
 
     def _take(self) -> None:
         options = self.options
@@ -96,9 +105,13 @@ class Simulator:
                 self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches)
             except DATABASE_AWAY:
                 raise
-            except OSError:
-                logger.exception("no socket for simulation %s", held.simulation.pk)
-                fail_simulation(simulation=held.simulation, reason="no-socket")
+            except OSError as error:
+                is_taken = error.errno == errno.EADDRINUSE
+                if is_taken:
+                    logger.warning("%s: another program has a port of simulation %s", settings.SIMULATOR_PORTS, held.simulation.pk)
+                else:
+                    logger.exception("no socket for simulation %s", held.simulation.pk)
+                fail_simulation(simulation=held.simulation, reason="port-taken" if is_taken else "no-socket")
             except Exception:
                 logger.exception("simulation %s cannot be flown", held.simulation.pk)
                 fail_simulation(simulation=held.simulation, reason="simulator-fault")

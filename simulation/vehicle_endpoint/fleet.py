@@ -30,6 +30,7 @@ class Change:
     weather: Weather | None = None
     faults: Callable[[Faults, float], Faults] | None = None  # of those before, and simulated seconds
     speed: float | None = None
+    ends: bool = False  # the UAV is gone, and so is its socket
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class Fleet:
     uavs: Sequence[FlyingUav]
     speed: float = 1.0
     _failed: set[int] = field(default_factory=set)
+    _gone: set[int] = field(default_factory=set)
     _changes: SimpleQueue[Change] = field(default_factory=SimpleQueue)
     _is_ended: bool = False
 
@@ -85,7 +87,7 @@ class Fleet:
                 selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
             while not self._is_ended:
                 if self._pace.begin(time.monotonic()):
-                    self._make_changes()
+                    self._make_changes(selector)
                     for uav in self._flying():
                         self._guarded(uav, uav.step)
                     if until():
@@ -115,19 +117,22 @@ class Fleet:
         )
 
     def _flying(self) -> list[FlyingUav]:
-        return [uav for uav in self.uavs if uav.system not in self._failed]
+        return [uav for uav in self.uavs if self._flies(uav)]
+
+    def _flies(self, uav: FlyingUav) -> bool:
+        return uav.system not in self._failed and uav.system not in self._gone
 
     def _guarded(self, uav: FlyingUav, work: Callable[[], None]) -> bool:
         """A fault of the program costs the UAV that it befell, not the batch."""
-        if uav.system not in self._failed:
+        if self._flies(uav):
             try:
                 work()
             except Exception:
                 logger.exception("simulated UAV %s has fallen out of its batch", uav.system)
                 self._failed.add(uav.system)
-        return uav.system not in self._failed
+        return self._flies(uav)
 
-    def _make_changes(self) -> None:
+    def _make_changes(self, selector: selectors.BaseSelector) -> None:
         while True:
             try:
                 change = self._changes.get_nowait()
@@ -139,6 +144,10 @@ class Fleet:
                 if change.system in (None, uav.system):
                     faults = None if change.faults is None else change.faults(uav.uav.faults, uav.uav.now_s)
                     uav.change(weather=change.weather, faults=faults)
+                    if change.ends:
+                        self._gone.add(uav.system)
+                        selector.unregister(uav.radio.socket)
+                        uav.radio.close()
 
 
 def _check_speed(speed: float) -> None:

@@ -20,6 +20,7 @@ from simulation.vehicle_protocol.command_door import NotFinite, acknowledgement,
 from simulation.vehicle_protocol.fence import fence_of
 from simulation.vehicle_protocol.fence_watch import MODES, FenceAction, FenceWatch
 from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.havens import havens_of
 from simulation.vehicle_protocol.mission_server import MissionServer
 from simulation.vehicle_protocol.mode_numbers import AUTO
 from simulation.vehicle_protocol.parameters import parameters_of, settings_at_start
@@ -47,7 +48,7 @@ class Endpoint:
         self.flavour = flavour
         self.system = system
         self.unix_at_zero_s = unix_at_zero_s
-        settings = settings_at_start(vehicle.settings)
+        settings = settings_at_start(vehicle.settings, flavour)
         vehicle.settings = settings
         self.pilot = Pilot(vehicle, flavour)
         self.parameters = parameters_of(flavour, system, settings, self._configure)
@@ -137,6 +138,8 @@ class Endpoint:
     def _replace(self, kind: MissionType, items: tuple[MissionItem, ...]) -> int:
         if kind is MissionType.FENCE:
             self._fence.fence = fence_of(items)
+        if kind is MissionType.RALLY:
+            self.vehicle.havens = havens_of(items, self.vehicle.state.home_amsl_m)
         if kind is not MissionType.MISSION:
             self.parameters.show(f"{kind.name}_TOTAL", float(len(items)))
             return int(mavlink.MAV_MISSION_ACCEPTED)

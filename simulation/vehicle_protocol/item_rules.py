@@ -43,6 +43,16 @@ def refusal_of_list(items: Sequence[MissionItem], kind: MissionType) -> int | No
     return _refusal_of_fence(items) if kind is MissionType.FENCE else None
 
 
+def begins_with_take_off(items: Sequence[MissionItem]) -> bool:
+    """Whether the first that is flown of a list without home is a take-off; what is done on the way does not count, nor does an empty list.
+
+    ArduCopter flies no list from the ground that begins otherwise (AP_Mission::starts_with_takeoff_cmd); navigation commands are those
+    below MAV_CMD_NAV_LAST.
+    """
+    flown = next((item.command for item in items if item.command < mavlink.MAV_CMD_NAV_LAST), None)
+    return flown in (None, mavlink.MAV_CMD_NAV_TAKEOFF)
+
+
 def _refusal_of_mission(items: Sequence[MissionItem]) -> int | None:
     try:
         orders(items, is_home_first=False)

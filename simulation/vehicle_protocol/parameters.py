@@ -66,6 +66,7 @@ ARDUPILOT = (
     fixed("RTL_ALT_TYPE", 0.0),
     fixed("OA_TYPE", 0.0),
     fixed("RALLY_INCL_HOME", 1.0),
+    fixed("RALLY_LIMIT_KM", 0.0),  # not limited
     fixed("RALLY_TOTAL", 0.0),
     fixed("FENCE_TOTAL", 0.0),
     fixed("MIS_RESTART", 0.0),
@@ -80,9 +81,9 @@ ARDUPILOT = (
 )
 
 
-def settings_at_start(settings: Settings) -> Settings:
-    """It climbs to its height of return however near home it is: RTL_CONE_ANG and RTL_CONE_SLOPE are 0."""
-    return replace(settings, return_near_m=0.0)
+def settings_at_start(settings: Settings, flavour: Flavour) -> Settings:
+    """What no parameter sets, and each flavour does in its own way."""
+    return replace(settings, return_adds_to_haven=flavour is Flavour.PX4)
 
 
 def parameters_of(flavour: Flavour, system: int, settings: Settings, configure: Configure) -> "Parameters":

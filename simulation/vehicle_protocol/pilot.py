@@ -13,6 +13,7 @@ from inspection.geodesy import LonLat
 from simulation.flight.states import DONE, Mode, Outcome, Refused
 from simulation.vehicle_protocol.command_door import Command
 from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.item_rules import begins_with_take_off
 from simulation.vehicle_protocol.mode_numbers import (
     COPTER_BY_HAND,
     COPTER_NOT_ARMABLE,
@@ -62,6 +63,9 @@ class Pilot:
         state = self.vehicle.state
         if self.flavour is Flavour.ARDUPILOT and number in COPTER_BY_HAND and state.is_armed and state.is_in_air:
             return self._refused("This mode needs a pilot at the sticks, and there is none.")
+        is_begun_on_ground = mode is Mode.MISSION and state.is_armed and not state.is_in_air
+        if self.flavour is Flavour.ARDUPILOT and is_begun_on_ground and not begins_with_take_off(self.vehicle.items):
+            return self._refused("Auto: Missing Takeoff Cmd")
         is_there = mode is Mode.HOLD and state.mode is Mode.HOLD
         outcome = DONE if is_there else self.vehicle.set_mode(mode)
         if outcome.is_done:

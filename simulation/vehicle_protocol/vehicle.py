@@ -7,7 +7,7 @@ from inspection.geodesy import LonLat
 from missions.mavlink.content import MissionItem
 from simulation.flight.events import Event
 from simulation.flight.settings import Settings
-from simulation.flight.states import Mode, Outcome, UavState
+from simulation.flight.states import Haven, Mode, Outcome, UavState
 
 
 class Vehicle(Protocol):
@@ -15,6 +15,7 @@ class Vehicle(Protocol):
 
     settings: Settings
     items: tuple[MissionItem, ...]
+    havens: tuple[Haven, ...]
 
     @property
     def state(self) -> UavState: ...

@@ -35,6 +35,7 @@ class FlownTrack:
     battery_percent, used_wh
     waypoint        sequence of the waypoint of the route that is flown to, NO_WAYPOINT before and after
     is_coming_down  whether it is on its own way to the ground
+    attitude_deg    (n, 3), roll right wing down, pitch nose up, heading from true north
     """
 
     t_s: FloatArray
@@ -46,6 +47,7 @@ class FlownTrack:
     waypoint: IntArray
     is_in_air: BoolArray
     is_coming_down: BoolArray
+    attitude_deg: FloatArray
     ending: Ending
     said: tuple[str, ...] = ()
 

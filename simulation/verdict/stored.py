@@ -11,7 +11,8 @@ from simulation.verdict.meeting import Meeting
 from simulation.verdict.obstacles import Approach
 from simulation.verdict.zone_approach import ZoneApproach
 
-METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS = 2, 1, 1, 7
+METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS, ANGLE_DIGITS = 2, 1, 1, 7, 1
+ANGLES = ("roll_deg", "pitch_deg", "heading_deg")
 TRACK_STEP_S = 1.0
 
 
@@ -47,6 +48,7 @@ def _track(track: FlownTrack) -> dict[str, Any]:
         "altitude_relative_m": _column(track.relative_m[rows].tolist(), METRE_DIGITS),
         "battery_percent": _column(track.battery_percent[rows].tolist(), PERCENT_DIGITS),
         "used_wh": _column(track.used_wh[rows].tolist(), METRE_DIGITS),
+        **{name: _column(track.attitude_deg[rows, at].tolist(), ANGLE_DIGITS) for at, name in enumerate(ANGLES)},
         "waypoint": [None if waypoint < 0 else waypoint for waypoint in track.waypoint[rows].tolist()],
     }
 

@@ -65,7 +65,8 @@ class MissionRehearsals(APIView):
         description=(
             "Every route of the present plan is flown by a simulated UAV from the very items that a UAV would be given, all of them "
             "together in time, once for each of the conditions. A job flies them; its state, and afterwards the verdict: GET the address "
-            "in Location."
+            "in Location. What was flown alike within a day (the same plan, air, seed, limits and ground) is taken over, which the run "
+            "tells as `is_reused`; `afresh` flies it again."
         ),
         request=shapes.RehearsalInputSerializer,
         responses={202: shapes.RehearsalSerializer, **REFUSED},
@@ -75,10 +76,11 @@ class MissionRehearsals(APIView):
         mission = mission_or_404(request.user, mission_id)
         body = shapes.RehearsalInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        skies = skies_of(body.validated_data.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
+        values = body.validated_data
+        skies = skies_of(values.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
         try:
             with refusals(), transaction.atomic():
-                rehearsal = start_rehearsal(mission=mission, actor=request.user, skies=skies, seed=body.validated_data["seed"])
+                rehearsal = start_rehearsal(mission=mission, actor=request.user, skies=skies, seed=values["seed"], afresh=values["afresh"])
                 send_job_on_commit(rehearsal.job)
         except TooManyJobs as error:
             raise ApiProblem(429, "too_many_jobs", str(error), retry_after_s=RETRY_AFTER_S) from error

@@ -20,7 +20,16 @@ from missions.views.problems import refusals
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.serializers import simulations as shapes
 from simulation.services.simulated_flights import start_simulated_flights
-from simulation.services.simulations import IsOver, NoPortFree, PoolUav, QuotaReached, change_simulation, end_simulation, start_pool
+from simulation.services.simulations import (
+    IsOver,
+    NoPortFree,
+    PoolUav,
+    QuotaReached,
+    change_simulation,
+    end_simulation,
+    end_vehicle,
+    start_pool,
+)
 from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.vehicle_models import PRESENT
 from simulation.views.skies import sky_of
@@ -101,7 +110,8 @@ class Simulations(APIView):
         summary="Start simulated UAVs for a ground station or a program of one's own",
         description=(
             "Each listens at a UDP port of its own until its lifetime ends: `connect` says where, with commands for QGroundControl, "
-            "MAVProxy and MAVSDK. They are not of the fleet, and no gateway hears them. One whose simulator is lost begins anew."
+            "MAVProxy and MAVSDK. They are not of the fleet, and no gateway hears them: a UAV of the fleet is flown in simulation with a "
+            "mission (POST /missions/{id}/simulated-flights). One whose simulator is lost begins anew."
         ),
         request=shapes.SimulationInputSerializer,
         responses={201: shapes.SimulationSerializer, **QUOTA},
@@ -182,6 +192,18 @@ class SimulatedVehicleDetail(APIView):
         body.is_valid(raise_exception=True)
         _change(request.user, vehicle.simulation, vehicle, body.validated_data)
         return Response(shapes.vehicle_json(_vehicle_or_404(request.user, vehicle_id)))
+
+    @extend_schema(
+        operation_id="end_simulated_vehicle",
+        summary="End one simulated UAV; the others fly on",
+        description="It is gone within a second, wherever it is; of one in the air the gateway loses the link. With the last one its "
+        "simulation ends.",
+        request=None,
+        responses={204: None},
+    )
+    def delete(self, request: Request, vehicle_id: UUID) -> Response:
+        end_vehicle(vehicle=_vehicle_or_404(request.user, vehicle_id), actor=request.user)
+        return Response(status=204)
 
 
 def _listed(request: Request, found: Any) -> Response:

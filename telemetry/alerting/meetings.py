@@ -21,6 +21,7 @@ STEP_S = 2.0
 MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
 DEGREE_M = 111_195.0
 MOST_MET = 8  # others that each is told of: in a crowd more would say nothing new
+SAME_RATE = 0.1  # of clocks: by which what was learnt of two that are the same may differ
 NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
 
 
@@ -28,7 +29,8 @@ NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reach
 class Moving:
     """A UAV in the air. `ahead` is where it will be each STEP_S, now first, in lon/lat; `height_m` counts from sea level, None: not known.
 
-    Bounds hold 95 of 100 times. UAVs of different `organisation`s are told of each other nothing.
+    Bounds hold 95 of 100 times. UAVs of different `organisation`s are told of each other nothing; nor are those whose clocks run at
+    different rates, which are not in the air at the same time: seconds are the UAVs' own.
     """
 
     uav_id: int
@@ -39,6 +41,7 @@ class Moving:
     climb_mps: float
     bound_m: float
     bound_height_m: float
+    clock_rate: float = 1.0
 
 
 def moving_of(situation: Situation, within_s: float) -> Moving | None:
@@ -69,6 +72,7 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
         climb_mps=-(told.velocity_down_mps or 0.0),
         bound_m=0.0 if estimate is None else max(estimate.bound.along_m, estimate.bound.across_m),
         bound_height_m=0.0 if estimate is None else estimate.bound_height_m,
+        clock_rate=situation.link.clock_rate,
     )
 
 
@@ -83,7 +87,8 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
     way = way * (DEGREE_M * math.cos(middle_lat), DEGREE_M)
     group = np.array([one.organisation for one in moving])
     ones, others = _pairs(way)
-    near = group[ones] == group[others]
+    rate = np.array([one.clock_rate for one in moving])
+    near = (group[ones] == group[others]) & (np.abs(rate[ones] - rate[others]) <= SAME_RATE * np.maximum(rate[ones], rate[others]))
     near &= ~(_least_apart_m(moving, within_s, ones, others) > NEAR_HEIGHT_M)  # NaN: not known
     ones, others = ones[near], others[near]
     lateral_m, in_s = _closest(way[ones] - way[others])
@@ -153,7 +158,7 @@ def _height_between_m(first: Moving, second: Moving, at_s: float) -> float:
     return 0.0 if now_m * then_m < 0.0 else min(abs(now_m), abs(then_m))
 
 
-def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float) -> Moving:
+def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0) -> Moving:
     """One that another watch estimates, as estimation/as_json.py writes it: straight on."""
     lon, lat = estimated["position"]
     heading_rad, speed_mps = math.radians(estimated["heading_deg"] or 0.0), estimated["speed_mps"]
@@ -169,4 +174,5 @@ def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, An
         climb_mps=0.0,
         bound_m=max(estimated["bound"]["along_m"], estimated["bound"]["across_m"]),
         bound_height_m=estimated["bound"]["height_m"],
+        clock_rate=clock_rate,
     )

@@ -10,12 +10,16 @@ from telemetry.alerting.route_line import RouteLine
 
 @dataclass(frozen=True, slots=True)
 class LinkFacts:
-    """What is known of the UAV's link. `heard_s` is when anything was last received, by the server's clock."""
+    """What is known of the UAV's link. `heard_s` is when anything was last received, by the server's clock.
+
+    `clock_rate`: the vehicle's seconds a second of the server's; not 1 where it is flown faster than real time.
+    """
 
     heard_s: float | None = None
     mode: str = ""
     is_armed: bool | None = None
     is_in_air: bool | None = None
+    clock_rate: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

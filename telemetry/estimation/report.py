@@ -1,7 +1,7 @@
 """One report of a UAV, as the estimator takes it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from telemetry.decoding.measurement import Measurement, believable
 
@@ -9,12 +9,24 @@ FUTURE_S = 2.0  # a time measured later than it was received by more than clocks
 
 
 @dataclass(frozen=True, slots=True)
+class Boot:
+    """What the vehicle's own clock showed since it booted; the stream names the boot."""
+
+    stream: int
+    clock_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Report:
-    """What was measured at a time, by the server's clock as far as it is known. Seconds since the epoch."""
+    """What was measured at a time, by the server's clock as far as it is known. Seconds since the epoch.
+
+    `boot` tells the same by the vehicle's own clock, where it has told that.
+    """
 
     measured_s: float
     received_s: float
     measurement: Measurement
+    boot: Boot | None = None
 
     @property
     def has_position(self) -> bool:
@@ -27,4 +39,4 @@ def sound(report: Report) -> Report | None:
         return None
     if report.measured_s > report.received_s + FUTURE_S:
         return None
-    return Report(report.measured_s, report.received_s, believable(report.measurement))
+    return replace(report, measurement=believable(report.measurement))

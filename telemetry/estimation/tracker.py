@@ -18,6 +18,7 @@ from telemetry.estimation.estimate import Arrival, Ellipse, Estimate
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import State, after
 from telemetry.estimation.outlook import arrivals_of, end_of
+from telemetry.estimation.own_time import OwnTime
 from telemetry.estimation.phases import Phase
 from telemetry.estimation.profile import profile_of
 from telemetry.estimation.report import Report, sound
@@ -39,13 +40,16 @@ class Tracker:
 
     A report that was measured before others that are known corrects the past: all after it are gone through again. So what is known does
     not depend on the order in which reports come, and can be had again from the newest of them.
+
+    Times that go in and come out are the server's; in between, states are by the UAV's own `time`.
     """
 
     knowledge: Knowledge
+    time: OwnTime = field(default_factory=OwnTime)
     _course: Course | None = None
     _reports: list[Report] = field(default_factory=list)
     _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
-    _outlook: tuple[float, tuple[Arrival, ...], Arrival | None] | None = None
+    _outlook: tuple[tuple[float, float], tuple[Arrival, ...], Arrival | None] | None = None
     _hearing: Hearing | None = None
     _arrivals_s: deque[float] = field(default_factory=lambda: deque(maxlen=ARRIVALS_KEPT))
 
@@ -96,15 +100,18 @@ class Tracker:
         state = self._states[place] if place >= 0 else None
         if state is None or self._course is None:
             return None
-        belief = after(state, at_s - state.report_s)
+        belief = after(state, self.time.own_s(at_s) - state.report_s)
         return self._told(state, belief, at_s)
 
     def _go_through(self, place: int) -> None:
         state = self._states[place - 1] if place else None
         for number in range(place, len(self._reports)):
-            report = self._reports[number]
+            report = self._by_own_time(self._reports[number])
             state = self._begin(report) if state is None or self._course is None else next_state(self._course, state, report)
             self._states[number] = state
+
+    def _by_own_time(self, report: Report) -> Report:
+        return replace(report, measured_s=self.time.own_s(report.measured_s), received_s=self.time.own_s(report.received_s))
 
     def _begin(self, report: Report) -> State | None:
         told = report.measurement
@@ -133,7 +140,7 @@ class Tracker:
 
     def _told(self, state: State, belief: Belief, at_s: float) -> Estimate:
         bound = _ellipse(belief)
-        since_s = at_s - state.placed_s
+        since_s = self.time.own_s(at_s) - state.placed_s
         lon, lat = self._frame.to_degrees(np.array([[belief.east_m, belief.north_m]]))[0]
         height_m = None if belief.height_m is None else float(belief.height_m)
         amsl_m = None if height_m is None or state.amsl_above_m is None else height_m + state.amsl_above_m
@@ -148,8 +155,8 @@ class Tracker:
             bound=bound,
             bound_height_m=1.96 * belief.height_sd_m,
             bound_speed_mps=1.96 * belief.speed_sd_mps,
-            report_s=state.report_s,
-            is_measured=since_s < MEASURED_WITHIN_S,
+            report_s=self.time.server_s(state.report_s),
+            is_measured=at_s - self.time.server_s(state.placed_s) < MEASURED_WITHIN_S,
             is_lost=since_s > vouched_s or bound.along_m > VOUCHED_M,
             waypoint_sequence=state.sequence,
             report_interval_s=self.report_interval_s,
@@ -180,17 +187,29 @@ class Tracker:
             waypoint_sequence=estimate.waypoint_sequence if sequence < 0 else sequence,
             along_route_m=along_m,
             to_go_m=profile.length_m - along_m,
-            contact_expected_s=self._hearing.expected_s(state, along_m, at_s) if self._hearing and self.is_silent(at_s) else None,
+            contact_expected_s=self._contact_expected_s(state, along_m, at_s),
             arrivals=tuple(_not_past(arrival, at_s) for arrival in arrivals if arrival.latest_s > at_s),
         )
 
+    def _contact_expected_s(self, state: State, along_m: float, at_s: float) -> float | None:
+        if self._hearing is None or not self.is_silent(at_s):
+            return None
+        expected_s = self._hearing.expected_s(state, along_m, self.time.own_s(at_s))
+        return None if expected_s is None else self.time.server_s(expected_s)
+
     def _foreseen(self, state: State) -> tuple[tuple[Arrival, ...], Arrival | None]:
-        """Worked out once a report."""
-        if self._outlook is None or self._outlook[0] != state.report_s:
+        """By the server's clock; worked out once a report."""
+        if self._outlook is None or self._outlook[0] != (state.report_s, self.time.rate):
             followed = state.followed
             arrivals = () if state.route is None or followed is not state.route else arrivals_of(state, state.route)
-            self._outlook = (state.report_s, arrivals, None if followed is None else end_of(state, followed))
+            end = None if followed is None else end_of(state, followed)
+            told = tuple(self._by_server(arrival) for arrival in arrivals)
+            self._outlook = ((state.report_s, self.time.rate), told, None if end is None else self._by_server(end))
         return self._outlook[1:]
+
+    def _by_server(self, arrival: Arrival) -> Arrival:
+        at_s, earliest_s, latest_s = map(self.time.server_s, (arrival.at_s, arrival.earliest_s, arrival.latest_s))
+        return replace(arrival, at_s=at_s, earliest_s=earliest_s, latest_s=latest_s)
 
 
 def _not_past(arrival: Arrival, at_s: float) -> Arrival:

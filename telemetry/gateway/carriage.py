@@ -97,7 +97,9 @@ class Carriage:
             else:
                 await self._order(task)
         except Exception:
-            logger.exception("the command %s of %s broke down", self.command.kind, self.session.uav.name)
+            logger.exception(
+                "the command %s of %s broke down", self.command.kind, self.session.uav.name, extra={"uav": self.session.uav.uav_id}
+            )
             await self._end(note_failed, "internal", "The gateway failed; the error is in its log.")
         finally:
             await asyncio.gather(*self._notes, return_exceptions=True)

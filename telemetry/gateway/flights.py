@@ -87,7 +87,9 @@ class Flights:
         path = f"{uav_id}/{started_at:%Y-%m-%dT%H-%M-%S}-{started_at.microsecond // 1000:03d}-{self.options.run}.tlog"
         recorder = FlightRecorder(self.options.log_dir / path, int(self.options.log_mib * 1024 * 1024))
         if not recorder.is_complete:
-            logger.error("no log of the flight of %s can be written in %s", session.uav.name, self.options.log_dir)
+            logger.error(
+                "no log of the flight of %s can be written in %s", session.uav.name, self.options.log_dir, extra={"uav": session.uav.uav_id}
+            )
         self._open[session.uav.system] = (session, recorder, path)
         session.log = recorder.write
         self._later(lambda: begin_flight_log(uav_id=uav_id, path=path, started_at=started_at))

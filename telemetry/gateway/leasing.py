@@ -55,7 +55,7 @@ class Leasing:
         still = await self.database.run(renew_leases, uav_ids=list(held), holder=self.options.holder, lease_s=self.options.lease_s)
         self.answered_s = time.monotonic()
         for uav_id in held.keys() - still:
-            logger.warning("another gateway serves %s now", held[uav_id].uav.name)
+            logger.warning("another gateway serves %s now", held[uav_id].uav.name, extra={"uav": uav_id})
             self.end_flight(held[uav_id], now_s)
             held[uav_id].lose()
         for uav_id in still:
@@ -75,7 +75,7 @@ class Leasing:
         leases = await self.database.run(take_leases, uav_ids=list(wanted), holder=self.options.holder, lease_s=self.options.lease_s)
         for lease in leases:
             session = wanted[lease.uav_id]
-            logger.info("serves %s", session.uav.name)
+            logger.info("serves %s", session.uav.name, extra={"uav": session.uav.uav_id})
             waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
             session.serve(lease, served_until_s(asked_s, self.options.lease_s))
             for frame, peer, at_s in waiting:

@@ -17,6 +17,7 @@ from django.conf import settings
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Frame, message_of
+from operation import pulse
 from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
@@ -41,6 +42,7 @@ RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
 DESK_WITHIN_S = 5.0
 STOP_WITHIN_S = 4.0
+LOOP, HANGS_AFTER_S = "the gateway", 30.0
 
 
 @dataclass
@@ -51,6 +53,7 @@ class Gateway:
     listening: list[str] = field(default_factory=list)
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)
+    lost_here: Counter[str] = field(default_factory=Counter)
     _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
     _is_manned: bool = True
     _early: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=20_000))
@@ -67,6 +70,16 @@ class Gateway:
 
     def _all(self) -> list[Session]:
         return list(self.sessions.values())
+
+    def dropped(self) -> dict[str, int]:
+        """What was no frame of a UAV, by cause."""
+        return {**self.damages, **self.listeners.damages}
+
+    def not_ready(self) -> list[str]:
+        """A gateway works while it listens and knows its UAVs: a database that goes away later takes no vehicle's address from it."""
+        if not self.listening:
+            return ["it does not listen yet"]
+        return [] if self._uavs is not None else ["its UAVs are not known yet"]
 
     # Frames
 
@@ -114,7 +127,9 @@ class Gateway:
             )
 
     def _new_session(self, uav: KnownUav) -> Session:
-        session = self.sessions[uav.system] = Session(uav, self.store.records, link_id=_link_id(self.options.name))
+        session = self.sessions[uav.system] = Session(
+            uav, self.store.records, link_id=_link_id(self.options.name), lost_here=self.lost_here
+        )
         return session
 
     # The run
@@ -170,6 +185,7 @@ class Gateway:
             await asyncio.sleep(interval_s)
 
     async def _end(self, loops: list[asyncio.Task[None]]) -> None:
+        pulse.rest(LOOP)
         for loop in loops:
             loop.cancel()
         await asyncio.gather(*loops, return_exceptions=True)
@@ -237,6 +253,7 @@ class Gateway:
 
     async def _tick(self) -> None:
         """Nobody can command a UAV through a gateway without its database: it then no longer says that a ground station is there."""
+        pulse.beat(LOOP, within_s=HANGS_AFTER_S)
         now_s, is_manned = time.time(), time.monotonic() - self.leasing.answered_s <= settings.GATEWAY_ALONE_S
         if is_manned != self._is_manned:
             self._is_manned = is_manned
@@ -250,8 +267,7 @@ class Gateway:
         await self.flights.write_rows(self.telling.database)
 
     async def _tell_counts(self) -> None:
-        counts = {**self.damages, **self.listeners.damages}
-        if counts:
+        if counts := self.dropped():
             told = ", ".join(f"{cause} {number}" for cause, number in sorted(counts.items()))
             logger.info("received since the start and dropped: %s", told)
 

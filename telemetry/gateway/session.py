@@ -54,7 +54,8 @@ class Session:
     link_id: int
     lease: Lease | None = None
     held_until_s: float = 0.0  # monotonic: past it another gateway may have the vehicle, and nothing is sent
-    losses: Counter[str] = field(default_factory=Counter)
+    losses: Counter[str] = field(default_factory=Counter)  # also those that gateways before this one have seen
+    lost_here: Counter[str] = field(default_factory=Counter)  # of all sessions of this gateway
     texts: list[StatusText] = field(default_factory=list)
     flown: list[FlownItem] = field(default_factory=list)
     belief: Belief = field(init=False)
@@ -90,7 +91,7 @@ class Session:
             return
         refusal = self.belief.refusal(frame, peer, now_s)
         if refusal is not None:
-            self.losses[refusal] += 1
+            self._count_loss(refusal)
             if refusal is Refusal.TOO_OLD:
                 self._greet_late_clock(peer, now_s)
             return
@@ -100,11 +101,15 @@ class Session:
             self.log(frame.raw, frame.message_id, now_s)
         message = message_of(frame)
         if message is None:
-            self.losses["unreadable"] += 1
+            self._count_loss("unreadable")
         elif message.get_type() == "STATUSTEXT":
             self.texts += self._collector.receive(message, now_s)
         if message is not None and frame.component == AUTOPILOT:
             self._take(message, now_s)
+
+    def _count_loss(self, cause: str) -> None:
+        self.losses[cause] += 1
+        self.lost_here[cause] += 1
 
     def receive_radio(self, frame: Frame, now_s: float) -> None:
         """Of the radio that the vehicle's frames come through; it cannot sign."""

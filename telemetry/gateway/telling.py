@@ -91,4 +91,4 @@ class Telling:
         except DatabaseAway:
             raise
         except Exception:
-            logger.exception("of %s it could not be told: %s", session.uav.name, what)
+            logger.exception("of %s it could not be told: %s", session.uav.name, what, extra={"uav": session.uav.uav_id})

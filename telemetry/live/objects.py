@@ -40,7 +40,7 @@ def texts_of(keys: Iterable[Key], language: str) -> dict[Key, str]:
 
 
 def _alerts(ids: list[str]) -> list[dict[str, Any]]:
-    alerts = Alert.objects.filter(pk__in=ids).select_related("acknowledged_by").annotate(note_count=Count("notes"))
+    alerts = Alert.objects.filter(pk__in=ids).select_related("acknowledged_by", "uav").annotate(note_count=Count("notes"))
     return [alert_json(alert, note_count=alert.note_count) for alert in alerts]
 
 

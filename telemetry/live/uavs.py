@@ -13,9 +13,9 @@ from telemetry.models import UavLink
 
 FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)
 MEASURED = (
-    "position", "altitude_relative_m", "altitude_amsl_m", "altitude_agl_m", "speed_mps", "climb_mps", "heading_deg", "battery_percent",
-    "mode", "is_armed", "is_in_air", "gps_fix", "satellites", "hdop", "link_quality_percent", "wind_speed_mps", "wind_from_deg",
-    "waypoint_sequence",
+    "position", "altitude_relative_m", "altitude_amsl_m", "altitude_agl_m", "speed_mps", "climb_mps", "heading_deg", "roll_deg",
+    "pitch_deg", "battery_percent", "mode", "is_armed", "is_in_air", "gps_fix", "satellites", "hdop", "link_quality_percent",
+    "wind_speed_mps", "wind_from_deg", "waypoint_sequence",
 )  # fmt: skip
 INTERVALS_S = {LinkKind.MAVLINK: 1.0, LinkKind.HTTP: 10.0}  # between reports, until they are known
 GROUPS = ("position", "height", "speed", "attitude", "battery", "state", "link", "gps", "wind", "waypoint")
@@ -99,4 +99,5 @@ def _link_json(kind: str, link: UavLink) -> dict[str, Any]:
         "autopilot": link.autopilot,
         "loaded": loaded if link.loaded_sha256 else None,
         "waypoint_sequence": link.waypoint_sequence,
+        "clock_rate": None if link.clock_rate is None else round(link.clock_rate, 1),
     }

@@ -14,7 +14,7 @@ import numpy as np
 
 from inspection.geodesy import distance_m
 from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint
-from telemetry.mission_report.fix import Fix
+from telemetry.mission_report.fix import Fix, own_s
 
 REACHED_M = 15.0  # across: an autopilot takes a waypoint for reached some metres before it, and GPS errs by some more
 HOLD_SLACK_S = 3.0  # slowing down and setting out are part of a hold
@@ -26,7 +26,7 @@ class Visit:
 
     closest_m is the nearest that the UAV was seen, can_have_reached whether it may have been within REACHED_M between reports,
     reached_s the first time at which it was seen there or, unseen, the middle of the time in which it can have been; held_s the longest
-    that it can have stayed, all stays taken together.
+    that it can have stayed by its own clock, all stays taken together.
     """
 
     target: int
@@ -59,12 +59,14 @@ def _visit(waypoint: FrozenWaypoint, fixes: Sequence[Fix], fastest_mps: float) -
     held_s, first_between_s = 0.0, None
     for (before, before_m), (after, after_m) in pairwise(zip(near, away_m, strict=True)):
         to_fly_m = max(before_m - REACHED_M, 0.0) + max(after_m - REACHED_M, 0.0)
-        spare_s = after.at_s - before.at_s - to_fly_m / fastest_mps
+        between_s = own_s(before, after)
+        spare_s = between_s - to_fly_m / fastest_mps
         if spare_s < 0.0:
             continue
         held_s += spare_s
         if first_between_s is None:
-            first_between_s = before.at_s + max(before_m - REACHED_M, 0.0) / fastest_mps + spare_s / 2.0
+            share = (max(before_m - REACHED_M, 0.0) / fastest_mps + spare_s / 2.0) / between_s
+            first_between_s = before.at_s + share * (after.at_s - before.at_s)
     return Visit(
         target=target,
         waypoint_sequence=waypoint.sequence,

@@ -12,6 +12,7 @@ from django.db import connection
 
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandState, Mission, Uav
 from telemetry.alerting.surroundings import LinkFacts, Order
+from telemetry.estimation.own_time import believed_rate
 from telemetry.models import UavLink
 
 
@@ -28,11 +29,11 @@ class Loaded:
 
 def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
-        "uav_id", "heard_at", "mode", "is_armed", "is_in_air",
+        "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "clock_rate",
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot",
     )  # fmt: skip
     return {
-        row[0]: (LinkFacts(None if row[1] is None else row[1].timestamp(), *row[2:5]), Loaded(*row[5:]))
+        row[0]: (LinkFacts(None if row[1] is None else row[1].timestamp(), *row[2:5], believed_rate(row[5])), Loaded(*row[6:]))
         for row in rows
     }  # fmt: skip
 
@@ -80,18 +81,19 @@ def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mappin
 
 
 _OTHERS = """
-SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated
-FROM telemetry_uavwatch watch JOIN missions_uav uav ON uav.id = watch.uav_id
+SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated, link.clock_rate
+FROM telemetry_uavwatch watch JOIN missions_uav uav ON uav.id = watch.uav_id LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id
 WHERE watch.organisation_id = ANY(%s) AND NOT watch.uav_id = ANY(%s) AND watch.estimated IS NOT NULL AND watch.lease_expires_at > now()
 """
 
 
-def estimated_by_other_watches(organisations: Collection[int], uav_ids: Collection[int]) -> dict[int, list[tuple[int, str, Any]]]:
-    """By organisation: UAVs, their names and estimates as stored (estimation/as_json.py)."""
+def estimated_by_other_watches(organisations: Collection[int], uav_ids: Collection[int]) -> dict[int, list[tuple[int, str, Any, float]]]:
+    """By organisation: UAVs, their names, estimates as stored (estimation/as_json.py), and how fast their clocks run."""
     with connection.cursor() as cursor:
         cursor.execute(_OTHERS, [sorted(organisations), sorted(uav_ids)])
         rows = cursor.fetchall()
-    found: dict[int, list[tuple[int, str, Any]]] = defaultdict(list)
-    for uav_id, name, organisation_id, estimated in rows:
-        found[organisation_id].append((uav_id, name, json.loads(estimated) if isinstance(estimated, str) else estimated))
+    found: dict[int, list[tuple[int, str, Any, float]]] = defaultdict(list)
+    for uav_id, name, organisation_id, estimated, clock_rate in rows:
+        read = json.loads(estimated) if isinstance(estimated, str) else estimated
+        found[organisation_id].append((uav_id, name, read, believed_rate(clock_rate)))
     return found

@@ -38,7 +38,7 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
 
 
 def alerts_of_organisation(organisation: Organisation) -> QuerySet[Alert]:
-    return Alert.objects.filter(organisation=organisation).select_related("acknowledged_by").annotate(note_count=Count("notes"))
+    return Alert.objects.filter(organisation=organisation).select_related("acknowledged_by", "uav").annotate(note_count=Count("notes"))
 
 
 @dataclass(frozen=True, slots=True)

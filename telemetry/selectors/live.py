@@ -45,7 +45,8 @@ member AS (
 )
 SELECT 'uavs', uav.id::text, hashtextextended(ROW(watch.version, floor(extract(epoch FROM link.heard_at)), link.mode, link.is_armed,
         link.is_in_air, link.autopilot, link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_read_at,
-        link.loaded_doubt, link.waypoint_sequence, uav.name, uav.link, uav.is_simulated, flown.mission_id, flown.sequence)::text, 0),
+        link.loaded_doubt, link.waypoint_sequence, round(link.clock_rate::numeric, 1), uav.name, uav.link, uav.is_simulated,
+        flown.mission_id, flown.sequence)::text, 0),
     flown.uav_id IS NOT NULL OR heard.recently, coalesce(member.missions, '{}')
 FROM asked JOIN missions_uav uav ON uav.organisation_id = asked.organisation_id
     LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id LEFT JOIN telemetry_uavwatch watch ON watch.uav_id = uav.id

@@ -11,7 +11,7 @@ from django.db.models import Count, F
 
 from inspection.geodesy import LonLat
 from missions.mavlink.frozen import FrozenRoute, route_from_json
-from missions.models import Approval, InspectionTarget, Mission, OfferState, TargetState, Uav
+from missions.models import Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.visits import Visit, visits_of
@@ -49,8 +49,14 @@ def approval_on_record(mission: Mission) -> Approval | None:
 def fixes_of(mission: Mission, uav_id: int) -> list[Fix]:
     """Where a UAV was in a mission, by time; none of the future."""
     rows = TelemetryRecord.objects.filter(mission=mission, uav=uav_id, is_from_future=False, position__isnull=False).order_by("measured_at")
-    columns = rows.values_list(unix_s("measured_at"), longitude(), latitude(), *_FIX_COLUMNS)
-    return in_order([Fix(at_s, LonLat(lon, lat), *told) for at_s, lon, lat, *told in columns.iterator(chunk_size=5_000)])
+    columns = rows.values_list(unix_s("measured_at"), longitude(), latitude(), "stream__link", "stream_id", "sequence", *_FIX_COLUMNS)
+    return in_order([_fix(*row) for row in columns.iterator(chunk_size=5_000)])
+
+
+def _fix(at_s: float, lon: float, lat: float, link: str, stream: int, sequence: int, *told: Any) -> Fix:
+    """By MAVLink a record's number is the time since boot [ms]."""
+    clock_s = sequence / 1_000.0 if link == LinkKind.MAVLINK else None
+    return Fix(at_s, LonLat(lon, lat), *told, boot=stream, clock_s=clock_s)
 
 
 def fastest_mps(route: FrozenRoute, figures: dict[str, Any]) -> float:

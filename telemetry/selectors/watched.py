@@ -12,7 +12,7 @@ from inspection.geodesy import LonLat
 from missions.models import MissionState
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.contact import PROMPT_S
-from telemetry.estimation.report import Report
+from telemetry.estimation.report import Boot, Report
 from telemetry.exports.logged_record import REPORTED
 
 OVER = (MissionState.ABORTED, MissionState.FAILED, MissionState.COMPLETED)
@@ -24,7 +24,8 @@ STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UA
 class WatchedFlight:
     """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
 
-    From `home` on, what UavLink has of it; `heard_at` only by a gateway, which tells with it how the UAV does.
+    From `home` on, what UavLink has of it; `heard_at` only by a gateway, which tells with it how the UAV does. `clock_rate` is how fast its
+    clock runs.
     """
 
     uav_id: int
@@ -39,6 +40,7 @@ class WatchedFlight:
     is_armed: bool | None
     is_in_air: bool | None
     waypoint_sequence: int | None
+    clock_rate: float | None
 
 
 _FLYING = """
@@ -46,7 +48,7 @@ SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.organisation_id, uav.nam
     CASE WHEN link.loaded_approval = approval.id AND link.loaded_flight IS NOT NULL THEN link.loaded_flight
         ELSE route.flights_flown + 1 END,
     ST_X(link.home), ST_Y(link.home), CASE WHEN link.autopilot <> '' THEN link.heard_at END,
-    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence
+    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence, link.clock_rate
 FROM missions_mission mission
 JOIN missions_missionuav place ON place.mission_id = mission.id AND place.uav_id IS NOT NULL
 JOIN missions_uav uav ON uav.id = place.uav_id
@@ -59,16 +61,19 @@ WHERE mission.deleted_at IS NULL AND (mission.state = ANY(%(on_its_way)s)
 ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, coalesce(array_position(%(on_its_way)s, mission.state::text), 9),
     mission.updated_at DESC
 """
+_BOOT_MS = "CASE WHEN stream.link = 'mavlink' THEN record.sequence END"  # others count something else
 _VALUES = "ST_X(position), ST_Y(position), " + ", ".join(REPORTED)
+_STREAMS = "JOIN telemetry_telemetrystream stream ON stream.id = record.stream_id"
 _NEW = f"""
-SELECT id, uav_id, measured_at, received_at, {_VALUES} FROM telemetry_telemetryrecord
-WHERE id > %s AND id <> ALL(%s) AND uav_id = ANY(%s) AND NOT is_from_future ORDER BY id
+SELECT record.id, record.uav_id, measured_at, received_at, stream_id, {_BOOT_MS}, {_VALUES}
+FROM telemetry_telemetryrecord record {_STREAMS}
+WHERE record.id > %s AND record.id <> ALL(%s) AND record.uav_id = ANY(%s) AND NOT is_from_future ORDER BY record.id
 """  # noqa: S608 (names of columns, all from here)
 _NEWEST = f"""
-SELECT record.* FROM unnest(%s::bigint[]) AS uav(id), LATERAL (
-    SELECT id, uav_id, measured_at, received_at, {_VALUES} FROM telemetry_telemetryrecord
-    WHERE uav_id = uav.id AND NOT is_from_future ORDER BY measured_at DESC LIMIT %s
-) record ORDER BY measured_at
+SELECT record.id, record.uav_id, measured_at, received_at, stream_id, {_BOOT_MS}, {_VALUES}
+FROM unnest(%s::bigint[]) AS uav(id), LATERAL (
+    SELECT * FROM telemetry_telemetryrecord WHERE uav_id = uav.id AND NOT is_from_future ORDER BY measured_at DESC LIMIT %s
+) record {_STREAMS} ORDER BY measured_at
 """  # noqa: S608
 _HEARD = """
 SELECT ST_X(position), ST_Y(position) FROM (
@@ -132,7 +137,16 @@ def _reports(statement: str, values: list[Any]) -> list[StoredReport]:
 
 
 def _report(
-    key: int, uav_id: int, measured_at: datetime, received_at: datetime, lon: float | None, lat: float | None, *rest: Any
+    key: int,
+    uav_id: int,
+    measured_at: datetime,
+    received_at: datetime,
+    stream: int,
+    boot_ms: int | None,
+    lon: float | None,
+    lat: float | None,
+    *rest: Any,
 ) -> StoredReport:
     measurement = Measurement(lon, lat, **dict(zip(REPORTED, rest, strict=True)))
-    return StoredReport(key, uav_id, measured_at, Report(measured_at.timestamp(), received_at.timestamp(), measurement))
+    boot = None if boot_ms is None else Boot(stream, boot_ms / 1_000.0)
+    return StoredReport(key, uav_id, measured_at, Report(measured_at.timestamp(), received_at.timestamp(), measurement, boot))

@@ -13,6 +13,7 @@ from workspace.models import User
 class AlertSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     uav = serializers.IntegerField(allow_null=True)
+    is_simulated = serializers.BooleanField(help_text="of a UAV that is no real aircraft")
     mission = serializers.UUIDField(allow_null=True)
     level = serializers.ChoiceField(choices=AlertLevel.choices)
     code = serializers.CharField(help_text="the cause; see docs/alerts.md")
@@ -74,6 +75,7 @@ def alert_json(alert: Alert, *, note_count: int) -> dict[str, Any]:
     return {
         "id": alert.pk,
         "uav": alert.uav_id,
+        "is_simulated": alert.uav is not None and alert.uav.is_simulated,
         "mission": alert.mission_id,
         "level": alert.level,
         "code": alert.code,

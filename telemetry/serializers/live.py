@@ -24,6 +24,9 @@ class LiveLinkSerializer(serializers.Serializer):
     autopilot = serializers.CharField(allow_blank=True)
     loaded = LoadedSerializer(allow_null=True, help_text="the approved mission found on it by reading back; null: none")
     waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route")
+    clock_rate = serializers.FloatField(
+        allow_null=True, help_text="its seconds a second: a simulated UAV may fly faster than real time; null: not known, as ours"
+    )
 
 
 class MeasuredAtSerializer(serializers.Serializer):
@@ -51,6 +54,8 @@ class MeasuredSerializer(serializers.Serializer):
     speed_mps = serializers.FloatField(allow_null=True, help_text="over ground")
     climb_mps = serializers.FloatField(allow_null=True)
     heading_deg = serializers.FloatField(allow_null=True)
+    roll_deg = serializers.FloatField(allow_null=True, help_text="right side down")
+    pitch_deg = serializers.FloatField(allow_null=True, help_text="nose up")
     battery_percent = serializers.FloatField(allow_null=True)
     mode = serializers.CharField(allow_null=True)
     is_armed = serializers.BooleanField(allow_null=True)

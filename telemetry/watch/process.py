@@ -11,6 +11,8 @@ from uuid import UUID
 import numpy as np
 from django.db import close_old_connections, connection, transaction
 
+from operation import pulse
+from operation.metrics import ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
@@ -29,6 +31,7 @@ from telemetry.services.watches import (
     store_estimates,
     take_watches,
 )
+from telemetry.watch.figures import count_states, judge
 from telemetry.watch.new_reports import NewReports
 from telemetry.watch.options import Options
 from workspace.errors import DATABASE_AWAY
@@ -38,6 +41,7 @@ logger = logging.getLogger(__name__)
 
 EVERY_S = 1.0
 AWAY_EVERY_S = 60.0  # one line of log
+LOOP, HANGS_AFTER_S = "the watch", 300.0  # a database that neither answers nor refuses may hold it up for minutes
 READ_BACK = 60  # reports of a UAV, to know again what was known of it
 FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
 WITHOUT_RECORD_S = 3.0
@@ -53,6 +57,12 @@ class Watched:
     tracker: Tracker
     newest: Report | None = None  # record
     has_learnt: bool = False
+    judged_s: float = 0.0
+
+    def keep_time(self) -> None:
+        """From its newest report on, by its own clock as it runs now."""
+        newest = self.tracker.newest
+        self.tracker.time.run_at(self.flight.clock_rate, 0.0 if newest is None else newest.measured_s)
 
     def note(self, report: Report) -> None:
         if self.newest is None or report.measured_s > self.newest.measured_s:
@@ -77,12 +87,14 @@ class Watch:
         logger.info("watch %s has begun", self.options.holder)
         wait_s = 0.0  # the first at once: UAVs may have been without a watch
         while not self._stop.wait(wait_s):
+            pulse.beat(LOOP, within_s=HANGS_AFTER_S)
             try:
                 close_old_connections()
                 self.round(time.time())
             except DATABASE_AWAY as error:
                 self._go_on_without_database(error)
             wait_s = _until_next(time.time())
+        pulse.rest(LOOP)
         self._give_back()
 
     def stop(self) -> None:
@@ -90,11 +102,16 @@ class Watch:
 
     def round(self, now_s: float) -> None:
         """Everything of one second. Raises what the database raises; the next round begins anew."""
+        with ESTIMATOR_ROUND_SECONDS.time():
+            self._round(now_s)
+
+    def _round(self, now_s: float) -> None:
         self._new.begin()
         self._hold(watched_flights())
         self._read()
         self._learn(now_s)
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
+        count_states(made.values(), held=len(self.held))
         self._tell(list(made.values()))
         look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
         self._check_targets(now_s)
@@ -116,6 +133,7 @@ class Watch:
         changed = {uav_id for uav_id, watched in self.held.items() if _flight_of(watched.flight) != _flight_of(flying[uav_id])}
         for uav_id in self.held.keys() - changed:
             self.held[uav_id].flight = flying[uav_id]
+            self.held[uav_id].keep_time()
         self._begin([flying[uav_id] for uav_id in sorted(taken | changed)])
         forget_what_is_over(flying=flying.keys())
 
@@ -127,6 +145,8 @@ class Watch:
             flight.uav_id: Watched(flight, Tracker(knowledge_of(flight.approval_id, flight.uav_id, flight.flight))) for flight in flights
         }
         newest = newest_reports(list(begun), most=READ_BACK)
+        for watched in begun.values():
+            watched.keep_time()
         self.held |= begun
         for stored in newest:
             self._take(self.held[stored.uav_id], stored.report)
@@ -134,7 +154,7 @@ class Watch:
     def _read(self) -> None:
         reports = self._new.read(sorted(self.held), time.monotonic()) if self.held else []
         for stored in reports:
-            self._take(self.held[stored.uav_id], stored.report)
+            self._take(self.held[stored.uav_id], stored.report, is_new=True)
             self._replaced.add((stored.uav_id, _end_of_second(stored.measured_at)))
         if self._replaced:
             replace_estimates(reports=sorted(self._replaced))
@@ -143,10 +163,12 @@ class Watch:
             if (told := _told_by_link(watched)) is not None:
                 self._take(watched, told, is_record=False)
 
-    def _take(self, watched: Watched, report: Report, *, is_record: bool = True) -> None:
+    def _take(self, watched: Watched, report: Report, *, is_record: bool = True, is_new: bool = False) -> None:
         if is_record:
             watched.note(report)
         try:
+            if is_new:
+                judge(watched, report)
             watched.tracker.take(report)
         except FAULTS:
             self._tell_fault(watched)
@@ -169,7 +191,8 @@ class Watch:
     def _tell_fault(self, watched: Watched) -> None:
         if time.monotonic() >= self._quiet_about_faults_until_s:
             self._quiet_about_faults_until_s = time.monotonic() + AWAY_EVERY_S
-            logger.exception("%s cannot be estimated", watched.flight.name)
+            about = {"uav": watched.flight.uav_id, "mission": watched.flight.mission_id}
+            logger.exception("%s cannot be estimated", watched.flight.name, extra=about)
 
     def _check_targets(self, now_s: float) -> None:
         """Also of UAVs whose mission has just ended: its last targets count as complete by that."""

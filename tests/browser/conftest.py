@@ -23,7 +23,7 @@ CHROMIUM_FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync",
 ]  # fmt: skip
-PATIENCE_MS = 20_000  # ./check runs other tests beside these
+PATIENCE_MS = 45_000  # ./check runs other tests beside these
 expect.set_options(timeout=PATIENCE_MS)
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
 PASSWORD = "inspect-the-lines"

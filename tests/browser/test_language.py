@@ -79,7 +79,7 @@ def _german(visitor: Visitor, name: str | None = None, *, size: tuple[int, int] 
         base_url=visitor.site.address, locale="de-DE", reduced_motion="reduce", viewport={"width": size[0], "height": size[1]}
     )
     page = context.new_page()
-    page.set_default_timeout(20_000)
+    page.set_default_timeout(45_000)
     page.on("pageerror", lambda error: visitor.complaints.append(str(error)))
     page.goto("/sign-in")
     if name:

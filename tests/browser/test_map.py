@@ -10,6 +10,7 @@ from tests.browser.operator_map import asks, place_of, stores_mission, wait_for_
 
 pytestmark = pytest.mark.browser
 
+BETWEEN = [pytest.param(1024, 768, marks=pytest.mark.long), pytest.param(900, 1100, marks=pytest.mark.long)]  # sizes between the extremes
 VIEW = re.compile(r"#map=([\d.]+)/")
 OVERLAPS = """() => {
     document.getElementById("demo-badge").hidden = false;
@@ -30,7 +31,7 @@ def opens_mission(page: Page, name: str, *, view: str = "") -> dict[str, object]
     return asks(page, f"/missions/{mission['id']}")
 
 
-@pytest.mark.parametrize(("width", "height"), [(1440, 900), (1024, 768), (900, 1100), (390, 844)])
+@pytest.mark.parametrize(("width", "height"), [(1440, 900), *BETWEEN, (390, 844)])
 def test_nothing_around_the_map_lies_on_anything_else(visitor: Visitor, width: int, height: int) -> None:
     page = visitor.signs_in("opal", size=(width, height), touch=width < 721)
     page.goto("/missions/new")

@@ -1,7 +1,8 @@
 """The panel of rehearsals on the page of a mission: by pointer and keys, wide and narrow, in both languages."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -12,6 +13,7 @@ from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import HAS_PICTURES
 from tests.browser.test_accessibility import faults
+from tests.browser.test_fleet import writes
 from tests.browser.test_report import VIEWS, posts
 
 pytestmark = pytest.mark.browser
@@ -43,6 +45,17 @@ def planned(visitor: Visitor, site: Site) -> str:
     return _planned[site.address]
 
 
+@contextmanager
+def asked_for_rehearsals(visitor: Visitor) -> Iterator[None]:
+    """The organisation approves only what has passed; other tests approve without."""
+    page = visitor.signs_in("ada")
+    try:
+        writes(page, "PUT", "/rehearsal-rule", {"requires_green": True})
+        yield
+    finally:
+        writes(page, "PUT", "/rehearsal-rule", {"requires_green": False})
+
+
 def opened(page: Page, key: str) -> Page:
     page.goto(f"/missions/{key}")
     wait_for_map(page)
@@ -62,7 +75,7 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     panel.get_by_label("Battery holds").fill("25")
     expect(panel.get_by_role("checkbox", name="Own figures")).to_be_checked()
     start.click()
-    expect(panel.get_by_role("button", name="Cancel")).to_be_visible()
+    expect(panel.get_by_role("button", name="Stop")).to_be_visible()
     sentence = panel.locator("#rehearsal-sentence")
     expect(sentence).to_have_text(re.compile(r"^\d of 3 targets fails?: Own figures\.$"), timeout=FLIGHT_MS)
     expect(panel.get_by_role("group", name="Conditions").get_by_role("button", name="Own figures")).to_have_attribute(
@@ -92,6 +105,44 @@ def test_the_verdict_fits_every_window(visitor: Visitor, planned: str, picture: 
     panel.evaluate(INTO_VIEW)
     picture(page, f"rehearsal-{view}")
     assert faults(page) == []
+
+
+def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_for(visitor: Visitor, planned: str, picture: Picture) -> None:
+    page = visitor.signs_in("opal")
+    if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
+        pytest.skip("nothing was rehearsed")
+    with asked_for_rehearsals(visitor):
+        opened(page, planned)
+        page.get_by_role("button", name="Approve", exact=True).click()
+        page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
+        expect(page.locator("#notices")).to_contain_text("The rehearsal failed. Change the plan for what its verdict says")
+        picture(page, "rehearsal-refused-approval")
+    assert asks(page, f"/missions/{planned}")["state"] == "planned"
+
+
+def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visitor, picture: Picture) -> None:
+    page = visitor.signs_in("ada")
+    strong = {"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]}
+    uav = posts(page, "/uavs", {"name": "Gadwall", "position": STARTS["Wigeon"], "is_simulated": True, "max_airspeed_mps": 20.0})["id"]
+    tower = asks(page, "/assets?kind=tower&bbox=-83.0,39.90,-82.98,39.91&limit=1")["features"][0]["id"]
+    body = {
+        "name": "Into the wind", "uavs": [{"id": uav}], "targets": [{"asset": tower}], "conditions": strong, "return_to_start": True,
+        "plan": True,
+    }  # fmt: skip
+    key = posts(page, "/missions", body)["id"]
+    page.goto(f"/missions/{key}/rehearse")
+    wait_for_map(page)
+    panel = page.get_by_role("region", name="Rehearsal")
+    panel.get_by_role("button", name="Rehearse", exact=True).click()
+    expect(panel.locator("#rehearsal-sentence")).to_have_text(re.compile("fails?: As planned"), timeout=FLIGHT_MS)
+    expect(panel.locator(".rehearsal-reasons")).to_contain_text(
+        re.compile(r"wind of 14\.0 m/s at 10 m, the simulated airframe flies [\d.]+ m/s")
+    )
+    picture(page, "rehearsal-wind")
+    with asked_for_rehearsals(visitor):
+        page.get_by_role("button", name="Approve", exact=True).click()
+        page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
+        expect(page.locator("#notices")).to_contain_text("The rehearsal failed.")
 
 
 def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, planned: str) -> None:

@@ -62,7 +62,7 @@ def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visi
     visitor.complaints.clear()  # of the requests that were cut
 
 
-@pytest.mark.parametrize("way", ["top", "theirs", "copy", "both"])
+@pytest.mark.parametrize("way", [*(pytest.param(way, marks=pytest.mark.long) for way in ("top", "theirs")), "copy", "both"])
 def test_where_both_changed_the_same_the_operator_sees_both_and_decides(
     visitor: Visitor, picture: Callable[[Page, str], None], way: str
 ) -> None:

@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { FAULTS, isPresent, stateWords, windOf } from "../../static/js/monitor/simulation_words.js";
+import { rateOf } from "../../static/js/monitor/clock_rate.js";
+import { FAULTS, isPresent, lastsWords, stateWords, vehicleWords, WELL, windOf } from "../../static/js/monitor/simulation_words.js";
 
-const vehicle = (name, more = {}) => ({ id: name, name, state: "flying", battery_wh: 60, told: { is_crashed: false }, ...more });
+const vehicle = (name, more = {}) => ({ id: name, name, state: "flying", battery_wh: 60, told: { is_crashed: false }, conditions: { wind: [], gusts_mps: 0 }, ...more });
 const simulation = (more = {}) => ({ state: "flying", speed: 5, message: "", pace: null, vehicles: [vehicle("Tern")], ...more });
 
 test("a simulation says how many fly, how fast, and who is lost or has crashed", () => {
@@ -15,7 +16,7 @@ test("a simulation says how many fly, how fast, and who is lost or has crashed",
 });
 
 test("a machine that cannot keep the pace says so", () => {
-  assert.match(stateWords(simulation({ pace: { slipped_s: 12.4 } })).words, /too slow for that speed: 12 s behind/);
+  assert.match(stateWords(simulation({ pace: { slipped_s: 12.4 } })).words, /too slow for that pace: 12 s behind/);
   assert.doesNotMatch(stateWords(simulation({ pace: { slipped_s: 1 } })).words, /too slow/);
 });
 
@@ -32,5 +33,34 @@ test("faults are sent with their seconds, and a weak battery by the vehicle's ow
 });
 
 test("wind goes round once", () => {
-  assert.deepEqual(windOf(8, 360), { wind: [{ altitude_agl_m: 10, speed_mps: 8, from_deg: 0 }] });
+  assert.deepEqual(windOf(8, 360), { wind: [{ altitude_agl_m: 10, speed_mps: 8, from_deg: 0 }], gusts_mps: 0 });
+  assert.equal(windOf(8, -90, 2).wind[0].from_deg, 270);
+  assert.equal(windOf(8, 0, 2).gusts_mps, 2);
+});
+
+test("each of its UAVs says how it does, and what is wrong with it", () => {
+  const told = { is_crashed: false, is_in_air: true, altitude_relative_m: 42.4, battery_percent: 71.6, is_link_lost: true };
+  assert.deepEqual(vehicleWords(vehicle("Tern", { told })), { words: "in the air at 42\u00a0m · battery 72\u00a0% · calm · its link is lost", isBad: false });
+  const air = { wind: [{ speed_mps: 9, from_deg: 180 }], gusts_mps: 2 };
+  assert.match(vehicleWords(vehicle("Tern", { told, conditions: air })).words, /· wind 9\u00a0m\/s from 180°, gusts 2\u00a0m\/s ·/);
+  assert.deepEqual(vehicleWords(vehicle("Tern", { told: { ...told, is_crashed: true } })), { words: "crashed", isBad: true });
+  assert.deepEqual(vehicleWords(vehicle("Tern", { state: "failed", message: "Lost." })), { words: "Lost.", isBad: true });
+  assert.equal(vehicleWords(vehicle("Tern", { told: null })).words, "is being started");
+});
+
+test("a fault that lasts is told by both clocks, unless they are one", () => {
+  assert.equal(lastsWords(30, 10), "By the clock on the wall; 300 s of the flight.");
+  assert.equal(lastsWords(30, 1), "");
+  assert.equal(lastsWords(NaN, 10), "");
+});
+
+test("a clock's rate is a whole number where it nearly is one, and 1 where nobody knows it", () => {
+  const rate = (clock_rate, is_simulated = true) => rateOf({ link: { clock_rate }, is_simulated });
+  assert.deepEqual([rate(9.7), rate(1.4), rate(null)], [10, 1.4, 1]);
+  assert.equal(rateOf({ link: null, is_simulated: true }), 1);
+  assert.equal(rate(10, false), 1); // a real aircraft flies by the clock on the wall
+});
+
+test("what can be mended is mended", () => {
+  assert.deepEqual(WELL.of(), { link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null });
 });

@@ -15,7 +15,7 @@ from tests.missions.outbox import a_uav
 from tests.missions.worlds import world
 
 pytestmark = pytest.mark.django_db(transaction=True)
-PATIENCE_S = 10.0
+PATIENCE_S = 60.0
 
 
 def beside(do) -> None:

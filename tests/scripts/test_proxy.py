@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from scripts.page_headers import content_security_policy
 from scripts.places import CannotStart, Places
-from scripts.proxy import configuration, content_security_policy
+from scripts.proxy import configuration
 from scripts.system_packages import find_program
 
 

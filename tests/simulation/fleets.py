@@ -12,7 +12,7 @@ from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch, fleet_of
 
 AT = LonLat(10.4, 55.4)
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 
 
 def free_port() -> int:

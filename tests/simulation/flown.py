@@ -88,6 +88,7 @@ def a_track(flown: Sequence[Row], *, ending: Ending = Ending.LANDED, late_s: flo
         waypoint=np.where(t_s <= 30.0, 0, np.where(t_s <= 130.0 + late_s, 1, 2)),
         is_in_air=table[:, 3] > 0.1,
         is_coming_down=t_s > 230.0 + late_s,
+        attitude_deg=np.column_stack([np.zeros(len(t_s)), np.full(len(t_s), -4.0), np.full(len(t_s), 0.04)]),
         ending=ending,
     )
 

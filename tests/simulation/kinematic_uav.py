@@ -10,7 +10,7 @@ from inspection.geodesy import LonLat
 from missions.mavlink.content import MissionItem
 from simulation.flight.events import Armed, Disarmed, Event, ItemReached, LandedAt, MissionEnded, ModeChanged, TookOff
 from simulation.flight.settings import Settings
-from simulation.flight.states import DONE, Gps, Landed, MissionState, Mode, Outcome, Refused, UavState
+from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, UavState
 
 STEP_S = 0.04
 METRES_PER_DEGREE = 111_195.0
@@ -36,6 +36,7 @@ class KinematicUav:
     state: UavState = field(default_factory=resting)
     items: tuple[MissionItem, ...] = ()
     refuses_lists: bool = False
+    havens: tuple[Haven, ...] = ()
     settings: Settings = field(default_factory=Settings)
     _events: list[Event] = field(default_factory=list)
     _goal: tuple[LonLat, float] | None = None

@@ -75,6 +75,22 @@ def test_all_uavs_of_a_batch_talk_to_all_given_and_to_who_asks():
             assert given.hears("PARAM_VALUE") == [], "an answer is for who asked"
 
 
+def test_one_that_is_ended_is_silent_and_lets_its_port_go_while_the_others_fly_on():
+    with Ear() as ear:
+        launches = [Launch(system, place, talks_to=[("127.0.0.1", ear.port)]) for system, place in enumerate(in_a_row(AT, 2, 20.0), 1)]
+        with flying(launches, speed=10.0) as fleet:
+            wait_for(lambda: ear.hears("HEARTBEAT", 1), "the first one")
+            port = fleet.uavs[0].radio.port
+            fleet.post(Change(system=1, ends=True))
+            wait_for(lambda: fleet.uavs[0].radio.socket.fileno() < 0, "its end")
+            ear.heard()
+            wait_for(lambda: ear.hears("HEARTBEAT", 2), "the other one")
+            wait_for(lambda: 1 not in {frame.system for frame, _ in ear.heard()}, "silence")
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as another:
+                another.bind(("127.0.0.1", port))
+            assert fleet.report().failed == 0
+
+
 def test_a_lost_link_is_lost_both_ways_for_as_long_as_simulated_time_says():
     with Ear() as ear:
         launch = Launch(1, AT, faults=Faults(link_lost_until_s=4.0), talks_to=[("127.0.0.1", ear.port)])

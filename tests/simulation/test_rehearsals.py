@@ -1,24 +1,28 @@
 """A mission is rehearsed by a worker: flown whole, judged, kept; what belongs to another plan says nothing of this one."""
 
+from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
+from unittest import mock
 
 import pytest
 from django.utils import timezone
 
+from inspection.services.ground import mark_ground_changed
 from missions.models import Mission, MissionState, UavType
 from missions.selectors import mission_of_organisation
 from missions.services import create_mission, plan_mission
 from missions.services.approval import approve_mission
 from missions.services.refused import Refused
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
-from simulation.services.green_verdict import set_rule
+from simulation.serializers.words import reason_of
+from simulation.services.green_verdict import reasons_without_rehearsal, set_rule
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal
 from simulation.tasks import rehearse_mission
 from tests.missions import worlds
 from tests.missions.flights import an_operator, fleet, ground, planned
-from tests.missions.worlds import World, world
+from tests.missions.worlds import World, world, zone_around
 from tests.simulation.rehearsed import asked, loaded, rehearsed
 from workspace.models import AuditEntry, JobState, User
 
@@ -57,11 +61,13 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
     tracks = RehearsalTrack.objects.filter(run=run)
     assert [track.uav for track in tracks] == [0, 1]
     assert all(track.flights[0]["altitude_relative_m"][-1] == pytest.approx(0.0, abs=0.3) for track in tracks)
+    leaning = [max(map(abs, track.flights[0]["pitch_deg"])) for track in tracks]
+    assert all(1.0 < most_deg < 60.0 for most_deg in leaning)  # it leans to move, and never falls over
     assert AuditEntry.objects.filter(action="rehearse", subject_id=str(mission.pk), actor=person).count() == 1
 
 
 def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> None:
-    first, second = (rehearsed(mission, person, "strong-wind", seed=3) for _ in range(2))
+    first, second = (rehearsed(mission, person, "strong-wind", seed=3, afresh=True) for _ in range(2))
     tracks = [RehearsalTrack.objects.get(run__rehearsal=rehearsal).flights for rehearsal in (first, second)]
     assert tracks[0] == tracks[1]
 
@@ -154,6 +160,38 @@ def test_one_that_is_cancelled_before_a_worker_comes_is_not_flown(mission: Missi
     assert not RehearsalRun.objects.exclude(level="").exists()
 
 
+def test_what_was_flown_alike_lately_is_taken_over_and_not_flown_again(mission: Mission, person: User) -> None:
+    first = rehearsed(mission, person, "calm").runs.get()
+    with mock.patch("simulation.services.rehearsals.fly", side_effect=AssertionError("it is flown")):
+        again = rehearsed(mission, person, "calm")
+    run = again.runs.get()
+    assert (again.job.state, again.level) == (JobState.DONE, "pass")
+    assert (run.verdict, run.finished_at) == (first.verdict, first.finished_at)
+    assert run.tracks.get().flights == first.tracks.get().flights
+
+
+@pytest.mark.parametrize("what", ["another seed", "another air", "another ground", "long ago", "asked for afresh"])
+def test_what_differs_is_flown(mission: Mission, person: User, what: str) -> None:
+    first = rehearsed(mission, person, "calm")
+    if what == "another ground":
+        worlds.mark_ground_changed()
+    if what == "long ago":
+        first.runs.update(finished_at=timezone.now() - timedelta(hours=25))
+    flown = mock.Mock(side_effect=Flown)
+    with mock.patch("simulation.services.rehearsals.fly", flown), pytest.raises(Flown):
+        rehearsed(
+            mission,
+            person,
+            "strong-wind" if what == "another air" else "calm",
+            seed=8 if what == "another seed" else 7,
+            afresh=what == "asked for afresh",
+        )
+
+
+class Flown(Exception):
+    """A flight has begun."""
+
+
 def test_a_worker_that_takes_over_flies_only_what_is_left(mission: Mission, person: User) -> None:
     rehearsal = asked(mission, person, "calm", "as-planned")
     kept = {"level": "pass", "findings": [], "routes": [], "meetings": []}
@@ -179,11 +217,40 @@ def test_nobody_asks_for_a_rehearsal_unless_told(mission: Mission, person: User)
 def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mission, person: User) -> None:
     set_rule(organisation=person.organisation, actor=person, requires=True)
     assert reasons(mission, person) == ["not_rehearsed"]
-    rehearsal = rehearsed(mission, person, "calm")
+    rehearsal = rehearsed(mission, person, "as-planned")
     Rehearsal.objects.filter(pk=rehearsal.pk).update(level="fail")
     assert reasons(mission, person) == ["rehearsal_failed"]
     Rehearsal.objects.filter(pk=rehearsal.pk).update(level="pass", content_sha256="0" * 64)
     assert reasons(mission, person) == ["rehearsal_outdated"]
     Rehearsal.objects.filter(pk=rehearsal.pk).update(content_sha256=content(mission))
+    rehearsed(mission, person, "calm")
+    assert reasons(mission, person) == ["rehearsal_without_planned_conditions"]
+    rehearsed(mission, person, "calm", "as-planned")
     assert reasons(mission, person) == []
     assert mission_of_organisation(person.organisation, mission.pk).state == MissionState.APPROVED
+
+
+def test_what_was_rehearsed_on_other_ground_is_not_approved(mission: Mission, person: User, here: World) -> None:
+    """A new zone beside the routes counts, one far away does not, and one that is taken away again never was."""
+    set_rule(organisation=person.organisation, actor=person, requires=True)
+    rehearsed(mission, person, "as-planned")
+    lon, lat = here.towers[0].centre.coords[:2]
+    zone_around((lon, lat + 0.7), with_graph=False, name="Far away")
+    assert reasons_without_rehearsal(loaded(mission)) == []
+    beside = zone_around((lon, lat + 0.01), with_graph=False, name="Beside")
+    assert [reason.code for reason in reasons_without_rehearsal(loaded(mission))] == ["rehearsal_on_other_ground"]
+    assert "rehearsal_on_other_ground" in reasons(mission, person)
+    beside.delete()
+    mark_ground_changed()
+    assert reasons(mission, person) == []
+
+
+def test_a_route_that_begins_in_the_air_says_that_its_rehearsal_took_off(mission: Mission, person: User) -> None:
+    plan = plan_to_fly(loaded(mission))
+    begun = replace(plan, routes=tuple(replace(route, route=replace(route.route, begun_by=0)) for route in plan.routes))
+    with mock.patch("simulation.services.rehearsals.plan_to_fly", return_value=begun):
+        told = rehearsed(mission, person, "calm")
+    assert told.level == "warnings"
+    (finding,) = told.runs.get().verdict["findings"]
+    assert (finding["level"], finding["code"]) == ("warnings", "begun-in-air")
+    assert "took off by itself first" in reason_of(finding, {})

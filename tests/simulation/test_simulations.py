@@ -1,12 +1,17 @@
 """Simulated UAVs in real time: who may be stood in for, quotas, leases, lifetimes, and what a lost simulator leaves."""
 
+import socket
+
 import pytest
 
 from missions.models import CredentialKind, LinkKind, Mission, MissionState, Uav
 from missions.services.refused import Refused
 from simulation.models import SimulationChange, SimulationState
-from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation
-from simulation.services.simulator_leases import end_those_over, release_simulations, renew_simulations, take_changes
+from simulation.serializers.simulations import simulation_json
+from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation, end_vehicle
+from simulation.services.simulator_leases import end_single_ones, end_those_over, release_simulations, renew_simulations, take_changes
+from simulation.simulator.options import Options
+from simulation.simulator.process import Simulator
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import world
 from tests.simulation.simulations import LONG_AGO, fresh, lose, pool, stand_ins, taken
@@ -125,6 +130,20 @@ def test_no_simulation_lasts_longer_than_the_setting_says(settings, person):
     assert (simulation.lifetime_ends_at - fresh(simulation).created_at).total_seconds() == pytest.approx(1_800, abs=5)
 
 
+def test_a_port_that_another_program_has_is_told_by_its_name(settings, person):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        port = other.getsockname()[1]
+        settings.SIMULATOR_PORTS = f"{port}-{port}"
+        simulation = pool(person, 1)
+        simulator = Simulator(Options("one", 10.0, ("127.0.0.1", 1), "127.0.0.1"))
+        simulator.round()
+    told = simulation_json(fresh(simulation))
+    assert (told["state"], told["reason"]) == ("failed", "port-taken"), told
+    assert "SPANWISE_SIMULATOR_PORTS" in told["message"]
+    assert simulator.flights == {}
+
+
 # Leases
 
 
@@ -216,6 +235,36 @@ def test_a_simulator_that_is_stopped_leaves_what_a_lost_one_leaves(person, missi
 
 
 # Ends and changes
+
+
+def test_one_of_several_can_be_ended_alone(person):
+    simulation = pool(person, 2)
+    first, second = simulation.vehicles.all()
+    end_vehicle(vehicle=first, actor=person)
+    assert list(simulation.vehicles.values_list("state", "reason")) == [("ended", "ended-by-hand"), ("wanted", "")]
+    assert fresh(simulation).state == SimulationState.WANTED
+    assert [vehicle.name for vehicle in taken().vehicles] == [second.name]
+    assert AuditEntry.objects.get(action="end", actor=person).after["vehicle"] == first.name
+
+
+def test_one_that_is_flown_is_ended_by_its_simulator(person):
+    simulation = pool(person, 2)
+    taken("one/a")
+    end_vehicle(vehicle=simulation.vehicles.first(), actor=person)
+    assert set(simulation.vehicles.values_list("state", flat=True)) == {SimulationState.FLYING}
+    assert end_single_ones(holder="two/b", ids=[simulation.pk]) == []
+    assert [vehicle.sequence for vehicle in end_single_ones(holder="one/a", ids=[simulation.pk])] == [0]
+    assert list(simulation.vehicles.values_list("state", flat=True)) == [SimulationState.ENDED, SimulationState.FLYING]
+    assert end_single_ones(holder="one/a", ids=[simulation.pk]) == []
+
+
+def test_with_the_last_one_the_simulation_ends(person):
+    simulation = pool(person, 2)
+    for vehicle in simulation.vehicles.all():
+        end_vehicle(vehicle=vehicle, actor=person)
+        end_vehicle(vehicle=vehicle, actor=person)  # once more changes nothing
+    assert (fresh(simulation).state, fresh(simulation).reason) == (SimulationState.ENDED, "ended-by-hand")
+    assert AuditEntry.objects.filter(action="end").count() == 2
 
 
 def test_its_lifetime_ends_it_whether_it_is_held_or_waits(person):

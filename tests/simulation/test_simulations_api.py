@@ -53,6 +53,19 @@ def test_uavs_of_the_pool_say_how_to_connect(settings, client):
     assert "127.0.0.1:15000" in examples["QGroundControl"]
 
 
+def test_one_of_several_is_ended_and_is_over_then(client, person):
+    simulation = pool(person, 2)
+    first, second = simulation.vehicles.all()
+    assert client.delete(f"/api/v1/simulated-vehicles/{first.pk}").status_code == 204
+    shown = client.get(f"/api/v1/simulations/{simulation.pk}").json()
+    assert [(vehicle["state"], vehicle["message"]) for vehicle in shown["vehicles"]] == [("ended", "Somebody ended it."), ("wanted", "")]
+    assert error(patch(client, f"simulated-vehicles/{first.pk}", MOTOR), 409)["code"] == "simulation_over"
+    viewer = client_of(somebody(Role.VIEWER, person.organisation))
+    assert viewer.delete(f"/api/v1/simulated-vehicles/{second.pk}").status_code == 403
+    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Others")))
+    assert stranger.delete(f"/api/v1/simulated-vehicles/{second.pk}").status_code == 404
+
+
 def test_a_request_that_is_sent_again_starts_nothing_more(client):
     for _ in range(2):
         answer = post(client, "simulations", {"uavs": [{"position": HERE}]}, **{"Idempotency-Key": "same"})
@@ -80,6 +93,12 @@ def test_a_request_that_is_sent_again_starts_nothing_more(client):
 def test_what_cannot_be_flown_is_told_where_it_stands(client, body, place):
     assert place in error(post(client, "simulations", body), 400)["details"]
     assert not Simulation.objects.exists()
+
+
+def test_a_uav_of_the_fleet_is_not_of_the_pool_and_the_way_is_told(client):
+    (uav,) = fleet("Tern")
+    told = error(post(client, "simulations", {"uavs": [{"position": HERE, "uav": uav.pk}]}), 400)
+    assert "start its simulated flight" in json.dumps(told)
 
 
 def test_the_quota_is_told(settings, client):

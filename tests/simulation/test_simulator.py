@@ -12,15 +12,16 @@ from pymavlink import mavutil
 
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands import queue_command
-from missions.services.dispatch import dispatch_mission
+from missions.services.dispatch import abort_mission, dispatch_mission
 from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.simulations import change_simulation, end_simulation
-from telemetry.models import TelemetryRecord, UavLink
+from telemetry.models import Alert, AlertLevel, TelemetryRecord, UavLink, UavWatch
 from tests.missions.flights import approved, fleet, ground
 from tests.missions.worlds import world
 from tests.simulation.simulations import fresh, pool, stand_ins
 from tests.telemetry.gateway.program import PROJECT_DIR, environment, free_port, gateway_program
 from tests.telemetry.gateway.station import PATIENCE_S, wait_for
+from tests.telemetry.watch.program import watch_program
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -79,6 +80,10 @@ def state_of(mission: Mission) -> str:
     return mission.state
 
 
+def is_seen_in_flight(uav: Uav) -> bool:
+    return UavWatch.objects.filter(uav=uav, estimated__isnull=False).exists()
+
+
 def told(simulation: Simulation, name: str) -> object:
     return simulation.vehicles.get().told.get(name)
 
@@ -87,7 +92,7 @@ def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, 
     uav, port = Uav.objects.get(), free_port()
     simulation = stand_ins(mission, mission.author, speed=10.0)
     uav.refresh_from_db()
-    with gateway_program(port, tmp_path), simulator_program(port, tmp_path):
+    with gateway_program(port, tmp_path), simulator_program(port, tmp_path), watch_program(tmp_path, name="watch"):
         wait_for(lambda: UavLink.objects.filter(uav=uav).exists(), "the UAV at the gateway", patience_s=LONG_S)
         sent_and_started(mission, uav)
         change_simulation(simulation=simulation, actor=mission.author, faults={"link_lost_for_s": 30.0})
@@ -96,6 +101,7 @@ def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, 
         wait_for(lambda: state_of(mission) == MissionState.COMPLETED, "the end of the mission", patience_s=LONG_S)
         assert set(mission.targets.values_list("state", flat=True)) == {TargetState.COMPLETE}
         assert TelemetryRecord.objects.filter(uav=uav, is_in_air=True).exists()
+        assert set(Alert.objects.filter(mission=mission).values_list("code", flat=True)) <= {"link-lost"}, "ten times as fast is no fault"
         assert fresh(simulation).pace["steps"] > 0
         end_simulation(simulation=simulation, actor=mission.author)
         wait_for(lambda: fresh(simulation).state == SimulationState.ENDED, "its end by hand")
@@ -103,18 +109,27 @@ def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, 
 
 
 def test_a_missions_uav_is_lost_with_a_simulator_that_is_killed_in_mid_air(mission, tmp_path):
+    """The watch tells of its link; the simulator that comes back does not bring it back; the mission is aborted without it."""
     uav, port = Uav.objects.get(), free_port()
+    Mission.objects.update(alert_limits={"link_late_s": 2.0, "link_lost_s": 5.0})
     simulation = stand_ins(mission, mission.author, speed=2.0)
-    with gateway_program(port, tmp_path):
+    with gateway_program(port, tmp_path), watch_program(tmp_path, name="watch"):
         with simulator_program(port, tmp_path) as first:
             wait_for(lambda: UavLink.objects.filter(uav=uav).exists(), "the UAV at the gateway", patience_s=LONG_S)
             sent_and_started(mission, uav)
             wait_for(lambda: told(simulation, "is_in_air"), "take-off", patience_s=LONG_S)
+            wait_for(lambda: is_seen_in_flight(uav), "the watch that sees it fly", patience_s=LONG_S)
             first.kill()
         with simulator_program(port, tmp_path):
             wait_for(lambda: fresh(simulation).state == SimulationState.FAILED, "the loss to be told", patience_s=LONG_S)
+            lost = Alert.objects.filter(uav=uav, mission=mission, code="link-lost", closed_at=None)
+            wait_for(lost.exists, "the alert", patience_s=LONG_S)
+            wait_for(lost.filter(level=AlertLevel.CRITICAL).exists, "its rise", patience_s=LONG_S)
     assert SimulatedVehicle.objects.get().reason == "simulator-lost"
     assert state_of(mission) == MissionState.ACTIVE, "what becomes of the mission is for people to say"
+    abort_mission(mission=mission, actor=mission.author, why="Its UAV is lost.")
+    assert state_of(mission) == MissionState.ABORTED
+    assert lost.exists(), "it did not come back"
 
 
 @pytest.mark.long

@@ -156,3 +156,4 @@ def test_a_verdict_and_a_track_are_plain_values_to_the_digits_that_are_shown() -
     (track,) = track_to_json([a_track(rows())])
     assert len(track["t_s"]) == len(track["position"]) == 271
     assert track["t_s"][0] == 0.0 and track["t_s"][-1] == 270.0
+    assert [track[name][-1] for name in ("roll_deg", "pitch_deg", "heading_deg")] == [0.0, -4.0, 0.0]

@@ -36,13 +36,15 @@ def test_the_newest_report_is_shown_whole() -> None:
     uav = a_uav()
     store_records(
         [record(uav, 1, battery_percent=70.0, velocity_north_mps=3.0, velocity_east_mps=4.0, velocity_down_mps=-1.0, wind_north_mps=-2.0,
-                wind_east_mps=0.0, mode="AUTO", is_armed=True, gps_fix=3, hdop=0.8, altitude_relative_m=40.0, waypoint_sequence=4)]
+                wind_east_mps=0.0, mode="AUTO", is_armed=True, gps_fix=3, hdop=0.8, altitude_relative_m=40.0, waypoint_sequence=4,
+                roll_deg=-7.5, pitch_deg=3.25)]
     )  # fmt: skip
     told = shown(uav)
     assert (told["position"], told["speed_mps"], told["climb_mps"], told["battery_percent"]) == ([10.0, 55.0], 5.0, 1.0, 70.0)
     assert (told["wind_speed_mps"], told["wind_from_deg"]) == (2.0, 0.0)  # the air moves south: it comes from the north
     assert (told["mode"], told["is_armed"], told["gps_fix"], told["hdop"], told["waypoint_sequence"]) == ("AUTO", True, 3, 0.8, 4)
     assert (told["altitude_relative_m"], told["altitude_agl_m"], told["satellites"]) == (40.0, None, None)
+    assert (told["roll_deg"], told["pitch_deg"]) == (-7.5, 3.25)
     assert seconds(told["measured_at"]) == seconds(told["received_at"]) == 1
     assert told["measured_at_of"]["link"] is None
 

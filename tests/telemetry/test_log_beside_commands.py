@@ -13,7 +13,7 @@ from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.telemetry.records import record
 
-PATIENCE_S = 10.0
+PATIENCE_S = 60.0
 
 
 @pytest.mark.django_db(transaction=True)

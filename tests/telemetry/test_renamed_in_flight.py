@@ -14,7 +14,7 @@ from tests.missions.outbox import a_uav
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
-PATIENCE_S = 10.0
+PATIENCE_S = 60.0
 WAITS = "SELECT EXISTS (SELECT FROM pg_locks WHERE NOT granted AND locktype IN ('transactionid', 'tuple'))"
 
 

@@ -28,7 +28,7 @@ from scripts.system_packages import find_program
 from tests.workspace.people import client_of
 from workspace.models import User
 
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from workspace.services import LEASE_S, JobCancelled, cancel_job, create_job, fi
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 OFTEN_S = 0.02
 Found = TypeVar("Found")
 

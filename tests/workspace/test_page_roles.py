@@ -14,7 +14,7 @@ pytestmark = pytest.mark.django_db
 
 STAND_INS = {"uuid": "00000000-0000-4000-8000-000000000000", "int": "0", "str": "x", "path": "x", "file_kind": "csv"}
 OPEN_TO_ALL = {
-    "healthz", "readyz", "api/schema", "api/docs", "sign-in", "lost-password", "lost-password/sent", "new-password/x/x", "new-password/set",
+    "api/schema", "api/docs", "sign-in", "lost-password", "lost-password/sent", "new-password/x/x", "new-password/set",
     "invitation/x",
 }  # fmt: skip
 SENDS_BACK_TO_THE_DOOR = {"sign-out"}

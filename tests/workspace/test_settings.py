@@ -4,8 +4,10 @@ import pytest
 import redis
 from celery import Celery
 from django.conf import settings
+from django.test import override_settings
 
 from config.private_servers import broker_url
+from tests.workspace.people import client_of, somebody
 
 
 @pytest.mark.parametrize(
@@ -28,3 +30,14 @@ def test_celery_and_the_cache_use_the_same_database_of_the_same_redis() -> None:
         for name in ("path", "host", "port", "password"):
             assert celerys.get(name) == caches.get(name)
         assert int(celerys.get("db") or 0) == int(caches.get("db") or 0)
+
+
+@pytest.mark.django_db
+def test_a_session_of_the_key_before_holds_while_that_key_is_named() -> None:
+    with override_settings(SECRET_KEY="the-key-of-before", SECRET_KEY_FALLBACKS=[]):
+        client = client_of(somebody())
+        assert client.get("/account").status_code == 200
+    with override_settings(SECRET_KEY="the-key-of-today", SECRET_KEY_FALLBACKS=["the-key-of-before"]):
+        assert client.get("/account").status_code == 200
+    with override_settings(SECRET_KEY="the-key-of-tomorrow", SECRET_KEY_FALLBACKS=[]):
+        assert client.get("/account").status_code == 302

@@ -21,6 +21,20 @@ def test_what_was_put_in_is_put_in_again() -> None:
         assert in_words("12.5 MiB from Overpass") == "12.5 MiB von Overpass"
 
 
+@pytest.mark.parametrize(
+    ("said", "german"),
+    [
+        ("Battery low: 14 %: return", "Akku schwach: 14 %: Rückkehr"),
+        ("Battery 24 %", "Akku 24 %"),
+        ("It hit the ground at 7.3 m/s.", "Es ist mit 7.3 m/s auf den Boden geschlagen."),
+        ("GPS lost: land", "GPS verloren: Landung"),
+    ],
+)
+def test_what_a_simulated_uav_says_of_trouble_is_read_in_german(said: str, german: str) -> None:
+    with override("de"):
+        assert in_words(said) == german
+
+
 def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
     with override("de"):
         assert in_words("Something else.") == "Something else."

@@ -9,6 +9,8 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from operation.program import program_begins
+from simulation.simulator.figures import figures_of
 from simulation.simulator.options import options_of_settings
 from simulation.simulator.process import Simulator
 from simulation.vehicle_endpoint.radio import WrongAddress
@@ -46,4 +48,6 @@ class Command(BaseCommand):
         sys.setswitchinterval(SWITCH_S)
         self.stdout.write(f"simulating as {simulator.options.holder}")
         self.stdout.flush()
-        simulator.run()
+        with figures_of(simulator):
+            program_begins("simulator")
+            simulator.run()

@@ -1,6 +1,7 @@
 /** The three things of the fleet: where each comes from, what its table shows, how it is named and told in full. */
 
 import { h } from "../dom.js";
+import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { coordinateText, percentText, powerText, speedText } from "../units.js";
 import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, squareMetres, stateChip, uavsText, wattHours } from "./words.js";
@@ -25,7 +26,7 @@ export const KINDS = {
     path: "/uavs",
     read: flat,
     columns: [
-      { words: t("Name"), cell: (uav) => caption([uav.type_name || t("no type"), uav.is_simulated && t("simulated")].filter(Boolean).join(" · ")) },
+      { words: t("Name"), cell: (uav) => [uav.is_simulated && simulatedMark(), caption(uav.type_name || t("no type"))] },
       { words: t("State"), cell: (uav) => stateChip(uav.state) },
       { words: t("Base"), class: "wide", cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))] },
       { words: t("Battery"), class: "number", cell: batteryCell },

@@ -2,10 +2,12 @@
 
 import { byId, h, icon } from "../dom.js";
 import { get } from "../api.js";
+import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
 import { mountConnection } from "./connection.js";
 import { mountCredentials } from "./credentials.js";
+import { mountTypeAirframe } from "./type_airframe.js";
 import { mountTypeLimits } from "./type_limits.js";
 import { MISSION_STATES, stateChip } from "./words.js";
 
@@ -51,18 +53,21 @@ export function mountPanel({ canPlan, acts }) {
     const credentials = h("ul", { class: "plain-list" });
     const missions = h("ul", { class: "plain-list" });
     const limits = h("div", { class: "type-limits" });
+    const airframe = h("div", { class: "type-airframe" });
     const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
     panel.hidden = false;
     panel.replaceChildren(
       ...[
         back(),
-        h("div", { class: "panel-head" }, title, isUav && stateChip(row.state)),
+        h("div", { class: "panel-head" }, title, isUav && row.is_simulated && simulatedMark(), isUav && stateChip(row.state)),
         isUav && row.state === "retired" && h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
         canPlan && h("div", { class: "panel-acts" }, button("pencil", t("Edit"), acts.edit), isUav && stateButtons(row), h("button", { type: "button", class: "icon-button", "aria-label": t("Delete {name}", row), title: t("Delete"), onclick: acts.remove }, icon("trash-2"))),
         h("dl", { class: "facts" }, kind.facts(row)),
         !isUav && row.uav_count > 0 && h("p", {}, h("button", { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) }, tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"))),
         kind.tab === "types" && h("h3", {}, t("Alerts")),
         kind.tab === "types" && limits,
+        kind.tab === "types" && h("h3", {}, t("Simulation")),
+        kind.tab === "types" && airframe,
         isUav && h("h3", {}, t("Link")),
         isUav && connection,
         isUav && credentials,
@@ -76,7 +81,10 @@ export function mountPanel({ canPlan, acts }) {
       mountCredentials(credentials, row, { canPlan, onChange: acts.refresh }).catch(acts.failed);
       fillMissions(missions, none, `/uavs/${row.id}/missions`).catch(acts.failed);
     }
-    if (kind.tab === "types") mountTypeLimits(limits, row, { canPlan, failed: acts.failed }).catch(acts.failed);
+    if (kind.tab === "types") {
+      mountTypeLimits(limits, row, { canPlan, failed: acts.failed }).catch(acts.failed);
+      mountTypeAirframe(airframe, row, { canPlan, failed: acts.failed }).catch(acts.failed);
+    }
     return title;
   }
 

@@ -5,7 +5,7 @@ import { t, tn } from "../text.js";
 import { exactEnergyText, lengthText, speedText } from "../units.js";
 
 /** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, figures, sensors and end. */
-const factsIn = ({ base, base_name, type_name, battery_percent, state, usual }) => ({ base, base_name, type_name, battery_percent, state, usual });
+const factsIn = ({ base, base_name, type_name, battery_percent, state, is_simulated, usual }) => ({ base, base_name, type_name, battery_percent, state, is_simulated, usual });
 
 /** Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet. */
 export function standingUavs({ selection, fleet }) {

@@ -74,11 +74,13 @@ export function createFlying(store, { failed, page }) {
 
   async function approve() {
     const flyers = flyersOf(mission());
+    const simulated = flyers.filter(({ place }) => mission().uavs[place].is_simulated);
     await readReturns();
     const asked = await confirmAct({
       title: t("Approve “{name}”?", { name: mission().name }),
       lines: [
         tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", { length: lengthText(mission().plan.total_length_m), names: uavsWords(flyers) }),
+        simulated.length > 0 && t("Simulated, no real aircraft: {names}.", { names: uavsWords(simulated) }),
         t("From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked."),
         ...returnsOf(flyers),
       ],

@@ -7,7 +7,9 @@ import { isRunning } from "./rehearsal.js";
 
 export const NOTHING = { list: null, detail: null, run: 0, track: null, running: null, fault: "" };
 
-export function createRehearsing(store) {
+/** isStage: the page is about rehearsals alone, and its address names the one that is looked at. */
+export function createRehearsing(store, { isStage = false } = {}) {
+  const ofAddress = new URLSearchParams(isStage ? location.search : "");
   let following = null; // the job that is listened to
   let asked = 0; // the last reading wins
 
@@ -37,6 +39,8 @@ export function createRehearsing(store) {
       const [newest] = data.results;
       if (isRunning(newest)) void follow(newest);
       const { detail, run } = store.state.rehearsal;
+      const named = wanted || detail ? null : ofAddress.get("rehearsal");
+      if (named) return await show(named, ofAddress.has("run") ? Number(ofAddress.get("run")) : null);
       const shown = data.results.find(({ id }) => id === (wanted ?? detail?.id)) ?? data.results.find(({ level, state }) => level || ["failed", "cancelled"].includes(state));
       if (shown) await show(shown.id, detail?.id === shown.id ? run : null);
       else change({ detail: null, track: null });
@@ -48,10 +52,18 @@ export function createRehearsing(store) {
       const { data: detail } = await get(address(id));
       const order = ["fail", "warnings", "pass"];
       const flown = detail.runs.filter(({ level }) => level).sort((a, b) => order.indexOf(a.level) - order.indexOf(b.level) || a.sequence - b.sequence);
-      const chosen = run ?? flown[0]?.sequence ?? 0;
+      const chosen = detail.runs[run] ? run : (flown[0]?.sequence ?? 0);
       change({ detail, run: chosen, track: null });
+      remember();
       if (detail.runs[chosen]?.level) await showTrack(id, chosen);
     });
+
+  /** What is looked at stands in the address: it can be loaded again, and passed on. */
+  function remember() {
+    if (!isStage) return;
+    const { detail, run } = store.state.rehearsal;
+    history.replaceState(history.state, "", `${location.pathname}?${new URLSearchParams({ rehearsal: detail.id, run })}${location.hash}`);
+  }
 
   async function showTrack(id, run) {
     const { data: track } = await get(address(id, `/track?run=${run}`));
@@ -61,15 +73,17 @@ export function createRehearsing(store) {
   const chooseRun = (run) =>
     told(async () => {
       change({ run, track: null });
+      remember();
       const { detail } = store.state.rehearsal;
       if (detail.runs[run]?.level) await showTrack(detail.id, run);
     });
 
-  const start = (conditions) =>
+  /** afresh: also what was flown alike lately. */
+  const start = (conditions, { afresh = false } = {}) =>
     told(async () => {
       change({ fault: "", running: { id: null, job: null, progress: null, message: t("Being sent") } });
       const key = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
-      const { data } = await post(address(), { conditions }, { headers: { "Idempotency-Key": key } });
+      const { data } = await post(address(), { conditions, afresh }, { headers: { "Idempotency-Key": key } });
       await follow(data);
     });
 

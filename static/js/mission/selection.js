@@ -112,11 +112,11 @@ export function sensorsKnown(selection, fleet) {
 }
 
 export function uavOf(feature) {
-  const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent, heading_deg } = feature.properties;
+  const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent, heading_deg, is_simulated } = feature.properties;
   const usual = Object.fromEntries(OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null])); // a mission may say otherwise
   return {
     id: feature.id, name, base: base ?? null, base_name: base_name ?? "", position: feature.geometry.coordinates.slice(0, 2), max_range_m, cruise_speed_mps, end_action,
-    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null, heading_deg: heading_deg ?? null, usual,
+    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null, heading_deg: heading_deg ?? null, is_simulated: is_simulated ?? false, usual,
   };
 }
 

@@ -3,6 +3,7 @@
 import { h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../map/palette.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
+import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { durationText, exactText, lengthText, whenText } from "../units.js";
 import { sketch } from "./sketch.js";
@@ -62,6 +63,7 @@ export function missionRow(mission, { canPlan, acts }) {
       "span",
       { class: "caption" },
       mission.author ?? "",
+      mission.is_simulated && simulatedMark(),
       mission.is_stale && staleMark(mission),
     ),
   );

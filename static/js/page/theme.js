@@ -31,9 +31,10 @@ export function nextTheme() {
   chooseTheme(ORDER[(ORDER.indexOf(chosenTheme()) + 1) % ORDER.length]);
 }
 
-/** Tells of each change, the system's own included. */
+/** Tells of each change, the system's own included. Returns a function that ends it. */
 export function onTheme(tell) {
   listeners.add(tell);
+  return () => listeners.delete(tell);
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -3,6 +3,7 @@
 import { h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../map/palette.js";
 import { commandWords, timesOf } from "../mission/flying.js";
+import { simulatedMark } from "../simulated.js";
 import { t } from "../text.js";
 import { clockText, exactClockText, exactHeightText, exactText, lengthText } from "../units.js";
 import { waypointName } from "./labels.js";
@@ -58,7 +59,7 @@ function legTable(route, labels, onLook) {
     h("thead", {}, h("tr", {}, heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)))),
     route.stages.map(stageRows),
   );
-  return h("details", { class: "report-route" }, h("summary", {}, icon("chevron-down", "small"), letter(route.place), h("strong", {}, route.name), h("span", { class: "count" }, route.stages.length)), table);
+  return h("details", { class: "report-route" }, h("summary", {}, icon("chevron-down", "small"), letter(route.place), h("strong", {}, route.name), route.is_simulated && simulatedMark(), h("span", { class: "count" }, route.stages.length)), table);
 }
 
 /** onSeek(iso): the time of an alert was clicked. */
@@ -71,7 +72,7 @@ export function drawAlerts(alerts, nameOf, onSeek) {
       "li",
       { class: `report-alert ${alert.level}` },
       icon(level.image, "small"),
-      h("span", {}, h("strong", {}, h("span", { class: "unseen" }, `${level.words}: `), [nameOf(alert.uav), alert.message].filter(Boolean).join(": ")), h("small", {}, h("button", { type: "button", class: "text-button", title: exactText(alert.opened_at), onclick: () => onSeek(alert.opened_at) }, exactClockText(alert.opened_at)), ` ${[until, known].filter(Boolean).join(", ")}`)),
+      h("span", {}, h("strong", {}, h("span", { class: "unseen" }, `${level.words}: `), [nameOf(alert.uav), alert.message].filter(Boolean).join(": ")), alert.is_simulated && [" ", simulatedMark()], h("small", {}, h("button", { type: "button", class: "text-button", title: exactText(alert.opened_at), onclick: () => onSeek(alert.opened_at) }, exactClockText(alert.opened_at)), ` ${[until, known].filter(Boolean).join(", ")}`)),
     );
   });
   fold("alerts", rows.length, h("ul", { class: "report-list" }, rows));
@@ -81,7 +82,7 @@ export function drawCommands(commands) {
   const rows = [...commands].sort((a, b) => Date.parse(a.created_at) - Date.parse(b.created_at)).map((command) => {
     const { words, image, level } = commandWords(command);
     const by = command.created_by ?? t("the program");
-    return h("li", { class: `report-command ${level ?? ""}` }, icon(image, "small"), h("span", {}, h("strong", {}, `${command.uav.name}: ${words}`), h("small", {}, [by, timesOf(command, exactClockText), command.why].filter(Boolean).join(" · "))));
+    return h("li", { class: `report-command ${level ?? ""}` }, icon(image, "small"), h("span", {}, h("strong", {}, `${command.uav.name}: ${words}`), command.uav.is_simulated && [" ", simulatedMark()], h("small", {}, [by, timesOf(command, exactClockText), command.why].filter(Boolean).join(" · "))));
   });
   fold("commands", rows.length, h("ul", { class: "report-list" }, rows));
 }

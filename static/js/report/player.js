@@ -1,6 +1,6 @@
 /** The clock of a replay: where it stands, how fast it goes, and that it stops at the end. */
 
-export const SPEEDS = [1, 5, 20, 60];
+export const SPEEDS = [0.5, 1, 5, 20, 60];
 
 /** onMove() is told of each change. now_ms, nextFrame: for tests. */
 export function createPlayer({ onMove, now_ms = () => performance.now(), nextFrame = (act) => requestAnimationFrame(act) }) {

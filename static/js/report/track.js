@@ -10,7 +10,16 @@ function speedOf({ velocity_north_mps: north, velocity_east_mps: east }) {
   return typeof north === "number" && typeof east === "number" ? Math.hypot(north, east) : null;
 }
 
-/** Features of the log → Map of UAV → [{ at_ms, position, height_m, speed_mps, battery_percent, heading_deg, mode, isInAir }] by time; none from the future. */
+/** Where the wind comes from; the log has where the air goes. */
+function windOf({ wind_north_mps: north, wind_east_mps: east }) {
+  if (typeof north !== "number" || typeof east !== "number") return null;
+  return { speed_mps: Math.hypot(north, east), from_deg: ((Math.atan2(-east, -north) * 180) / Math.PI + 360) % 360 };
+}
+
+/**
+ * Features of the log → Map of UAV → [{ at_ms, position, height_m, speed_mps, battery_percent, heading_deg, roll_deg, pitch_deg, climb_mps, mode,
+ * isInAir, waypoint, wind, altitude_amsl_m }] by time; none from the future.
+ */
 export function tracksOf(features) {
   return byUav(
     features.filter(({ properties }) => !properties.is_from_future),
@@ -21,13 +30,19 @@ export function tracksOf(features) {
       speed_mps: speedOf(properties),
       battery_percent: properties.battery_percent ?? null,
       heading_deg: properties.heading_deg ?? null,
+      roll_deg: properties.roll_deg ?? null,
+      pitch_deg: properties.pitch_deg ?? null,
+      climb_mps: typeof properties.velocity_down_mps === "number" ? -properties.velocity_down_mps : null,
+      altitude_amsl_m: properties.altitude_amsl_m ?? null,
       mode: properties.mode ?? "",
       isInAir: properties.is_in_air ?? null,
+      waypoint: properties.waypoint_sequence ?? null,
+      wind: windOf(properties),
     }),
   );
 }
 
-/** Features of the estimates → Map of UAV → [{ at_ms, position, height_m, speed_mps, heading_deg, bound_m, isLost }] by time. */
+/** Features of the estimates → Map of UAV → [{ at_ms, position, height_m, speed_mps, heading_deg, bound_m, bound, isLost }] by time. */
 export function estimatesOf(features) {
   return byUav(features, ({ geometry, properties }) => ({
     at_ms: Date.parse(properties.estimated_for),
@@ -36,6 +51,7 @@ export function estimatesOf(features) {
     speed_mps: properties.speed_mps ?? null,
     heading_deg: properties.heading_deg ?? null,
     bound_m: Math.max(properties.bound_along_m, properties.bound_across_m),
+    bound: { along_m: properties.bound_along_m, across_m: properties.bound_across_m, bearing_deg: properties.bound_bearing_deg ?? 0, height_m: properties.bound_height_m ?? null },
     isLost: properties.is_lost,
   }));
 }

@@ -21,14 +21,15 @@ def detect(situation: Situation) -> list[Finding]:
             continue
         is_near = meeting.lateral_m < limits.separation_m and meeting.height_m < limits.separation_height_m
         values = {"uav": situation.uav.name, "other": meeting.other_name, "metres": round(meeting.lateral_m)}
-        if meeting.in_s >= 1.0:
-            values["seconds"] = round(meeting.in_s)
+        in_s = meeting.in_s / situation.link.clock_rate  # for those who look at the server's clock
+        if in_s >= 1.0:
+            values["seconds"] = round(in_s)
         found.append(
             Finding(
-                CODE, CRITICAL if is_near and meeting.in_s <= CRITICAL_WITHIN_S else WARNING, WORDS if meeting.in_s >= 1.0 else NOW, values,
+                CODE, CRITICAL if is_near and meeting.in_s <= CRITICAL_WITHIN_S else WARNING, WORDS if in_s >= 1.0 else NOW, values,
                 subject=subject,
                 details={
-                    "other": meeting.other_id, "in_s": round(meeting.in_s, 1), "lateral_m": round(meeting.lateral_m, 1),
+                    "other": meeting.other_id, "in_s": round(in_s, 1), "lateral_m": round(meeting.lateral_m, 1),
                     "height_m": round(meeting.height_m, 1), "least_lateral_m": round(meeting.least_lateral_m, 1),
                 },
             )

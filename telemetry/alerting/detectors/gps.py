@@ -55,10 +55,17 @@ def _jump_m(situation: Situation, fresh: Report) -> float | None:
         seconds = fresh.measured_s - before.measured_s
         if here is not None and there is not None and 0.0 < seconds <= BETWEEN_S:
             metres = _flat_m(there, here)
-            if metres >= max(LEAST_JUMP_M, situation.limits.jump_mps * seconds):
+            if metres >= max(LEAST_JUMP_M, situation.limits.jump_mps * _own_s(before, fresh, situation.link.clock_rate)):
                 memory.jumped_s, memory.jump_m = fresh.received_s, metres
     is_news = memory.jumped_s is not None and situation.now_s - memory.jumped_s <= JUMP_LASTS_S
     return memory.jump_m if is_news else None
+
+
+def _own_s(before: Report, after: Report, clock_rate: float) -> float:
+    """Between two measurements by the UAV's own clock: as it told; else by the rate that was learnt."""
+    if before.boot is not None and after.boot is not None and before.boot.stream == after.boot.stream:
+        return after.boot.clock_s - before.boot.clock_s
+    return (after.measured_s - before.measured_s) * clock_rate
 
 
 def _flat_m(start: LonLat, end: LonLat) -> float:

@@ -23,7 +23,7 @@ def detect(situation: Situation) -> list[Finding] | None:
     here = Progress(fresh.received_s, place.along_m, fresh.measurement.altitude_relative_m)
     if not memory.progress or memory.progress[-1].at_s < here.at_s:
         memory.progress.append(here)
-    longest_s = situation.limits.no_progress_s + SLACK * model.line.planned_hold_s(place.along_m)
+    longest_s = (situation.limits.no_progress_s + SLACK * model.line.planned_hold_s(place.along_m)) / situation.link.clock_rate
     while len(memory.progress) > 1 and memory.progress[1].at_s <= situation.now_s - longest_s:
         memory.progress.popleft()
     before = memory.progress[0]

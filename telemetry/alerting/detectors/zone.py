@@ -92,10 +92,10 @@ def _degrees(line: RouteLine, along_m: float) -> tuple[float, float]:
 
 
 def _reached_in_s(way: list[tuple[float, float]], zone: NearZone, situation: Situation) -> float | None:
-    """The end of the first step that touches the zone while it applies."""
+    """The end of the first step that touches the zone while it applies, by the server's clock; the way is cut by the UAV's own."""
     if not zone.polygon.intersects(shapely.LineString(way)):
         return None
-    step_s = situation.limits.zone_ahead_s / STEPS
+    step_s = situation.limits.zone_ahead_s / STEPS / situation.link.clock_rate
     before = way[0]
     for step, here in enumerate(way, 1):
         touches = zone.polygon.intersects(shapely.LineString([before, here]) if here != before else shapely.Point(here))

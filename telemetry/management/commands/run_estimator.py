@@ -8,6 +8,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand
 
+from operation.program import program_begins
 from telemetry.watch.options import options_of_settings
 from telemetry.watch.process import Watch
 
@@ -37,4 +38,5 @@ class Command(BaseCommand):
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, stop)
         self.stdout.write(f"watching as {watch.options.holder}")
+        program_begins("estimator")
         watch.run()

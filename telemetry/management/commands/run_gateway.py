@@ -9,6 +9,8 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from operation.program import program_begins
+from telemetry.gateway.figures import figures_of
 from telemetry.gateway.options import WrongAddress, options_of_settings
 from telemetry.gateway.process import Gateway
 
@@ -49,4 +51,6 @@ class Command(BaseCommand):
 
 async def _run(gateway: Gateway, say: Any) -> None:
     gateway.stop_on_signals(after_s=ENDS_WITHIN_S)
-    await gateway.run(on_listening=lambda names: say(f"listening on {', '.join(names)}"))
+    with figures_of(gateway):
+        program_begins("gateway", gateway.not_ready)
+        await gateway.run(on_listening=lambda names: say(f"listening on {', '.join(names)}"))

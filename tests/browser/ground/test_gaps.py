@@ -104,7 +104,7 @@ def test_who_is_no_curator_sees_gaps_and_cannot_mend_them(visitor: Visitor) -> N
     expect(page.locator(".gap-acts button")).to_have_count(0)
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("theme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 @pytest.mark.parametrize(("width", "height", "suffix"), [(1440, 900, ""), (390, 844, "-phone")])
 def test_the_chosen_gap_stands_in_sight(
     visitor: Visitor, picture: Callable[[Page, str], None], theme: str, width: int, height: int, suffix: str

@@ -4,23 +4,28 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from pymavlink.dialects.v20 import common as mavlink
 
+from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.content import MissionItem
 from missions.mavlink.frozen import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from missions.mavlink.items import flight_loads
 from missions.routing.problem import Task, TaskKind
 from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.circle import around
 from simulation.flight.events import Disarmed, ItemReached, LandedAt, MissionEnded, ModeChanged, PhotoTaken, TookOff
 from simulation.flight.faults import Faults
 from simulation.flight.flown import Ending, fly_mission
+from simulation.flight.orders import CannotFly, orders
 from simulation.flight.states import Landed, MissionState, Mode
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, at, begin, land, off_m, place, plain, reached, speed, step, take_off, waypoint
 
 IRIS = AIRFRAMES["iris"]
+FRAME = LocalFrame.around(*HOME)
 
 
 def uav_with(items: list[MissionItem], **more: object) -> SimulatedUav:
@@ -261,3 +266,37 @@ def test_heights_above_sea_and_ground_are_flown_as_they_are_given() -> None:
     assert uav.state.altitude_agl_m == pytest.approx(25.0, abs=0.5)
     assert uav.state.altitude_amsl_m == pytest.approx(135.0, abs=0.5)
     assert math.isclose(uav.state.home_amsl_m, 100.0)
+
+
+@pytest.mark.parametrize(("radius_m", "turns", "side"), [(15.0, 2.0, 1.0), (-15.0, 1.0, -1.0)])
+def test_a_circle_is_flown_round_its_centre(radius_m: float, turns: float, side: float) -> None:
+    """50 m to the east of home. Clockwise the centre lies to the right of its way, and there is no more than a decimetre in it."""
+    circle = at(mavlink.MAV_CMD_NAV_LOITER_TURNS, 50.0, 0.0, 10.0, turns, 0.0, radius_m)
+    uav = uav_with([take_off(), circle, waypoint(50.0, 40.0), land(50.0, 40.0)])
+    begin(uav)
+    away, turned_deg, before = [], 0.0, None
+    for _ in range(10_000):
+        uav.step()
+        if uav.state.current_item > 1:
+            break
+        lon, lat = uav.state.true_position
+        x, y = FRAME.to_metres(np.array([[lon, lat]]))[0].tolist()
+        off = math.dist((x, y), (50.0, 0.0))
+        bearing = math.degrees(math.atan2(x - 50.0, y))
+        if off < 15.5 and uav.state.current_item == 1:
+            away.append(off)
+            turned_deg += 0.0 if before is None else (bearing - before + 180.0) % 360.0 - 180.0
+            before = bearing
+    assert turned_deg == pytest.approx(side * 360.0 * turns, abs=8.0)
+    assert min(away) > 14.4
+    assert [index for index in reached(step(uav, 90.0)) if index > 1] == [2, 3]
+
+
+def test_a_circle_without_a_radius_is_ten_metres_wide_and_one_without_turns_a_place() -> None:
+    assert around((0.0, 0.0, 5.0), (30.0, 0.0, 9.0), 0.0, 10.0) == [pytest.approx((10.0, 0.0, 5.0))]
+    ends = around((0.0, 0.0, 5.0), (0.0, 30.0, 5.0), 1.5, -20.0)
+    assert ends[0] == pytest.approx((0.0, 20.0, 5.0)) and ends[-1] == pytest.approx((0.0, -20.0, 5.0), abs=1e-9)
+    (order,) = orders([at(mavlink.MAV_CMD_NAV_LOITER_TURNS, 0.0, 0.0, 10.0, 3.0)], is_home_first=False)
+    assert (order.turns, order.radius_m) == (3.0, 10.0)
+    with pytest.raises(CannotFly, match="parameter 1"):
+        orders([at(mavlink.MAV_CMD_NAV_LOITER_TURNS, 0.0, 0.0, 10.0, 1e6)], is_home_first=False)

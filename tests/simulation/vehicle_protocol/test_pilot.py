@@ -213,6 +213,42 @@ def test_unknown_commands_and_messages_are_refused_at_once_and_known_ones_sent()
     assert talk.command(520, 1) == ACCEPTED and talk.command(410) == ACCEPTED
 
 
+@pytest.mark.parametrize("flavour", Flavour)
+def test_a_return_leads_to_the_rally_point_that_is_nearer_than_home(flavour):
+    """A point 60 m to the north, 50 m up; it stands 45 m to the north. PX4 counts the height of returns from that of the point."""
+    talk = in_the_air(flavour)
+    there = (round((HOME.lat + 60 / 111_195) * 1e7), round(HOME.lon * 1e7))
+    point = mavlink.MAVLink_mission_item_int_message(*TO, 0, 3, 5100, 0, 1, 0, 0, 0, 0, *there, 50.0, 2)
+    assert only(talk.say(mavlink.MAVLink_mission_count_message(*TO, 1, 2), point)[-1:], "MISSION_ACK").type == 0
+    place = (round((HOME.lat + 45 / 111_195) * 1e7), round(HOME.lon * 1e7))
+    talk.say(mavlink.MAVLink_command_int_message(*TO, 0, GO_TO, 0, 0, -1, 1, 0, NAN, *place, HOME_AMSL_M + 20.0))
+    talk.pass_by(25.0)
+    assert talk.command(20) == ACCEPTED
+    told = [one for one in talk.pass_by(160.0) if one.get_type() == "GLOBAL_POSITION_INT"]
+    assert max(one.relative_alt for one in told) / 1_000 == pytest.approx(80.0 if flavour is Flavour.PX4 else 50.0, abs=1.0)
+    assert not talk.uav.state.is_in_air
+    assert (talk.uav.state.position.lat - HOME.lat) * 111_195 == pytest.approx(60.0, abs=1.0)
+
+
+def test_ardupilot_flies_no_list_from_the_ground_that_does_not_begin_with_a_take_off():
+    """In the air it does; PX4 takes off by itself."""
+    items = mission(5)[1:]
+    talk = flown(Flavour.ARDUPILOT)
+    talk.endpoint.missions.put(MissionType.MISSION, items)
+    talk.command(SET_MODE, 1, GUIDED)
+    assert talk.command(ARM, 1) == ACCEPTED
+    answers = talk.say(mavlink.MAVLink_command_long_message(*TO, SET_MODE, 0, 1, AUTO, NAN, NAN, NAN, NAN, NAN))
+    assert only(answers, "COMMAND_ACK").result == FAILED and "Missing Takeoff" in only(answers, "STATUSTEXT").text
+    assert talk.command(300) == FAILED
+    assert talk.uav.state.mode is Mode.HOLD
+    aloft = in_the_air(Flavour.ARDUPILOT)
+    aloft.endpoint.missions.put(MissionType.MISSION, items)
+    assert aloft.command(SET_MODE, 1, AUTO) == ACCEPTED
+    other = flown(Flavour.PX4)
+    other.endpoint.missions.put(MissionType.MISSION, items)
+    assert other.command(300) == ACCEPTED
+
+
 def test_the_fence_is_kept_by_holding_or_as_it_is_set():
     """A circle of 30 m about home; it flies north."""
     talk = in_the_air()

@@ -1,5 +1,7 @@
 """Generated faults: each is told within the delay that its detector states, by one alert; and flights without faults alarm nobody."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,6 +20,20 @@ from tests.telemetry.alerting.watch import Watch
 BY_CODE = {detector.code: detector for detector in DETECTORS}
 INTERVALS_S = (1, 1, 1, 2, 5, 10)
 BEFORE_S = 40  # of flight are watched before a fault
+FAST = 10
+
+
+def flown_fast(flight: TrueFlight, seed: int, *, clock_rate: float) -> Watch:
+    """Ten times as fast as its instruments tell, looked at once a second of the watch's clock."""
+    watch, instruments = Watch(), Instruments(flight, seed)
+    for second, state in enumerate(flight.states):
+        values = instruments.values(state)
+        if second % FAST:
+            continue
+        now_s = START_S + state.seconds / FAST
+        seen = WatchedUav(1, 1, "Tern", MISSION, MISSION, newest=Report(now_s, now_s, Measurement(**values)))
+        watch.look(watch.situation(now_s, seen, model=flight.model, link=LinkFacts(now_s, clock_rate=clock_rate)))
+    return watch
 
 
 def flown(flight: TrueFlight, seed: int, fault: Fault | None, *, interval_s: int) -> Watch:
@@ -82,6 +98,26 @@ def test_a_fault_is_told_in_time_and_once(make):
 @pytest.mark.parametrize("make", FAULTS, ids=lambda make: make.__name__)
 def test_each_fault_fifty_times(make):
     assert [words for seed in range(100, 150) if (words := wrong_with(make, seed))] == []
+
+
+def test_flights_at_ten_times_real_time_alarm_nobody():
+    """By their own clock; by the server's they would jump, at more than a hundred metres a second."""
+    flights = {seed: true_flight(seed) for seed in range(5)}
+
+    def alarms(clock_rate: float) -> set[str]:
+        return {event.code for seed, flight in flights.items() for event in flown_fast(flight, seed, clock_rate=clock_rate).opened()}
+
+    assert alarms(float(FAST)) == set()
+    assert "gps" in alarms(1.0)
+
+
+def test_who_does_not_come_on_is_told_by_its_own_clock():
+    """It stands still for 60 s of its own, which are 6 s of the watch's."""
+    flight = true_flight(0, least_leg_m=250.0)
+    stands = flight.states[flight.cruising(20)[0]]
+    states = tuple(replace(stands, seconds=float(second), east_mps=0.0, north_mps=0.0, holds=True) for second in range(60))
+    opened = flown_fast(replace(flight, states=states), 0, clock_rate=float(FAST)).opened()
+    assert [event.code for event in opened] == ["no-progress"]
 
 
 def test_flights_without_faults_alarm_nobody():

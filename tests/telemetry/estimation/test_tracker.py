@@ -24,6 +24,7 @@ from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.as_json import estimate_to_json
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge
+from telemetry.estimation.own_time import OwnTime
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import VOUCHED_S, Tracker
 
@@ -102,6 +103,44 @@ def test_how_far_apart_reports_come_is_told_by_their_arrivals(knowledge):
     assert at(tracked(knowledge, eastwards(range(10))), 10.0).report_interval_s == pytest.approx(1.0)
     parcels = [replace(one, received_s=T0 + 10.0 * (number // 10 + 1)) for number, one in enumerate(eastwards(range(30)))]
     assert at(tracked(knowledge, parcels), 30.0).report_interval_s == 10.0
+
+
+def test_ten_times_as_fast_as_real_time_it_is_where_it_would_be_by_its_own_clock(knowledge):
+    """The same reports within a tenth of the time: the same places, and arrivals a tenth as far away."""
+    usual = tracked(knowledge, eastwards(range(10)))
+    fast = Tracker(knowledge)
+    fast.time.run_at(10.0, T0)
+    for one in eastwards(range(10)):
+        fast.take(replace(one, measured_s=T0 + (one.measured_s - T0) / 10.0, received_s=T0 + (one.received_s - T0) / 10.0))
+    for second in (9.0, 19.0, 40.0):
+        ours, theirs = at(fast, second / 10.0), at(usual, second)
+        assert metres(ours) == pytest.approx(metres(theirs), abs=0.01)
+        assert ours.speed_mps == pytest.approx(theirs.speed_mps)
+        assert ours.bound.along_m == pytest.approx(theirs.bound.along_m, rel=1e-3)
+        assert [(one.at_s - T0) * 10.0 for one in ours.arrivals] == pytest.approx([one.at_s - T0 for one in theirs.arrivals], abs=0.01)
+        assert (ours.ends_at_s - T0) * 10.0 == pytest.approx(theirs.ends_at_s - T0, abs=0.01)
+        assert ours.report_s == pytest.approx(T0 + 0.9)
+    assert at(fast, 1.5).is_measured
+    assert not at(fast, 2.0).is_measured
+
+
+def test_what_was_measured_before_it_became_faster_stays_where_it_was(knowledge):
+    """Ten seconds at 1x, one at 10x, and a report of the first ten that came late."""
+    tracker = tracked(knowledge, [one for one in eastwards(range(10)) if one.measured_s != T0 + 5.0])
+    tracker.time.run_at(10.0, T0 + 9.0)
+    tracker.take(replace(eastwards(range(19, 20))[0], measured_s=T0 + 10.0, received_s=T0 + 10.0))
+    tracker.take(replace(eastwards(range(5, 6))[0], received_s=T0 + 10.1))
+    assert metres(at(tracker, 10.5))[0] == pytest.approx(340.0, abs=5.0)
+    assert metres(at(tracker, 7.5))[0] == pytest.approx(175.0, abs=5.0)
+    assert tracker.time.server_s(tracker.time.own_s(T0 + 4.0)) == T0 + 4.0
+
+
+@pytest.mark.parametrize("rate", [None, 0.0, -1.0, float("nan"), float("inf"), 1e9])
+def test_a_clock_that_cannot_be_is_taken_for_the_servers(rate):
+    time = OwnTime()
+    time.run_at(rate, T0)
+    assert time.own_s(T0 + 3.25) == T0 + 3.25
+    assert time.server_s(T0 + 3.25) == T0 + 3.25
 
 
 def test_between_reports_it_goes_on_along_its_route(knowledge):

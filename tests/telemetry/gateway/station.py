@@ -23,7 +23,7 @@ from telemetry.gateway.options import Address, Options
 from telemetry.gateway.process import Gateway
 from workspace.models import User
 
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 
 
 def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = PATIENCE_S) -> Any:

@@ -1,5 +1,7 @@
 """Whether a UAV was at its targets is told by where it was, however seldom it reports."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -30,6 +32,19 @@ def test_one_that_was_not_held_long_enough_is_not_done() -> None:
     first, second = visits_of(route(), flown(held_s=HOLD_S - 10), fastest_mps=FASTEST_MPS)
     assert first.can_have_reached and not first.is_done
     assert second.is_done
+
+
+@pytest.mark.parametrize("faster", [2.0, 10.0])
+def test_one_that_flies_faster_than_real_time_is_held_to_its_own_clock(faster: float) -> None:
+    """A stay of 30 s takes 3 s at ten times real time; one that was too short stays so."""
+
+    def fast(fixes: list[Fix]) -> list[Fix]:
+        return [replace(fix, at_s=1_000.0 + (fix.at_s - 1_000.0) / faster, boot=1, clock_s=fix.at_s) for fix in fixes]
+
+    whole, short = (visits_of(route(), fast(flown(held_s=held_s)), fastest_mps=FASTEST_MPS) for held_s in (HOLD_S, HOLD_S - 10))
+    assert [visit.is_done for visit in whole] == [True, True]
+    assert [visit.is_done for visit in short] == [False, True]
+    assert whole[0].reached_s == pytest.approx(1_000.0 + 30.0 / faster, abs=1.0)
 
 
 def test_without_a_report_nothing_was_reached() -> None:

@@ -79,7 +79,6 @@ export default {
   "{done} of {all} complete": "{done} von {all} erledigt",
   "Back to the board": "Zurück zur Tafel",
   "Event log": "Ereignisse",
-  "simulated, no real aircraft": "simuliert, kein echtes Luftfahrzeug",
   "Follow": "Folgen",
   "not in a mission": "in keiner Mission",
   "a target": "ein Ziel",

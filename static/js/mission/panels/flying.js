@@ -3,6 +3,7 @@
 import { byId, h, icon } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
+import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { boardOf, boardWords, commandWords, flightOf, flightToSend, flyersOf, isMixed, isOnItsWay, KINDS, stageActs, stageWords, timesOf, whyNoStart, whyNotMoved } from "../flying.js";
@@ -29,7 +30,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
       { class: `flyer route-${routeNumber(flyer.place)}`, "aria-label": flyer.name },
       h("span", { class: "letter" }, flyer.letter),
       h("div", { class: "flyer-said" },
-        h("strong", {}, flyer.name),
+        h("p", { class: "flyer-name" }, h("strong", {}, flyer.name), mission.uavs[flyer.place].is_simulated && [" ", simulatedMark()]),
         h("p", { class: `flyer-board ${level ?? ""}`, role: board && isMixed(board) ? "alert" : null }, icon(image, "small"), h("span", {}, words)),
         share !== undefined && h("div", { class: "progress", role: "progressbar", "aria-label": t("Sending to {name}", { name: flyer.name }), "aria-valuemin": 0, "aria-valuemax": 100, "aria-valuenow": Math.round(share * 100) }, h("i", { style: `width:${Math.max(4, share * 100)}%` })),
         said && h("p", { class: `flyer-board ${said.level ?? ""}`, title: timesOf(flight, exactClockText) }, icon(said.image, "small"), h("span", {}, said.words)),
@@ -59,7 +60,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
       { class: `command ${level ?? ""}` },
       icon(image, "small"),
       h("div", {},
-        h("p", {}, h("strong", {}, command.uav.name), ` ${words}`),
+        h("p", {}, h("strong", {}, command.uav.name), command.uav.is_simulated && [" ", simulatedMark()], ` ${words}`),
         h("p", { class: "caption" }, h("time", { datetime: command.created_at, title: exactText(command.created_at) }, timesOf(command, exactClockText)), " · ", command.created_by ?? t("by the program"), command.why && ` · ${command.why}`)),
     );
   }

@@ -5,8 +5,10 @@ import { ApiError } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
+import { markSimulated } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
+import { standingUavs } from "../fleet.js";
 import { departureText } from "../flight_options.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { inWords } from "../plan_words.js";
@@ -67,7 +69,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
     }),
   );
 
-  store.listen(["name", "mission", "selection", "plan", "planIsStored", "savedBasis"], (state) => {
+  store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis"], (state) => {
     const shown = state.name || (canPlan ? t("New mission") : t("Map"));
     if (name.value !== state.name) name.value = state.name;
     byId("page-title").textContent = shown;
@@ -77,6 +79,8 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
     const chip = byId("mission-state");
     chip.className = `chip ${stateName}`;
     chip.textContent = STATE_WORDS[stateName];
+    const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
+    markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
     chip.hidden = !canPlan && !state.mission; // just the map: there is nothing that could be a draft
     byId("mission-facts").textContent = chip.hidden ? t("no mission is open") : factsOf(state).join(" · ");
   });

@@ -3,10 +3,12 @@
 import { byId, h, icon, refill } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
 import { t } from "../../text.js";
-import { heightText, numberText, percentText, whenText } from "../../units.js";
+import { exactHeightText, heightText, numberText, percentText, SPEED_UNIT, speedText, whenText } from "../../units.js";
 import { isPlanCurrent, isUnsaved } from "../plan_view.js";
 import { CONDITIONS, conditionWords, figuresOf, isRunning, LEVELS, levelWords, nearestOther, ownConditions, sentenceOf } from "../rehearsal.js";
 import { drawCharts } from "../rehearsal_charts.js";
+
+const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
 
 const level = (name) => h("span", { class: `rehearsal-level ${name || "open"}` }, icon(LEVELS[name] ?? "circle-dashed", "small"), levelWords(name));
 
@@ -19,8 +21,8 @@ export function whyNotRehearsed(state) {
   return "";
 }
 
-/** rehearsing: see rehearsal_actions.js; canRehearse: operators. */
-export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
+/** rehearsing: see rehearsal_actions.js; canRehearse: operators; isStage: the page is about it alone; seeInSpace(): opens the 3D view of what is shown. */
+export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isStage, seeInSpace }) {
   const section = byId("rehearsal");
   const place = (name) => byId(`rehearsal-${name}`);
   let chosenRoute = null;
@@ -29,15 +31,18 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
 
   function mountForm() {
     const own = h("input", { type: "checkbox", name: "own" });
+    const speeds = { wind_mps: MOST_WIND_MPS, gusts_mps: MOST_GUSTS_MPS };
+    const most = (name) => Math.floor(speeds[name] / SPEED_UNIT.mps);
     const figure = (name, label, unit, min, max) => h("label", { class: "field" }, h("span", { class: "field-label" }, label), h("span", { class: "with-unit" }, h("input", { class: "input", type: "number", name, step: "any", min, max, oninput: () => (own.checked = true) }), h("span", { class: "unit" }, unit)));
     const checks = CONDITIONS.map((code) => h("label", { class: "rehearsal-check" }, h("input", { type: "checkbox", name: "condition", value: code, checked: code === "as-planned" }), h("span", {}, conditionWords(code))));
     place("form").append(
       h("fieldset", { class: "rehearsal-conditions" }, h("legend", { class: "field-label" }, t("Conditions")), checks, h("label", { class: "rehearsal-check" }, own, h("span", {}, t("Own figures")))),
-      h("details", { class: "rehearsal-own" }, h("summary", {}, t("Own figures")), h("div", { class: "rehearsal-figures" }, figure("wind_mps", t("Wind speed"), "m/s", 0, 60), figure("from_deg", t("Wind from"), "°", 0, 360), figure("gusts_mps", t("Gusts"), "m/s", 0, 10), figure("battery_percent", t("Battery holds"), "%", 10, 100)), h("p", { class: "caption" }, t("What is empty is as planned."))),
+      h("details", { class: "rehearsal-own" }, h("summary", {}, t("Own figures")), h("div", { class: "rehearsal-figures" }, figure("wind_mps", t("Wind speed"), SPEED_UNIT.unit, 0, most("wind_mps")), figure("from_deg", t("Wind from"), "°", 0, 360), figure("gusts_mps", t("Gusts"), SPEED_UNIT.unit, 0, most("gusts_mps")), figure("battery_percent", t("Battery holds"), "%", 10, 100)), h("p", { class: "caption" }, t("What is empty is as planned."))),
     );
     const read = () => {
       const conditions = [...place("form").querySelectorAll("input[name=condition]:checked")].map(({ value }) => value);
-      const figures = Object.fromEntries(["wind_mps", "from_deg", "gusts_mps", "battery_percent"].map((name) => [name, place("form").querySelector(`[name=${name}]`).valueAsNumber]));
+      const typed = (name) => place("form").querySelector(`[name=${name}]`).valueAsNumber;
+      const figures = Object.fromEntries(["wind_mps", "from_deg", "gusts_mps", "battery_percent"].map((name) => [name, typed(name) * (speeds[name] ? SPEED_UNIT.mps : 1)]));
       return own.checked ? [...conditions, ownConditions(figures)] : conditions;
     };
     place("form").addEventListener("submit", (event) => {
@@ -81,10 +86,20 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
     const isKnown = Boolean(detail?.runs);
     place("verdict").hidden = !isKnown;
     place("empty").hidden = isKnown || list === null || list.some(isRunning);
+    drawEarlier(list ?? [], detail);
     if (!isKnown) return refill(place("verdict"), "", () => []);
     const key = JSON.stringify([detail.id, detail.state, detail.level, detail.is_outdated, detail.ground_changed, run, Boolean(track), chosenRoute, mission?.revision]);
     return refill(place("verdict"), key, () => verdict(detail, run, track));
   }
+
+  /** Which of the rehearsals is looked at, where there are several. */
+  function drawEarlier(list, detail) {
+    place("earlier").hidden = list.length < 2;
+    refill(place("list"), JSON.stringify(list.map(({ id, state, level: name, is_outdated }) => [id, state, name, is_outdated])), () =>
+      list.map((one) => h("option", { value: one.id }, [whenText(one.created_at), one.is_outdated ? t("out of date") : isRunning(one) ? t("under way") : levelWords(one.level), one.runs.map(({ words }) => words).join(", ")].join(" · "))));
+    if (detail && document.activeElement !== place("list")) place("list").value = detail.id;
+  }
+  place("list").addEventListener("change", ({ target }) => void rehearsing.show(target.value));
 
   function verdict(detail, number, track) {
     const run = detail.runs[number];
@@ -94,14 +109,16 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
       detail.is_outdated && h("p", { class: "notice warning", role: "status" }, icon("triangle-alert"), h("span", {}, h("strong", {}, t("Out of date.")), " ", t("The plan is another one by now: this says nothing about it. Rehearse it again."))),
       !detail.is_outdated && detail.ground_changed && h("p", { class: "notice advisory" }, icon("info"), h("span", {}, t("Zones, assets or terrain have changed somewhere since."))),
       detail.runs.length > 1 && h("div", { class: "rehearsal-runs", role: "group", "aria-label": t("Conditions") }, detail.runs.map((one) => h("button", { type: "button", class: "button small", "aria-pressed": `${one.sequence === number}`, disabled: !one.level, onclick: () => void rehearsing.chooseRun(one.sequence) }, icon(LEVELS[one.level] ?? "circle-dashed", "small"), one.words))),
+      run?.is_reused && h("p", { class: "caption rehearsal-reused" }, t("Flown {time}: the same plan in the same air flies alike, and was not flown again.", { time: whenText(run.finished_at) }), canRehearse && !detail.is_outdated && [" ", h("button", { type: "button", class: "text-button", disabled: store.state.rehearsal.running !== null, onclick: () => void rehearsing.start(detail.runs.map(({ conditions }) => askedAgain(conditions)), { afresh: true }) }, t("Fly it again"))]),
       run?.verdict ? runOf(detail, run, track) : [],
-      h("details", { class: "rehearsal-limits" }, h("summary", {}, t("Limits and what flew")), detail.uavs.map(({ words }) => h("p", { class: "caption" }, words)), h("dl", {}, detail.limits.map(({ words, value, name, source }) => [h("dt", {}, words), h("dd", {}, `${numberText(value)} ${unitOf(name)}`, h("small", {}, source))]))),
+      h("details", { class: "rehearsal-limits" }, h("summary", {}, t("Limits and what flew")), detail.uavs.map(({ words }) => h("p", { class: "caption" }, words)), h("dl", {}, detail.limits.map(({ words, value, name, source }) => [h("dt", {}, words), h("dd", {}, limitText(name, value), h("small", {}, source))]))),
     ];
   }
 
   function runOf(detail, run, track) {
     return [
       h("p", { class: "rehearsal-air" }, airWords(run.conditions)),
+      h("button", { type: "button", class: "button small", onclick: seeInSpace }, icon("move-3d", "small"), t("See it in 3D")),
       run.verdict.routes.map((route) => {
         const isOpen = (chosenRoute ?? worstRoute(run.verdict)) === route.uav;
         const flown = track?.routes.find(({ uav }) => uav === route.uav);
@@ -136,7 +153,7 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
 
   function draw(state) {
     const { rehearsal, mission, plan } = state;
-    section.hidden = !mission || (!plan && !isFrozen && !rehearsal.list?.length);
+    section.hidden = !isStage && (!mission || (!plan && !isFrozen && !rehearsal.list?.length));
     if (section.hidden) return;
     if (form) drawStart(state);
     drawRunning(rehearsal);
@@ -157,14 +174,17 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen }) {
   return [{ keys: ["r"], words: t("Rehearse: choose conditions"), act: open }];
 }
 
+/** Conditions as a request names them: those of a run once more. */
+const askedAgain = ({ code, name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent }) => (code === "own" ? { name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent } : code);
+
 const worstRoute = ({ routes }) => (routes.find(({ level: name }) => name === "fail") ?? routes.find(({ level: name }) => name === "warnings") ?? routes[0])?.uav;
 
-const unitOf = (name) => (name.endsWith("_percent") ? "%" : name.endsWith("_s") ? "s" : "m");
+const limitText = (name, value) => (name.endsWith("_percent") ? percentText(value) : name.endsWith("_s") ? `${numberText(value)}\u00a0s` : exactHeightText(value));
 
 function airWords({ wind, gusts_mps, battery_percent }) {
   const [first] = wind;
-  const words = [first && first.speed_mps > 0 ? t("wind {speed} m/s from {from}° at {height}", { speed: numberText(first.speed_mps), from: Math.round(first.from_deg), height: heightText(first.altitude_agl_m) }) : t("no wind")];
-  if (gusts_mps > 0) words.push(t("gusts {speed} m/s", { speed: numberText(gusts_mps) }));
+  const words = [first && first.speed_mps > 0 ? t("wind {speed} from {from}° at {height}", { speed: speedText(first.speed_mps), from: Math.round(first.from_deg), height: heightText(first.altitude_agl_m) }) : t("no wind")];
+  if (gusts_mps > 0) words.push(t("gusts {speed}", { speed: speedText(gusts_mps) }));
   if (battery_percent < 100) words.push(t("battery holds {percent}", { percent: percentText(battery_percent) }));
   return words.join(", ");
 }

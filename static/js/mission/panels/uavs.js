@@ -2,6 +2,7 @@
 
 import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
+import { markSimulated } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { percentText } from "../../units.js";
 import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor, standingUavs } from "../fleet.js";
@@ -50,6 +51,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       letter.className = `letter ${isChosen ? `route-${routeNumber(uav.sequence)}` : "none"}`;
       letter.textContent = uav.letter;
       row.querySelector(".called").textContent = uav.name;
+      markSimulated(row.querySelector(".called"), uav.is_simulated);
       row.querySelector("small").textContent = uav.base_name ?? "";
       const facts = row.querySelector(".facts");
       const trouble = uav.grounded || troubleOf(uav);

@@ -28,7 +28,7 @@ export function drawnUav(uav, now_ms, chosen) {
   if (!at) return null;
   const isSure = certainty === MEASURED;
   return {
-    ...at, id: uav.id, name: uav.name, place: uav.place, letter: uav.place === null ? "" : routeLetter(uav.place), certainty, fact: mapFact(uav, certainty), isChosen: uav.id === chosen,
+    ...at, id: uav.id, name: uav.name, place: uav.place, letter: uav.place === null ? "" : routeLetter(uav.place), certainty, fact: mapFact(uav, certainty), isChosen: uav.id === chosen, isSimulated: uav.is_simulated,
     routeClass: uav.place === null ? "" : `route-${routeNumber(uav.place)}`,
     bound: isSure || certainty === LOST ? null : uav.estimated.bound,
     last: isSure ? null : (uav.measured?.position ?? null),
@@ -54,7 +54,8 @@ export function mountMonitorMap(store, page, { pick }) {
 
   function drawUavs(state) {
     const shown = drawn(state);
-    parts.markers.update(shown);
+    const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the head of the page says it once
+    parts.markers.update(shown.map((uav) => ({ ...uav, isMarked: uav.isSimulated && isMixed })));
     flightLayers.showUncertain(map, shown.filter(({ certainty }) => certainty !== MEASURED));
     const chosen = shown.find(({ isChosen }) => isChosen) ?? null;
     parts.closeUp.update(chosen, collection(routesShown(state)), flownOf(state));

@@ -3,6 +3,7 @@
 import { h, svg } from "../../dom.js";
 import { maplibre } from "../../map/maplibre.js";
 import { routeNumber } from "../../map/palette.js";
+import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { between, GLIDE_MS } from "./glide.js";
 
@@ -48,7 +49,7 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
   }
 
   return {
-    /** shown: [{ id, name, letter, place, position, heading_deg, certainty, fact, isChosen }] */
+    /** shown: [{ id, name, letter, place, position, heading_deg, certainty, fact, isMarked, isChosen }]; isMarked: as simulated */
     update(shown) {
       const seen = new Set(shown.map(({ id }) => id));
       for (const [id, { marker }] of flyers) if (!seen.has(id)) (marker.remove(), flyers.delete(id));
@@ -68,6 +69,7 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
         letter.hidden = uav.letter === "";
         letter.textContent = uav.letter;
         name.textContent = uav.name;
+        markSimulated(name, uav.isMarked);
         fact.textContent = uav.fact;
         place(flyer, uav.position);
       }

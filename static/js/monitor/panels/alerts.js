@@ -5,6 +5,7 @@ import { byId, h, icon, keyedList } from "../../dom.js";
 import { confirmAct } from "../../mission/panels/confirm.js";
 import { toggleMenu } from "../../page/chrome.js";
 import { say, toast } from "../../page/toast.js";
+import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { createAlarm, newAlerts } from "../alarm.js";
@@ -46,7 +47,7 @@ export function mountAlerts(store, page, { pick, commanding, showBoard }) {
 
   function refresh(row, alert) {
     const uav = store.state.uavs.find(({ id }) => id === alert.uav);
-    const key = JSON.stringify([alert.revision, alert.message, alert.notes, alert.acknowledged_at, alert.closed_at, uav?.name, uav?.place]);
+    const key = JSON.stringify([alert.revision, alert.message, alert.notes, alert.acknowledged_at, alert.closed_at, alert.is_simulated, uav?.name, uav?.place]);
     if (row.dataset.key === key) return;
     row.dataset.key = key;
     const isKnown = !isUnanswered(alert);
@@ -65,7 +66,7 @@ export function mountAlerts(store, page, { pick, commanding, showBoard }) {
     row.replaceChildren(
       icon(isKnown ? "check" : level.image),
       h("div", { class: "alert-said" },
-        h("p", { class: "alert-title" }, h("span", { class: "unseen" }, `${level.words}: `), uav ? h("button", { type: "button", class: "alert-uav", onclick: () => pick(uav.id) }, uav.name) : null, h("span", {}, alert.message)),
+        h("p", { class: "alert-title" }, h("span", { class: "unseen" }, `${level.words}: `), uav ? h("button", { type: "button", class: "alert-uav", onclick: () => pick(uav.id) }, uav.name) : null, h("span", {}, alert.message), alert.is_simulated && [" ", simulatedMark()]),
         said && h("p", { class: "caption" }, said),
         (act || known) && h("div", { class: "alert-acts" }, act, known)),
       h("div", { class: "alert-side" }, h("time", { datetime: alert.opened_at, title: exactText(alert.opened_at) }, exactClockText(alert.opened_at)), write),

@@ -2,6 +2,7 @@
 
 import { byId, h, icon, keyedList } from "../../dom.js";
 import { routeNumber } from "../../map/palette.js";
+import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { clockText, exactClockText, exactText } from "../../units.js";
 import { boardRows, STATES } from "../board.js";
@@ -37,11 +38,11 @@ export function mountBoard(store, { show }) {
     log,
     ({ key }) => key,
     () => h("li", {}),
-    (row, { at, image, level, words }) => {
+    (row, { at, image, level, isSimulated, words }) => {
       if (row.dataset.words === words) return;
       row.dataset.words = words;
       row.className = level ?? "";
-      row.replaceChildren(icon(image, "small"), h("span", {}, words), h("time", { datetime: at, title: exactText(at) }, exactClockText(at)));
+      row.replaceChildren(icon(image, "small"), h("span", {}, words, isSimulated && [" ", simulatedMark()]), h("time", { datetime: at, title: exactText(at) }, exactClockText(at)));
     },
   );
 

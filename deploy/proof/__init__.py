@@ -1,0 +1,1 @@
+"""What deploy/prove_image.py is made of."""

@@ -1,0 +1,190 @@
+"""Deployments of the shipped YAML as podman pods: what is changed for one machine without a cluster, and what is then seen of them."""
+
+import base64
+import contextlib
+import copy
+import http.client
+import json
+import os
+import subprocess
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from scripts.places import PROJECT_DIR
+
+Manifest = dict[str, Any]
+PODMAN_SETTINGS = """[containers]
+default_ulimits=["nofile=4096:4096","nproc=4096:4096"]
+[engine]
+runtime="runc"
+cgroup_manager="cgroupfs"
+"""
+
+
+class Podman:
+    """podman with settings that a machine without systemd and without CAP_SYS_RESOURCE can follow."""
+
+    def __init__(self, folder: Path) -> None:
+        settings = folder / "containers.conf"
+        settings.write_text(PODMAN_SETTINGS)
+        self._environment = os.environ | {"CONTAINERS_CONF": str(settings)}
+
+    def __call__(self, *arguments: str, check: bool = True, timeout_s: float = 300.0) -> str:
+        done = subprocess.run(["podman", *arguments], env=self._environment, capture_output=True, text=True, check=False, timeout=timeout_s)
+        if check and done.returncode != 0:
+            raise RuntimeError(f"podman {' '.join(arguments[:4])}: {done.stderr.strip()[-2000:]}")
+        return done.stdout.strip()
+
+
+def shipped(overlay: str) -> list[Manifest]:
+    """Every object of an overlay, as kubectl renders it."""
+    folder = PROJECT_DIR / "deploy" / "kubernetes" / "overlays" / overlay
+    text = subprocess.run(["kubectl", "kustomize", str(folder)], capture_output=True, text=True, check=True).stdout
+    return [document for document in yaml.safe_load_all(text) if document]
+
+
+def _found(manifests: Iterable[Manifest], kind: str, name: str) -> Manifest:
+    return next(one for one in manifests if one["kind"] == kind and one["metadata"]["name"].startswith(name))
+
+
+@dataclass
+class Pod:
+    """One replica of one program."""
+
+    program: str
+    number: int
+    manifest: Manifest
+    probes: dict[str, Any]
+    address: str = ""
+    ready_s: float = -1.0
+    exit_s: float = -1.0
+    faults: list[str] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        return f"proof-{self.program}-{self.number}"
+
+    @property
+    def container(self) -> str:
+        return f"{self.name}-pod-0-program"
+
+
+@dataclass
+class Site:
+    """The shipped objects, and what this machine has in a cluster's place."""
+
+    podman: Podman
+    manifests: list[Manifest]
+    image: str
+    files: Path
+    secrets: dict[str, str]
+    trust: str
+    gateway: str
+    settings: dict[str, str]
+
+    def pod(self, program: str, number: int, **more: str) -> Pod:
+        """The Deployment or Job as it is shipped, with these changes: the image of this machine; a folder for the claim; addresses in
+        place of names that a cluster resolves; the kubelet's probes are asked by this program, since podman asks with a curl that the
+        image does not have.
+        """
+        kind = "Job" if program == "migrate" else "Deployment"
+        deployment = copy.deepcopy(_found(self.manifests, kind, program))
+        template = deployment["spec"]["template"]
+        container = template["spec"]["containers"][0]
+        probes = {name: container.pop(name) for name in ("startupProbe", "livenessProbe", "readinessProbe") if name in container}
+        container.pop("lifecycle", None)
+        container["image"] = self.image
+        container.setdefault("env", []).extend({"name": name, "value": value} for name, value in more.items())
+        template["spec"]["hostAliases"] = [{"ip": self.gateway, "hostnames": ["postgresql", "redis"]}]
+        for volume in template["spec"].get("volumes", []):
+            if "persistentVolumeClaim" in volume:
+                volume.pop("persistentVolumeClaim")
+                volume["hostPath"] = {"path": str(self.files), "type": "Directory"}
+        name = f"proof-{program}-{number}"
+        whole = {"apiVersion": "apps/v1", "kind": "Deployment", "metadata": {"name": name}, "spec": {"replicas": 1, "template": template}}
+        template["spec"]["restartPolicy"] = "Never" if program == "migrate" else "Always"
+        whole["spec"]["selector"] = {"matchLabels": template["metadata"]["labels"]}
+        return Pod(program, number, whole, probes)
+
+    def beside(self) -> list[Manifest]:
+        """The settings as they are shipped, with this site's own, and the secrets."""
+        settings = copy.deepcopy(_found(self.manifests, "ConfigMap", "settings"))
+        settings["data"] |= self.settings
+        return [settings, _secret("secrets", self.secrets), _secret("trust", {"ca.crt": self.trust})]
+
+    def start(self, pod: Pod, folder: Path) -> None:
+        path = folder / f"{pod.name}.yaml"
+        path.write_text(yaml.safe_dump_all([*self.beside(), pod.manifest]))
+        path.chmod(0o600)
+        self.podman("play", "kube", str(path))
+        networks = json.loads(self.podman("inspect", pod.container, "--format", "{{json .NetworkSettings.Networks}}"))
+        pod.address = next(iter(networks.values()))["IPAddress"]
+
+    def end(self, pod: Pod) -> None:
+        with contextlib.suppress(RuntimeError):
+            self.podman("pod", "rm", "--force", "--time", "1", f"{pod.name}-pod-0")
+
+
+def _secret(name: str, values: dict[str, str]) -> Manifest:
+    data = {key: base64.b64encode(value.encode()).decode() for key, value in values.items()}
+    return {"apiVersion": "v1", "kind": "Secret", "metadata": {"name": name}, "data": data}
+
+
+def answers(pod: Pod, probe: str, timeout_s: float = 5.0) -> bool:
+    """Whether the pod passes a probe of its Deployment now, as a kubelet would ask it."""
+    asked = pod.probes[probe]["httpGet"]
+    ports = pod.manifest["spec"]["template"]["spec"]["containers"][0]["ports"]
+    port = next(entry["containerPort"] for entry in ports if entry["name"] == asked["port"])
+    connection = http.client.HTTPConnection(pod.address, port, timeout=timeout_s)
+    try:
+        connection.request("GET", asked["path"])
+        return 200 <= connection.getresponse().status < 400
+    except OSError:
+        return False
+    finally:
+        connection.close()
+
+
+def wait_until_ready(pods: list[Pod], began_s: float, patience_s: float) -> None:
+    """Notes for each how long it took from `began_s` (monotonic)."""
+    waiting = list(pods)
+    while waiting and time.monotonic() - began_s < patience_s:
+        for pod in list(waiting):
+            if answers(pod, "readinessProbe"):
+                pod.ready_s = time.monotonic() - began_s
+                waiting.remove(pod)
+        time.sleep(0.2)
+    for pod in waiting:
+        pod.faults.append(f"not ready after {patience_s:.0f} s")
+
+
+def look_at_rights(podman: Podman, pod: Pod) -> None:
+    """What the kernel says of the program's own process: user, capabilities, whether it may gain any, and where it may write."""
+    process = podman("inspect", pod.container, "--format", "{{.State.Pid}}")
+    facts = dict(line.split(":\t", 1) for line in Path(f"/proc/{process}/status").read_text().splitlines() if ":\t" in line)
+    if facts["Uid"].split()[0] != "10001":
+        pod.faults.append(f"runs as user {facts['Uid'].split()[0]}")
+    if int(facts["CapEff"], 16) or int(facts["CapBnd"], 16):
+        pod.faults.append("has capabilities")
+    if facts["NoNewPrivs"].strip() != "1":
+        pod.faults.append("may gain rights")
+    root = next(line for line in Path(f"/proc/{process}/mounts").read_text().splitlines() if line.split()[1] == "/")
+    if "ro" not in root.split()[3].split(","):
+        pod.faults.append("its root can be written to")
+
+
+def stop_softly(podman: Podman, pod: Pod, patience_s: float) -> None:
+    """SIGTERM to the container's first process, and how long it took to end."""
+    process = Path("/proc") / podman("inspect", pod.container, "--format", "{{.State.Pid}}")
+    began_s = time.monotonic()
+    podman("kill", "--signal", "TERM", pod.container)
+    while process.exists() and time.monotonic() - began_s < patience_s:
+        time.sleep(0.02)
+    pod.exit_s = time.monotonic() - began_s
+    if process.exists():
+        pod.faults.append(f"still there {patience_s:.0f} s after SIGTERM")

@@ -1,0 +1,234 @@
+"""Proves the image on one machine without a cluster: every program started from the shipped Kubernetes YAML, killed, and stopped.
+
+deploy/prove_image.py IMAGE [--overlay production] [--lasts-s 30] [--json FILE]
+
+As root, with podman, kubectl, PostgreSQL with PostGIS and Redis. The programs run in pods as their Deployments say (user, read-only root,
+no capabilities, limits, probes), against PostgreSQL and Redis with TLS and verified certificates. Printed: seconds until ready, seconds
+from SIGTERM to the end, and requests that failed while one of two web replicas is killed (SIGKILL), stopped (SIGTERM) and started again,
+and while the proxy's certificate is swapped. The bars: ready within 60 s, ended within 10 s, none failed. Exit code 1 if one is missed.
+"""
+
+import argparse
+import json
+import shutil
+import ssl
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROJECT_DIR = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(PROJECT_DIR))
+
+from deploy.proof.load import Counted, Proxy, plan_bodies, under_load  # noqa: E402
+from deploy.proof.pods import Pod, Podman, Site, answers, look_at_rights, shipped, stop_softly, wait_until_ready  # noqa: E402
+from deploy.proof.servers import Servers, running_servers  # noqa: E402
+
+READY_S, END_S = 60.0, 10.0
+PROGRAMS = ("live", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
+NETWORK = "podman-default-kube-network"  # what podman play kube puts pods into
+DEMO = [
+    ["make_demo_region", "/var/lib/spanwise/demo"],
+    ["import_osm", "/var/lib/spanwise/demo/demo.osm.pbf", "--synthetic"],
+    ["import_zones", "/var/lib/spanwise/demo/demo-zones.json", "--synthetic"],
+    ["load_demo", "--user", "proof", "--password-file", "/var/lib/spanwise/password"],
+    ["build_graph"],
+]
+
+
+class Proof:
+    """One run: what was started, and what came of it."""
+
+    def __init__(self, options: argparse.Namespace, folder: Path) -> None:
+        self.options, self.folder = options, folder
+        self.podman = Podman(folder)
+        self.pods: list[Pod] = []
+        self.figures: dict[str, str] = {}
+        self.missed: list[str] = []
+
+    def run(self) -> int:
+        network = json.loads(self.podman("network", "inspect", NETWORK))[0]["subnets"][0]
+        with running_servers(self.folder, network["subnet"]) as servers:
+            self.site = self._site(servers, network["gateway"])
+            try:
+                self._migrate()
+                self._start_all()
+                self._bring_ground()
+                self._kill_under_load()
+                self._swap_certificate(servers)
+                self._stop_all()
+            finally:
+                for pod in self.pods:
+                    if self.options.keep_logs:
+                        text = self.podman("logs", pod.container, check=False)
+                        (self.options.keep_logs / f"{pod.name}.log").write_text(text)
+                    self.site.end(pod)
+        return self._report()
+
+    def _site(self, servers: Servers, gateway: str) -> Site:
+        files = self.folder / "files"
+        files.mkdir()
+        shutil.chown(files, 10001, 10001)
+        trust = Path("/run/trust/ca.crt")
+        secrets = {
+            "database-url": servers.database_url.replace("/run/secrets/ca-certificate", str(trust)),
+            "redis-url": servers.redis_url.replace("/run/secrets/ca-certificate", str(trust)),
+            "secret-key": (servers.secrets / "secret-key").read_text().strip(),
+            "email-url": "console://",
+        }
+        own = {"SPANWISE_PROXY_RESOLVES": "0", "SPANWISE_PLAN_RATE": "1000/second", "SPANWISE_SIMULATOR_GATEWAY": f"{gateway}:14550"}
+        authority = (servers.secrets / "ca.crt").read_text()
+        return Site(self.podman, shipped(self.options.overlay), self.options.image, files, secrets, authority, gateway, own)
+
+    def _start(self, pod: Pod) -> Pod:
+        self.pods.append(pod)
+        self.site.start(pod, self.folder)
+        return pod
+
+    def _migrate(self) -> None:
+        began_s = time.monotonic()
+        pod = self._start(self.site.pod("migrate", 1))
+        code = self.podman("wait", pod.container, timeout_s=600)
+        if code != "0":
+            raise RuntimeError(f"the migration ended with {code}: {self.podman('logs', pod.container)[-2000:]}")
+        self.figures["migration of an empty database"] = f"{time.monotonic() - began_s:.1f} s"
+
+    def _start_all(self) -> None:
+        """All at once, as a cluster does; the two web replicas first in line, for the proxy needs their addresses here."""
+        began_s = time.monotonic()
+        self.web = [self._start(self.site.pod("web", number)) for number in (1, 2)]
+        others = [self._start(self.site.pod(program, 1)) for program in PROGRAMS]
+        web = ",".join(f"{pod.address}:8000" for pod in self.web)
+        live = next(pod.address for pod in others if pod.program == "live")
+        self.addresses = {"SPANWISE_PROXY_WEB": web, "SPANWISE_PROXY_LIVE": f"{live}:8001"}
+        self.proxy_pod = self._start(self.site.pod("proxy", 1, **self.addresses))
+        self.running = [*self.web, *others, self.proxy_pod]
+        wait_until_ready(self.running, began_s, READY_S)
+        for pod in self.running:
+            look_at_rights(self.podman, pod)
+            if not answers(pod, "livenessProbe"):
+                pod.faults.append("is not alive by its liveness probe")
+        self.figures["every program ready"] = f"{max(pod.ready_s for pod in self.running):.1f} s"
+
+    def _manage(self, *arguments: str) -> str:
+        return self.podman("exec", self.web[0].container, "spanwise", "manage", *arguments, timeout_s=600)
+
+    def _bring_ground(self) -> None:
+        self.podman("exec", self.web[0].container, "sh", "-c", "head -c 18 /dev/urandom | base64 >/var/lib/spanwise/password")
+        for command in DEMO:
+            self._manage(*command)
+        token = self._manage("api_token", "proof", "--days", "1").splitlines()[-1]
+        self.proxy = Proxy(self.proxy_pod.address, 8080, token)
+        self.bodies = plan_bodies(self.proxy)
+        for _ in range(3):  # both replicas have read the graph
+            under_load(self.proxy, self.bodies, 8, 2.0, lambda: None)
+
+    def _note(self, what: str, counted: Counted) -> None:
+        self.figures[what] = str(counted)
+        if counted.failed:
+            self.missed.append(f"{what}: {counted.failed} failed, first: {counted.faults[:3]}")
+
+    def _kill_under_load(self) -> None:
+        victim = self.web[0]
+        kill = lambda: self.podman("kill", "--signal", "KILL", victim.container)  # noqa: E731
+        self._note("one of two web replicas killed under load", self._load(kill))
+        wait_until_ready([victim], time.monotonic(), READY_S)  # podman starts it again, as a kubelet does
+        stop = lambda: self.podman("kill", "--signal", "TERM", victim.container)  # noqa: E731
+        self._note("one of two web replicas stopped under load", self._load(stop))
+        wait_until_ready([victim], time.monotonic(), READY_S)
+
+    def _load(self, meanwhile: object) -> Counted:
+        return under_load(self.proxy, self.bodies, self.options.people, self.options.lasts_s, lambda: (meanwhile(), None)[1])  # type: ignore[operator]
+
+    def _swap_certificate(self, servers: Servers) -> None:
+        """A proxy that speaks TLS itself, as compose has it. Its certificate is replaced twice under load."""
+        certificates = servers.secrets / "web"
+        for file in certificates.iterdir():
+            shutil.chown(file, 10001, 10001)
+        pod = self.site.pod(
+            "proxy", 2, **self.addresses, SPANWISE_TLS_CERTIFICATE="/run/certificate/tls.crt", SPANWISE_TLS_KEY="/run/certificate/tls.key"
+        )
+        template = pod.manifest["spec"]["template"]["spec"]
+        template["containers"][0]["volumeMounts"].append({"name": "certificate", "mountPath": "/run/certificate"})
+        template["volumes"].append({"name": "certificate", "hostPath": {"path": str(certificates), "type": "Directory"}})
+        self._start(pod)
+        wait_until_ready([pod], time.monotonic(), READY_S)
+        trust = ssl.create_default_context()
+        trust.check_hostname, trust.verify_mode = False, ssl.CERT_NONE  # two self-signed ones follow each other
+        proxy = Proxy(pod.address, 8443, self.proxy.token, trust)
+        seen = {_serial(pod.address)}
+
+        def swap() -> None:
+            for _ in range(2):
+                for name in ("tls.crt", "tls.key"):
+                    (certificates / name).unlink()
+                subprocess.run(
+                    [PROJECT_DIR / "deploy" / "make-secrets", "spanwise.example.org", servers.secrets], check=True, capture_output=True
+                )
+                for file in certificates.iterdir():
+                    shutil.chown(file, 10001, 10001)
+                end_s = time.monotonic() + 30
+                while _serial(pod.address) in seen and time.monotonic() < end_s:
+                    time.sleep(0.2)
+                seen.add(_serial(pod.address))
+
+        self._note("certificate swapped twice under load", under_load(proxy, self.bodies, self.options.people, self.options.lasts_s, swap))
+        if len(seen) != 3:
+            self.missed.append(f"{len(seen)} certificates were seen, not 3")
+        self.figures["TLS below 1.2"] = "refused" if _refuses_old_tls(pod.address) else "accepted"
+        if self.figures["TLS below 1.2"] != "refused":
+            self.missed.append("TLS 1.1 is accepted")
+        connection = Proxy(pod.address, 8080, self.proxy.token).connect()
+        connection.request("GET", "/sign-in", headers={"Host": "spanwise.example.org"})
+        answer = connection.getresponse()
+        self.figures["http"] = f"{answer.status} {answer.headers.get('Location', '')}"
+        if (answer.status, answer.headers.get("Location")) != (308, "https://spanwise.example.org/sign-in"):
+            self.missed.append("http does not lead to https")
+
+    def _stop_all(self) -> None:
+        for pod in reversed(self.running):
+            stop_softly(self.podman, pod, END_S)
+
+    def _report(self) -> int:
+        print(f"{'program':<20} {'ready s':>8} {'end s':>8}")
+        for pod in self.running:
+            print(f"{pod.name.removeprefix('proof-'):<20} {pod.ready_s:8.1f} {pod.exit_s:8.2f}  {'; '.join(pod.faults)}")
+            self.missed += [f"{pod.name}: {fault}" for fault in pod.faults]
+        for what, figure in self.figures.items():
+            print(f"{what}: {figure}")
+        for missed in self.missed:
+            print(f"MISSED {missed}")
+        if self.options.json:
+            programs = {pod.name: {"ready_s": pod.ready_s, "exit_s": pod.exit_s} for pod in self.running}
+            self.options.json.write_text(json.dumps({"programs": programs, "figures": self.figures, "missed": self.missed}, indent=1))
+        return int(bool(self.missed))
+
+
+def _serial(address: str) -> str:
+    return ssl.get_server_certificate((address, 8443), timeout=10)
+
+
+def _refuses_old_tls(address: str) -> bool:
+    done = subprocess.run(
+        ["openssl", "s_client", "-connect", f"{address}:8443", "-tls1_1", "-cipher", "ALL@SECLEVEL=0"],
+        stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=30,
+    )  # fmt: skip
+    return done.returncode != 0 or b"Cipher is (NONE)" in done.stdout
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("image")
+    parser.add_argument("--overlay", default="production")
+    parser.add_argument("--people", type=int, default=16, help="who ask at once under load")
+    parser.add_argument("--lasts-s", type=float, default=30.0, help="of each load")
+    parser.add_argument("--json", type=Path)
+    parser.add_argument("--keep-logs", type=Path, metavar="FOLDER", help="what the programs have written")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="spanwise-proof-") as folder:
+        return Proof(options, Path(folder)).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

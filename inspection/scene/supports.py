@@ -1,0 +1,148 @@
+"""Supports and spans with forms, arms and sag: from what stands there and what lines say of themselves."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inspection.scene.arms import Arms, arms_of
+from inspection.scene.forms import Form, Tags, form_of, is_anchor, layout_of
+from inspection.scene.overhead import Overhead, bearings_deg
+from inspection.scene.sag import sag_m
+
+MOST_PHASES = 12
+PHASES_OF_CIRCUIT = 3
+_ONE_PHASE_HZ = {"16.7", "16.67", "16 2/3", "0"}  # railways' lines and direct current: two wires to a circuit
+
+
+@dataclass(frozen=True)
+class LineFacts:
+    """What a line says of itself."""
+
+    voltage_v: int | None
+    circuits: int | None
+    tags: Tags
+
+
+@dataclass(frozen=True)
+class SupportFacts:
+    """What a support says of itself; kind: tower, pole or portal."""
+
+    kind: str
+    voltage_v: int | None
+    tags: Tags
+
+
+@dataclass(frozen=True)
+class DrawnSupport:
+    kind: str  # "vertex" where no support is mapped
+    form: Form
+    height_m: float
+    height_source: str  # tag, line, assumed
+    voltage_v: int | None
+    is_anchor: bool
+    bearing_deg: float
+    arms: Arms
+
+
+@dataclass(frozen=True)
+class DrawnSpan:
+    start: int
+    end: int
+    lines: tuple[int, ...]
+    voltage_v: int | None
+    phases: int
+    earth: int
+    length_m: float
+    sag_m: float
+
+
+VERTEX = SupportFacts("vertex", None, {})
+NO_LINE = LineFacts(None, None, {})
+
+
+def phases_of(line: LineFacts) -> int:
+    """Wires to draw of a line, without earth wires: as its cables or circuits say, else one circuit."""
+    cables = line.tags.get("cables", "")
+    if cables.isascii() and cables.isdigit() and cables.strip("0"):
+        return MOST_PHASES if len(cables) > 3 else min(int(cables), MOST_PHASES)
+    of_circuit = 2 if line.tags.get("frequency", "") in _ONE_PHASE_HZ else PHASES_OF_CIRCUIT
+    return min((line.circuits or 1) * of_circuit, MOST_PHASES)
+
+
+def drawn(
+    found: Overhead, supports: Mapping[int, SupportFacts], lines: Mapping[int, LineFacts]
+) -> tuple[list[DrawnSupport], list[DrawnSpan]]:
+    """In the order of `found`. supports and lines by primary key."""
+    carried = [[lines.get(line, NO_LINE) for line in own] for own in found.span_lines]
+    voltage_v = [max((line.voltage_v for line in own if line.voltage_v), default=None) for own in carried]
+    phases = [min(sum(map(phases_of, own)), MOST_PHASES) for own in carried]
+    bearing, ways, bend = bearings_deg(found, np.array([(own or 1) * 1.0 for own in voltage_v]))
+    most_phases, most_v = _at_ends(found, phases), _at_ends(found, [own or 0 for own in voltage_v])
+    stands = [
+        _support(
+            VERTEX if key < 0 else supports.get(key, VERTEX),
+            height_m=height_m,
+            height_source="tag" if is_tagged else "line" if is_by_line else "assumed",
+            line_voltage_v=most_v[place] or None,
+            phases=most_phases[place] or PHASES_OF_CIRCUIT,
+            ways=int(ways[place]),
+            bend_deg=float(bend[place]),
+            bearing_deg=float(bearing[place]),
+        )
+        for place, (key, height_m, is_tagged, is_by_line) in enumerate(
+            zip(found.support.tolist(), found.height_m.tolist(), found.is_tagged.tolist(), found.is_by_line.tolist(), strict=True)
+        )
+    ]
+    hung = [
+        _span(stands, start, end, own_lines, own_v, own_phases, length_m)
+        for (start, end), own_lines, own_v, own_phases, length_m in zip(
+            found.span.tolist(), found.span_lines, voltage_v, phases, found.length_m.tolist(), strict=True
+        )
+    ]
+    return stands, hung
+
+
+def _at_ends(found: Overhead, of_span: Sequence[int]) -> list[int]:
+    """The greatest of the spans at each support, 0 where there is none."""
+    greatest = np.zeros(len(found.position), dtype=np.int64)
+    for side in (0, 1):
+        np.maximum.at(greatest, found.span[:, side], np.array(of_span, dtype=np.int64))
+    return [int(value) for value in greatest]
+
+
+def _support(
+    facts: SupportFacts, *, height_m: float, height_source: str, line_voltage_v: int | None, phases: int, ways: int, bend_deg: float,
+    bearing_deg: float,
+) -> DrawnSupport:  # fmt: skip
+    voltage_v = line_voltage_v or facts.voltage_v
+    form = form_of(facts.kind, facts.tags, voltage_v)
+    fastened = is_anchor(facts.tags, ways, bend_deg)
+    layout = layout_of(form, facts.tags, phases, voltage_v)
+    return DrawnSupport(
+        kind=facts.kind,
+        form=form,
+        height_m=height_m,
+        height_source=height_source,
+        voltage_v=voltage_v,
+        is_anchor=fastened,
+        bearing_deg=bearing_deg,
+        arms=arms_of(form, layout, height_m, voltage_v, phases, fastened),
+    )
+
+
+def _span(
+    stands: Sequence[DrawnSupport], start: int, end: int, lines: tuple[int, ...], voltage_v: int | None, phases: int, length_m: float
+) -> DrawnSpan:
+    ends = stands[start].arms, stands[end].arms
+    lowest_m = min(height_m for arms in ends for _, height_m in arms.slots)
+    return DrawnSpan(
+        start=start,
+        end=end,
+        lines=lines,
+        voltage_v=voltage_v,
+        phases=min(phases, *(len(arms.slots) for arms in ends)),
+        earth=min(len(arms.earth) for arms in ends),
+        length_m=length_m,
+        sag_m=sag_m(length_m, lowest_m),
+    )

@@ -1,0 +1,272 @@
+"""The ground of a box for the 3D view: terrain, supports and spans, railways, bridges and zones."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from django.contrib.gis.db.models.functions import AsWKB
+from django.db.models import QuerySet
+from django.utils.translation import gettext_noop
+
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
+from inspection.graph.ground_data import Ways
+from inspection.graph.inspection_graph import NodeKind
+from inspection.models import Asset, AssetKind, NoFlyZone
+from inspection.scene.decks import deck_amsl_m, layer_of
+from inspection.scene.overhead import Overhead, overhead
+from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SupportFacts, drawn
+from inspection.selectors.assets import Box, area_of
+from inspection.selectors.ground_data import supports_and_lines
+from inspection.selectors.terrain import ground_heights_m
+from inspection.selectors.terrain_models import finest_step_m, terrain_models
+from inspection.selectors.zone_table import ground_range_m
+
+RECIPE = 1  # part of the ETag: counts the changes to what a scene holds
+SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
+NEAREST_POLE_DEG = 85.0
+MOST_POSTS = 193  # of the ground, along each side
+AROUND_M = 1_500.0  # railways, bridges and zones reach so far beyond the box
+REACH_DEG = 0.15  # a span is not longer than that in degrees
+MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
+SIMPLER_DEG = 5e-6  # half a metre: of the outlines of zones
+
+Row = TypeVar("Row", Asset, NoFlyZone)
+
+
+class UnfitBox(Exception):
+    """Its message is a key of the catalogues."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneGround:
+    """kind: terrain, partly or flat; altitude_amsl_m (rows, columns), from the north-west."""
+
+    kind: str
+    west_deg: float
+    north_deg: float
+    step_lon_deg: float
+    step_lat_deg: float
+    altitude_amsl_m: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class SceneBridge:
+    asset: Asset
+    shape: shapely.geometry.base.BaseGeometry
+    deck_amsl_m: float
+    deck_source: str
+    height_m: float
+    height_source: str
+
+
+@dataclass(frozen=True, eq=False)
+class SceneZone:
+    """ground_is_known: under all of it, as planners ask before they compare heights above the sea with it."""
+
+    zone: NoFlyZone
+    shape: shapely.geometry.base.BaseGeometry
+    ground_is_known: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    box: Box
+    clip: Box
+    origin_amsl_m: float
+    ground: SceneGround
+    place: Overhead
+    support_amsl_m: FloatArray  # of the ground at each
+    supports: list[DrawnSupport]
+    spans: list[DrawnSpan]
+    assets: dict[int, Asset]  # of supports
+    railways: list[tuple[Asset, shapely.geometry.base.BaseGeometry]]
+    bridges: list[SceneBridge]
+    zones: list[SceneZone]
+    left_out: dict[str, int]
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        west, south, east, north = self.box
+        return (west + east) / 2, (south + north) / 2
+
+
+def check_box(box: Box) -> None:
+    """Raises UnfitBox."""
+    west, south, east, north = box
+    if west > east:
+        raise UnfitBox(gettext_noop("A scene does not cross the 180th meridian."))
+    if max(abs(south), abs(north)) > NEAREST_POLE_DEG:
+        raise UnfitBox(gettext_noop("A scene does not lie within 5 degrees of a pole."))
+    sides_m = _sides_m(box)
+    if min(sides_m) < SHORTEST_SIDE_M:
+        raise UnfitBox(gettext_noop("A side of the box is shorter than 50 m."))
+    if max(sides_m) > LONGEST_SIDE_M:
+        raise UnfitBox(gettext_noop("A side of the box is longer than 40 km."))
+
+
+def scene_in(box: Box) -> Scene:
+    """Raises UnfitBox."""
+    check_box(box)
+    ground = _ground(box)
+    clip = _wider(box, AROUND_M)
+    west, south, east, north = box
+    middle = np.array([(west + east) / 2, (south + north) / 2])
+    found, left_out = _overhead(box, middle)
+    assets = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=found.support[found.support >= 0].tolist()))}
+    lines = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=sorted({line for own in found.span_lines for line in own})))}
+    supports, spans = drawn(
+        found,
+        {pk: SupportFacts(asset.subtype or "tower", asset.max_voltage_v, asset.tags) for pk, asset in assets.items()},
+        {pk: LineFacts(asset.max_voltage_v, asset.circuits, asset.tags) for pk, asset in lines.items()},
+    )
+    railways = [(asset, _shape(asset, clip)) for asset in _in_area(AssetKind.RAILWAY, clip).filter(is_flyable=True)]
+    zones = NoFlyZone.objects.filter(geometry__intersects=area_of(clip)).annotate(wkb=AsWKB("geometry")).defer("geometry")
+    kept_railways, left_out["railways"] = _nearest(railways, middle, MOST_RAILWAYS)
+    kept_bridges, left_out["bridges"] = _nearest(
+        [(row, _shape(row, clip)) for row in _in_area(AssetKind.BRIDGE, clip)], middle, MOST_BRIDGES
+    )
+    kept_zones, left_out["zones"] = _nearest([(zone, _shape(zone, clip)) for zone in zones], middle, MOST_ZONES)
+    return Scene(
+        box=box,
+        clip=clip,
+        origin_amsl_m=float(_told(middle[None], ground)[0]),
+        ground=ground,
+        place=found,
+        support_amsl_m=_told(found.position, ground),
+        supports=supports,
+        spans=spans,
+        assets=assets,
+        railways=kept_railways,
+        bridges=[_bridge(asset, shape, ground) for asset, shape in kept_bridges],
+        zones=[_zone(zone, shape) for zone, shape in kept_zones],
+        left_out=left_out,
+    )
+
+
+def _sides_m(box: Box) -> tuple[float, float]:
+    """From west to east where the box is widest, and from south to north."""
+    west, south, east, north = box
+    nearest_equator = 0.0 if south <= 0.0 <= north else min(south, north, key=abs)
+    frame = LocalFrame.around(west, nearest_equator)
+    return (east - west) * frame.metres_per_degree_east, (north - south) * frame.metres_per_degree_north
+
+
+def _wider(box: Box, by_m: float) -> Box:
+    west, south, east, north = box
+    frame = LocalFrame.around((west + east) / 2, (south + north) / 2)
+    lon, lat = by_m / frame.metres_per_degree_east, by_m / frame.metres_per_degree_north
+    return max(west - lon, -180.0), max(south - lat, -90.0), min(east + lon, 180.0), min(north + lat, 90.0)
+
+
+def _ground(box: Box) -> SceneGround:
+    """As fine as the terrain model there, or as MOST_POSTS allow."""
+    west, south, east, north = box
+    step_m = 2.0 * finest_step_m(box)
+    columns, rows = (min(max(math.ceil(side_m / step_m) + 1, 2), MOST_POSTS) for side_m in _sides_m(box))
+    lon, lat = np.meshgrid(np.linspace(west, east, columns), np.linspace(north, south, rows))
+    heights = np.full(rows * columns, np.nan)
+    if terrain_models():
+        heights = ground_heights_m(np.column_stack([lon.ravel(), lat.ravel()]))
+    is_known = ~np.isnan(heights)
+    kind = "terrain" if is_known.all() else "partly" if is_known.any() else "flat"
+    if kind == "flat":
+        columns = rows = 2
+        heights, is_known = np.full(4, np.nan), np.zeros(4, dtype=bool)
+    filled = np.where(is_known, heights, heights[is_known].mean() if is_known.any() else 0.0).reshape(rows, columns)
+    return SceneGround(kind, west, north, (east - west) / (columns - 1), (north - south) / (rows - 1), filled)
+
+
+def _told(positions: FloatArray, ground: SceneGround) -> FloatArray:
+    """The ground at positions (n, 2); where no model tells, as the scene's own ground is filled."""
+    heights = np.full(len(positions), np.nan) if ground.kind == "flat" else ground_heights_m(positions)
+    return np.where(np.isnan(heights), ground.altitude_amsl_m.mean() if ground.kind != "flat" else 0.0, heights)
+
+
+def _overhead(box: Box, middle: FloatArray) -> tuple[Overhead, dict[str, int]]:
+    """Read twice: the lines that touch the box, and then all that stands and runs where their spans lead."""
+    _, lines = supports_and_lines(box)
+    supports, lines = supports_and_lines(_reach(box, lines))
+    found = overhead(supports, lines, box)
+    stays = _nearest_places(found.position, middle, MOST_SUPPORTS)
+    centre = found.position[found.span].mean(axis=1)
+    hangs = _nearest_places(centre, middle, MOST_SPANS)
+    kept = found.where(stays, hangs)
+    return kept, {"supports": int((~stays).sum()), "spans": len(found.span) - len(kept.span)}
+
+
+def _reach(box: Box, lines: Ways) -> Box:
+    """The box, with the ends of all spans that touch it; spans longer than REACH_DEG stay cut."""
+    west, south, east, north = box
+    start = lines.leg_start
+    ends = np.stack([lines.position[start], lines.position[start + 1]], axis=1)
+    low, high = ends.min(axis=1, initial=180.0), ends.max(axis=1, initial=-180.0)
+    touches = (low <= (east, north)).all(axis=1) & (high >= (west, south)).all(axis=1)
+    low = np.maximum(low[touches].min(axis=0, initial=180.0), (west - REACH_DEG, south - REACH_DEG))
+    high = np.minimum(high[touches].max(axis=0, initial=-180.0), (east + REACH_DEG, north + REACH_DEG))
+    return min(west, float(low[0])), min(south, float(low[1])), max(east, float(high[0])), max(north, float(high[1]))
+
+
+def _read(assets: "QuerySet[Asset]") -> "QuerySet[Asset]":
+    return assets.select_related("line").defer(
+        "geometry", "node_osm_ids", "source_facts", "line__geometry", "line__node_osm_ids", "line__source_facts"
+    )
+
+
+def _in_area(kind: AssetKind, clip: Box) -> "QuerySet[Asset]":
+    assets = Asset.objects.filter(kind=kind, vanished_at=None, geometry__intersects=area_of(clip))
+    return assets.annotate(wkb=AsWKB("geometry")).defer("geometry", "node_osm_ids", "source_facts").order_by("pk")
+
+
+def _shape(row: Asset | NoFlyZone, clip: Box) -> shapely.geometry.base.BaseGeometry:
+    """What of it lies in the box; bridges whole."""
+    shape = shapely.force_2d(shapely.from_wkb(bytes(row.wkb)))
+    if isinstance(row, Asset) and row.kind == AssetKind.BRIDGE:
+        return shape
+    if isinstance(row, NoFlyZone):
+        simpler = shapely.simplify(shape, SIMPLER_DEG)
+        shape = simpler if shapely.is_valid(simpler) and not simpler.is_empty else shape
+    return shapely.intersection(shape, shapely.box(*clip))
+
+
+def _nearest(
+    rows: Iterable[tuple[Row, shapely.geometry.base.BaseGeometry]], middle: FloatArray, most: int
+) -> tuple[list[tuple[Row, shapely.geometry.base.BaseGeometry]], int]:
+    """The rows nearest to the middle, in their order, and how many are left out; those without anything in the box are neither."""
+    there = [(row, shape) for row, shape in rows if not shape.is_empty]
+    if len(there) <= most:
+        return there, 0
+    far = shapely.distance(np.array([shape for _, shape in there], dtype=object), shapely.points(middle))
+    kept = np.sort(np.argsort(far, kind="stable")[:most])
+    return [there[place] for place in kept.tolist()], len(there) - most
+
+
+def _nearest_places(position: FloatArray, middle: FloatArray, most: int) -> "np.typing.NDArray[np.bool_]":
+    stays = np.ones(len(position), dtype=bool)
+    if len(position) > most:
+        stretch = (math.cos(math.radians(float(middle[1]))), 1.0)
+        far = np.hypot(*((position - middle) * stretch).T)
+        stays[np.argsort(far, kind="stable")[most:]] = False
+    return stays
+
+
+def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, ground: SceneGround) -> SceneBridge:
+    """height_m is what planners count as its top."""
+    edge_m = _told(shapely.get_coordinates(shape), ground)
+    tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
+    if asset.height_m is not None:
+        deck_m, source = float(edge_m.mean()) + asset.height_m, "tag"
+    else:
+        deck_m, source = deck_amsl_m(edge_m, layer_of(tags)), "layer"
+    height_m = UNTAGGED_HEIGHT_M[NodeKind.BRIDGE] if asset.height_m is None else asset.height_m
+    return SceneBridge(asset, shape, deck_m, source, height_m, "assumed" if asset.height_m is None else "tag")
+
+
+def _zone(zone: NoFlyZone, shape: shapely.geometry.base.BaseGeometry) -> SceneZone:
+    needs_ground = "AMSL" in {zone.lower_reference, zone.upper_reference}
+    is_known = not needs_ground or not math.isnan(ground_range_m(shapely.from_wkb(bytes(zone.wkb)))[0])
+    return SceneZone(zone, shape, is_known)

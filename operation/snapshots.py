@@ -1,0 +1,52 @@
+"""Metrics that are read off a program's own state when somebody asks, so that the work itself counts nothing."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client.registry import REGISTRY, Collector
+
+Labels = tuple[str, ...]
+Values = Mapping[Labels, float]
+
+
+@dataclass(frozen=True)
+class Described:
+    """A metric and what it means. A counter's name has no `_total`, which is added where it is told."""
+
+    name: str
+    meaning: str
+    labels: Sequence[str] = ()
+    is_counter: bool = False
+
+    def family(self, values: Values) -> Metric:
+        kind = CounterMetricFamily if self.is_counter else GaugeMetricFamily
+        family = kind(self.name, self.meaning, labels=list(self.labels))
+        for labels, value in values.items():
+            family.add_metric(list(labels), value)
+        return family
+
+
+class Snapshot(Collector):
+    """`read` returns the values of each of `described` by its name; those that it leaves out are not known now."""
+
+    def __init__(self, described: Iterable[Described], read: Callable[[], Mapping[str, Values]]) -> None:
+        self.described = tuple(described)
+        self._read = read
+
+    def describe(self) -> Iterator[Metric]:
+        for one in self.described:
+            yield one.family({})
+
+    def collect(self) -> Iterator[Metric]:
+        values = self._read()
+        for one in self.described:
+            if one.name in values:
+                yield one.family(values[one.name])
+
+    def __enter__(self) -> "Snapshot":
+        REGISTRY.register(self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        REGISTRY.unregister(self)

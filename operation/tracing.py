@@ -1,0 +1,61 @@
+"""OpenTelemetry, where SPANWISE_TRACING asks for it and requirements-tracing.txt is installed. Off, nothing of it is even imported.
+
+Where spans go is said by OpenTelemetry's own variables (OTEL_EXPORTER_OTLP_ENDPOINT and so on). No span holds a header, a body or the
+parameters of a statement.
+"""
+
+import importlib
+import logging
+import os
+from typing import Any
+
+from operation.version import VERSION
+
+logger = logging.getLogger(__name__)
+
+VARIABLE = "SPANWISE_TRACING"
+NOT_TRACED = "healthz,readyz,invitation/,new-password/"  # the last two let their holder in, and a span names its address
+_MISSING = "%s is set, but OpenTelemetry is not installed (requirements-tracing.txt): nothing is traced"
+
+_begun = False
+
+
+def is_wanted() -> bool:
+    return os.environ.get(VARIABLE, "0").lower() in {"1", "true", "yes", "on"}
+
+
+def begin_tracing(program: str) -> bool:
+    """Once a process, after it was forked. Returns whether spans are made from now on."""
+    global _begun
+    if _begun or not is_wanted():
+        return _begun
+    try:
+        _provide(program)
+        _instrument(program)
+    except ImportError:
+        logger.warning(_MISSING, VARIABLE)
+        return False
+    _begun = True
+    return True
+
+
+def _of(module: str, name: str) -> Any:
+    return getattr(importlib.import_module(module), name)
+
+
+def _provide(program: str) -> None:
+    resource = _of("opentelemetry.sdk.resources", "Resource").create({"service.name": f"spanwise-{program}", "service.version": VERSION})
+    provider = _of("opentelemetry.sdk.trace", "TracerProvider")(resource=resource)
+    exporter = _of("opentelemetry.exporter.otlp.proto.http.trace_exporter", "OTLPSpanExporter")()
+    provider.add_span_processor(_of("opentelemetry.sdk.trace.export", "BatchSpanProcessor")(exporter))
+    _of("opentelemetry.trace", "set_tracer_provider")(provider)
+
+
+def _instrument(program: str) -> None:
+    """Requests and tasks, joined by the header that goes with them, and statements without what is put into them."""
+    if program == "web":
+        os.environ.setdefault("OTEL_PYTHON_DJANGO_EXCLUDED_URLS", NOT_TRACED)
+        _of("opentelemetry.instrumentation.django", "DjangoInstrumentor")().instrument()
+    if program in {"web", "worker", "beat"}:
+        _of("opentelemetry.instrumentation.celery", "CeleryInstrumentor")().instrument()
+    _of("opentelemetry.instrumentation.psycopg", "PsycopgInstrumentor")().instrument()

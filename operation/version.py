@@ -1,0 +1,18 @@
+"""Which version runs: SPANWISE_VERSION, as an image says it, else the project's own."""
+
+import os
+import tomllib
+from pathlib import Path
+
+
+def _version() -> str:
+    if told := os.environ.get("SPANWISE_VERSION"):
+        return told[:64]
+    try:
+        project = tomllib.loads((Path(__file__).resolve().parent.parent / "pyproject.toml").read_text())
+    except OSError:
+        return "unknown"
+    return str(project["project"]["version"])
+
+
+VERSION = _version()

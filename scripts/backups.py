@@ -1,0 +1,249 @@
+"""What matters of one installation, in one folder, and back again: the database, the secret key, the logs of flights.
+
+python -m scripts.backups backup [FOLDER] [--without-key]
+python -m scripts.backups restore FOLDER [--replace]
+
+The database is DATABASE_URL's, else the private one of the state folder (SPANWISE_VAR), which is started for it if it does not run.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from urllib.parse import parse_qsl, unquote, urlencode, urlsplit
+
+import psycopg
+from psycopg import sql
+
+from config.private_servers import DATABASE_NAME, private_database_url, state_directory
+from operation.version import VERSION
+from scripts import database_cluster
+from scripts.places import CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
+from scripts.postgresql_installations import installed_servers, server_for
+from scripts.programs import database_server
+from scripts.supervision import Supervisor
+
+DUMP, MANIFEST, SUMS, KEY, LOGS = "database.dump", "manifest.json", "SHA256SUMS", "secret_key", "flight-logs"
+PIECE_BYTES = 1024 * 1024
+OWN_TABLES = """
+SELECT format('%I.%I', n.nspname, c.relname) FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace
+WHERE n.nspname = 'public' AND c.relkind IN ('r', 'p')
+    AND NOT EXISTS (SELECT FROM pg_depend d WHERE d.classid = 'pg_class'::regclass AND d.objid = c.oid AND d.deptype = 'e')
+ORDER BY 1
+"""  # not those of extensions, such as PostGIS's spatial_ref_sys
+
+
+class Refused(Exception):
+    """Nothing was done; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Database:
+    """An address as libpq takes it. The password goes by the environment: command lines can be read by others."""
+
+    address: str
+    environment: dict[str, str]
+    programs: Path | None = None  # where pg_dump and pg_restore of its version are; None: the newest on this machine
+
+    def connect(self) -> psycopg.Connection[tuple[object, ...]]:
+        return psycopg.connect(self.address, password=self.environment.get("PGPASSWORD"), autocommit=True)
+
+    def program(self, name: str) -> str:
+        if self.programs is not None:
+            return str(self.programs / name)
+        found = [server.program(name) for server in sorted(installed_servers(), key=lambda one: one.version, reverse=True)]
+        program = next((path for path in found if os.access(path, os.X_OK)), None) or shutil.which(name)
+        if program is None:
+            raise Refused(f"{name} is not on this machine: install PostgreSQL's client programs")
+        return program
+
+    def run(self, name: str, *arguments: str) -> None:
+        command = [self.program(name), *arguments]
+        answer = subprocess.run(command, env={**os.environ, **self.environment}, capture_output=True, text=True, check=False)
+        if answer.returncode != 0:
+            raise Refused(f"{name} failed: {answer.stderr.strip()}")
+
+
+def database_at(url: str, programs: Path | None = None) -> Database:
+    """Of an address as DATABASE_URL has it."""
+    parts = urlsplit(url)
+    user, _, place = parts.netloc.rpartition("@")
+    name, _, password = user.partition(":")
+    query = [(key, value) for key, value in parse_qsl(parts.query) if not key.startswith("options")]
+    address = f"postgresql://{name + '@' if name else ''}{place}{parts.path}" + (f"?{urlencode(query)}" if query else "")
+    return Database(address, {"PGPASSWORD": unquote(password)} if password else {}, programs)
+
+
+@contextmanager
+def database(places: Places) -> Iterator[Database]:
+    """DATABASE_URL's; else the private one, started if it does not run, and then stopped again."""
+    if url := os.environ.get("DATABASE_URL"):
+        yield database_at(url)
+        return
+    prepare_state(places.state)
+    sockets = prepare_sockets(places.state)
+    supervisor = Supervisor(places, sockets)
+    is_ours = not supervisor.is_running()
+    if is_ours:
+        database_cluster.prepare_cluster(places)
+        supervisor.start([database_server(places, sockets)])
+    try:
+        database_cluster.wait_for_database(sockets)
+        if not database_cluster.database_exists(sockets):
+            database_cluster.create_database(sockets)
+        server = server_for(places.data)
+        yield database_at(private_database_url(places.state), None if server is None else server.programs)
+    finally:
+        if is_ours:
+            supervisor.stop()
+            remove_sockets(places.state)
+
+
+def back_up(places: Places, folder: Path, *, with_key: bool = True) -> Path:
+    """Everything into a new folder, readable by its owner alone; there whole or not at all. Raises Refused."""
+    if folder.exists():
+        raise Refused(f"{folder} is there already")
+    draft = folder.with_name(f".{folder.name}.new")
+    shutil.rmtree(draft, ignore_errors=True)
+    draft.mkdir(mode=0o700, parents=True)
+    with database(places) as source:
+        source.run("pg_dump", "--format=custom", "--no-owner", "--no-acl", f"--file={draft / DUMP}", source.address)
+        migrations = _migrations(source)
+    key = places.state / KEY
+    has_key = with_key and key.exists()
+    if has_key:
+        shutil.copy2(key, draft / KEY)
+        (draft / KEY).chmod(0o600)
+    if (logs := flight_logs(places)).is_dir():  # after the database: what it names is there
+        shutil.copytree(logs, draft / LOGS)
+    manifest = {"made_at": datetime.now(UTC).isoformat(), "version": VERSION, "has_key": has_key, "migrations": migrations}
+    (draft / MANIFEST).write_text(json.dumps(manifest, indent=2) + "\n")
+    (draft / SUMS).write_text("".join(f"{digest}  {name}\n" for name, digest in _digests(draft)))
+    draft.rename(folder)
+    return folder
+
+
+def restore(places: Places, folder: Path, *, replaces: bool = False) -> None:
+    """Everything back. Raises Refused before anything is changed: of a folder that is not whole, and where there is something already."""
+    verify(folder)
+    if not os.environ.get("DATABASE_URL") and Supervisor(places, prepare_sockets(places.state)).is_running():
+        raise Refused(f"Spanwise runs on {places.state}: end it with ./run --stop first")
+    key = places.state / KEY
+    brings_key = (folder / KEY).exists()
+    if brings_key and key.exists() and key.read_bytes() != (folder / KEY).read_bytes() and not replaces:
+        raise Refused(f"{key} is another key than the backup's; --replace puts the backup's in its place")
+    logs = flight_logs(places)
+    if logs.is_dir() and any(logs.iterdir()) and not replaces:
+        raise Refused(f"there are flights' logs in {logs}; --replace removes them")
+    with database(places) as target:
+        with target.connect() as connection:
+            _refuse_if_used(connection)
+            if not replaces and (tables := _tables(connection)):
+                raise Refused(f"the database is not empty ({len(tables)} tables); --replace empties it first")
+            emptying = _emptying(connection)
+        with tempfile.TemporaryDirectory(dir=places.state, prefix=".restore-") as drafts:
+            statements = Path(drafts) / "database.sql"
+            target.run("pg_restore", "--no-owner", "--no-acl", "--no-comments", f"--file={statements}", str(folder / DUMP))
+            # In one transaction: what was there is gone only once the backup is in its place.
+            target.run(
+                "psql", "--no-psqlrc", "--quiet", "--single-transaction", "--set=ON_ERROR_STOP=1", f"--dbname={target.address}",
+                f"--command={emptying}", f"--file={statements}",
+            )  # fmt: skip
+    if brings_key:
+        shutil.copy2(folder / KEY, key)
+        key.chmod(0o600)
+    shutil.rmtree(logs, ignore_errors=True)
+    if (folder / LOGS).is_dir():
+        shutil.copytree(folder / LOGS, logs)
+    shutil.rmtree(places.state / "graphs", ignore_errors=True)  # unpacked from the database that was here before
+
+
+def verify(folder: Path) -> None:
+    """Raises Refused where a file is missing, was added or is not as it was written."""
+    try:
+        written = [line.split("  ", 1) for line in (folder / SUMS).read_text().splitlines()]
+    except OSError as error:
+        raise Refused(f"{folder} is no backup: {error.strerror}") from None
+    wanted = {name: digest for digest, name in written}
+    found = dict(_digests(folder))
+    if wrong := sorted(name for name in wanted.keys() | found.keys() if wanted.get(name) != found.get(name)):
+        raise Refused(f"{folder} is damaged: {', '.join(wrong[:5])}")
+
+
+def flight_logs(places: Places) -> Path:
+    return Path(os.environ.get("SPANWISE_LOG_DIR") or places.state / "flight-logs")
+
+
+def _digests(folder: Path) -> Iterator[tuple[str, str]]:
+    for path in sorted(path for path in folder.rglob("*") if path.is_file() and path.name != SUMS):
+        digest = hashlib.sha256()
+        with path.open("rb") as file:
+            while piece := file.read(PIECE_BYTES):
+                digest.update(piece)
+        yield str(path.relative_to(folder)), digest.hexdigest()
+
+
+def _migrations(source: Database) -> dict[str, str]:
+    """The last one of each app."""
+    with source.connect() as connection:
+        if not _tables(connection):
+            raise Refused("there is nothing in the database to be backed up")
+        return dict(connection.execute("SELECT app, max(name) FROM django_migrations GROUP BY app ORDER BY app").fetchall())  # type: ignore[arg-type]
+
+
+def _tables(connection: psycopg.Connection[tuple[object, ...]]) -> list[str]:
+    return [str(name) for (name,) in connection.execute(OWN_TABLES).fetchall()]
+
+
+def _emptying(connection: psycopg.Connection[tuple[object, ...]]) -> str:
+    """Extensions stay: whoever restores may not be allowed to make them."""
+    tables = _tables(connection)
+    return f"DROP TABLE {', '.join(tables)} CASCADE" if tables else "SELECT 1"
+
+
+def _refuse_if_used(connection: psycopg.Connection[tuple[object, ...]]) -> None:
+    query = "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid() AND backend_type = {}"
+    row = connection.execute(sql.SQL(query).format(sql.Literal("client backend"))).fetchone()
+    if row is not None and row[0]:
+        raise Refused(f"{row[0]} connections use the database: stop Spanwise's programs first")
+
+
+def _default_folder(places: Places) -> Path:
+    return places.state / "backups" / f"{DATABASE_NAME}-{datetime.now(UTC):%Y-%m-%dT%H-%M-%SZ}"
+
+
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="scripts/backup or scripts/restore", description=(__doc__ or "").partition("\n")[0])
+    what = parser.add_subparsers(dest="what", required=True)
+    backing = what.add_parser("backup", help="write a backup; Spanwise may run meanwhile")
+    backing.add_argument("folder", type=Path, nargs="?", help="to be made; by default in the state folder under backups/")
+    backing.add_argument("--without-key", action="store_true", help="leave the secret key out, where it is kept somewhere else")
+    restoring = what.add_parser("restore", help="read a backup into an empty database; Spanwise must not run")
+    restoring.add_argument("folder", type=Path)
+    restoring.add_argument("--replace", action="store_true", help="remove what is there: database, key, flights' logs")
+    options = parser.parse_args(arguments)
+    places = Places(state_directory())
+    try:
+        if options.what == "backup":
+            made = back_up(places, (options.folder or _default_folder(places)).resolve(), with_key=not options.without_key)
+            print(f"backup {made}")
+        else:
+            restore(places, options.folder.resolve(), replaces=options.replace)
+            print(f"restored from {options.folder}")
+    except (Refused, CannotStart, psycopg.OperationalError, OSError) as error:
+        print(f"nothing was {'backed up' if options.what == 'backup' else 'restored'}: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,111 @@
+"""Become one of the programs, in a container: spanwise NAME [ARGUMENT...]
+
+web live proxy · gateway estimator simulator · worker-data worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
+backup [FOLDER] · restore FOLDER [--replace]     (of the database and the flights' logs; the key is the site's to keep)
+
+The image's entry point. Everything comes from the environment: docs/deployment.md. SIGTERM ends each of them softly.
+"""
+
+import os
+import resource
+import sys
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from typing import NoReturn
+
+from config.private_servers import state_directory
+from config.secret_files import secret
+from scripts import commands, container_health, container_proxy
+
+WEB_PORT, LIVE_PORT = 8000, 8001
+METRICS = "0.0.0.0:9464"
+SECRETS = ("DATABASE_URL", "REDIS_URL", "SPANWISE_SECRET_KEY")
+BACKUPS = "/var/lib/spanwise-backups"
+EXIT_WRONG = 2
+
+# What a container is told beside its command; what the environment says already is kept.
+WORKER_ENVIRONMENT = {"REMAP_SIGTERM": "SIGQUIT"}  # Celery's soft shutdown: what runs gets its seconds, then goes back to the queue
+
+
+def _listening(port: int) -> tuple[str, ...]:
+    return "--host", os.environ.get("SPANWISE_LISTEN_HOST", "0.0.0.0"), "--port", str(port)  # noqa: S104 - the container's own network
+
+
+def _worker(queue: str) -> list[str]:
+    return commands.worker(queue, int(os.environ.get("SPANWISE_WORKER_PROCESSES", "1")))
+
+
+PROGRAMS: dict[str, Callable[[], list[str]]] = {
+    "web": lambda: commands.web(*_listening(int(os.environ.get("SPANWISE_WEB_PORT", WEB_PORT)))),
+    "live": lambda: commands.live(*_listening(int(os.environ.get("SPANWISE_LIVE_PORT", LIVE_PORT)))),
+    "gateway": lambda: commands.management("run_gateway"),
+    "estimator": lambda: commands.management("run_estimator"),
+    "simulator": lambda: commands.management("run_simulator"),
+    **{f"worker-{queue}": lambda queue=queue: _worker(queue) for queue in commands.QUEUES},  # type: ignore[misc]
+    "beat": commands.beat,
+    "migrate": lambda: commands.management("migrate", "--no-input"),
+}
+
+
+def environment(program: str) -> dict[str, str]:
+    """The environment of a program: what is told, and what every container of it has."""
+    usual = {"SPANWISE_PROGRAM": program}
+    if program != "migrate":
+        usual["SPANWISE_METRICS"] = METRICS
+    if program.startswith("worker-"):
+        usual |= WORKER_ENVIRONMENT
+        usual["PROMETHEUS_MULTIPROC_DIR"] = str(state_directory() / "metrics")  # its processes count together
+    return usual | os.environ
+
+
+def _backups(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "scripts.backups", *arguments]
+
+
+def _with_database() -> dict[str, str]:
+    """For programs that take the address itself alone."""
+    return os.environ | {"DATABASE_URL": secret("DATABASE_URL")}
+
+
+def _become(command: list[str], told: Mapping[str, str]) -> NoReturn:
+    _open_as_many_files_as_allowed()
+    os.execvpe(command[0], command, told)  # noqa: S606 - no shell
+
+
+def missing_secrets() -> list[str]:
+    """A container keeps nothing, so it makes no secret of its own: the next one would make another."""
+    return [name for name in SECRETS if not os.environ.get(name) and not os.environ.get(f"{name}_FILE")]
+
+
+def _open_as_many_files_as_allowed() -> None:
+    files, most_files = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if files < most_files:  # a thousand open pages are a thousand files
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most_files, most_files))
+
+
+def main(arguments: list[str]) -> int:
+    name, *rest = arguments or ["web"]
+    if name == "healthy":
+        return container_health.main()
+    if name == "proxy":
+        _open_as_many_files_as_allowed()
+        return container_proxy.main()
+    if name not in PROGRAMS and name not in {"manage", "backup", "restore"}:
+        print(f"No program is called {name!r}. {__doc__}", file=sys.stderr)
+        return EXIT_WRONG
+    if missing := missing_secrets():
+        print(f"Not set, neither itself nor with _FILE: {', '.join(missing)}. See docs/deployment.md", file=sys.stderr)
+        return EXIT_WRONG
+    state_directory().mkdir(parents=True, exist_ok=True)
+    if name == "backup":
+        place = rest or [f"{BACKUPS}/spanwise-{datetime.now(UTC):%Y-%m-%dT%H-%M-%SZ}"]
+        _become(_backups(name, *place, "--without-key"), _with_database())
+    if name == "restore":
+        _become(_backups(name, *rest), _with_database())
+    if name == "manage":
+        _become(commands.management(*rest), os.environ)
+    _become([*PROGRAMS[name](), *rest], environment(name))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

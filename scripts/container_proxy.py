@@ -1,0 +1,85 @@
+"""nginx in a container: its configuration from the environment, a soft end on SIGTERM, a new certificate without a lost request."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from types import FrameType
+
+from config.private_servers import state_directory
+from scripts.proxy import is_https_asked_for, site_configuration
+from scripts.proxy_site import Site
+from scripts.system_packages import find_program
+
+LOOKS_EVERY_S = 5.0
+NAME_SERVERS = Path("/etc/resolv.conf")
+
+
+def name_server(text: str) -> str:
+    """The first one of a resolv.conf, as nginx writes it. Empty where there is none."""
+    for line in text.splitlines():
+        words = line.split()
+        if len(words) >= 2 and words[0] == "nameserver":
+            return f"[{words[1]}]" if ":" in words[1] else words[1]
+    return ""
+
+
+def site_of_environment(folder: Path) -> Site:
+    """SPANWISE_PROXY_WEB and SPANWISE_PROXY_LIVE: addresses with commas between them, or one name each with SPANWISE_PROXY_RESOLVES=1.
+
+    SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them TLS is spoken here, on SPANWISE_PROXY_TLS_PORT.
+    """
+    certificate, key = os.environ.get("SPANWISE_TLS_CERTIFICATE"), os.environ.get("SPANWISE_TLS_KEY")
+    resolves = os.environ.get("SPANWISE_PROXY_RESOLVES", "0") == "1"
+    return Site(
+        folder=folder,
+        static=Path(os.environ.get("SPANWISE_STATIC_DIR") or state_directory() / "static"),
+        web=tuple(os.environ.get("SPANWISE_PROXY_WEB", "web:8000").split(",")),
+        live=tuple(os.environ.get("SPANWISE_PROXY_LIVE", "live:8001").split(",")),
+        listens_at=os.environ.get("SPANWISE_PROXY_PORT", "8080"),
+        is_behind_https=is_https_asked_for(),
+        certificate=Path(certificate) if certificate and key else None,
+        key=Path(key) if certificate and key else None,
+        listens_at_tls=os.environ.get("SPANWISE_PROXY_TLS_PORT", "8443"),
+        resolver=name_server(NAME_SERVERS.read_text()) if resolves else "",
+    )
+
+
+def fingerprint(site: Site) -> tuple[int, ...]:
+    """Changes with the certificate's files, also where a platform swaps the folder that they lie in."""
+    found = []
+    for path in (site.certificate, site.key):
+        if path is not None:
+            try:
+                status = path.stat()
+            except OSError:
+                return ()  # between two states
+            found += [status.st_ino, status.st_mtime_ns, status.st_size]
+    return tuple(found)
+
+
+def main() -> int:
+    folder = state_directory() / "proxy"
+    folder.mkdir(parents=True, exist_ok=True)
+    site = site_of_environment(folder)
+    path = folder / "nginx.conf"
+    path.write_text(site_configuration(site))
+    command = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(folder), "-c", str(path)]
+    nginx = subprocess.Popen(command)
+
+    def end(number: int, frame: FrameType | None) -> None:
+        nginx.send_signal(signal.SIGQUIT)  # takes no new requests and ends when those that it has are answered
+
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT):
+        signal.signal(number, end)
+    known = fingerprint(site)
+    while True:
+        try:
+            return nginx.wait(LOOKS_EVERY_S)
+        except subprocess.TimeoutExpired:
+            seen = fingerprint(site)
+            if seen and seen != known and subprocess.run([*command, "-t", "-q"], check=False).returncode == 0:
+                known = seen
+                nginx.send_signal(signal.SIGHUP)
+                print("the certificate has changed: new connections get the new one", file=sys.stderr, flush=True)

@@ -1,0 +1,99 @@
+"""Where one nginx listens, and which programs it stands in front of: on one machine sockets, in containers names."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from scripts.places import CannotStart
+
+ALIVE = "/proxy-alive"  # answered by nginx itself
+TLS_1_2_CIPHERS = (
+    "ECDHE-ECDSA-AES128-GCM-SHA256:ECDHE-RSA-AES128-GCM-SHA256:ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384:"
+    "ECDHE-ECDSA-CHACHA20-POLY1305:ECDHE-RSA-CHACHA20-POLY1305"
+)
+BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)
+
+
+@dataclass(frozen=True)
+class Site:
+    """What one nginx stands in front of.
+
+    `web` and `live` are addresses as nginx writes them (unix:/path.sock, host:port). With a `resolver` (its address) they are one name
+    each, asked for again every two seconds: behind it come and go as many programs as there are. Without a certificate and with
+    `is_behind_https` somebody in front has taken the TLS off, and says so.
+    """
+
+    folder: Path
+    static: Path
+    web: tuple[str, ...]
+    live: tuple[str, ...]
+    listens_at: str
+    is_behind_https: bool = False
+    certificate: Path | None = None
+    key: Path | None = None
+    listens_at_tls: str = ""
+    resolver: str = ""
+
+    @property
+    def is_https(self) -> bool:
+        return self.is_behind_https or self.certificate is not None
+
+
+def quoted(path: object) -> str:
+    """A path as nginx reads it; spaces are fine, a dollar sign would be a variable."""
+    text = str(path)
+    if set(text) & set('"\\$\n'):
+        raise CannotStart(f"nginx cannot be given the path {text!r}: it holds a quotation mark, a backslash or a dollar sign")
+    return f'"{text}"'
+
+
+def upstreams(site: Site) -> str:
+    """Groups with connections that are kept; of a name that is asked for again there is none."""
+    if site.resolver:
+        return f"    resolver {site.resolver} valid=2s;\n    resolver_timeout 2s;"
+
+    def servers(addresses: Iterable[str]) -> str:
+        return "\n".join(f"        server {quoted(address)} max_fails=0;" for address in addresses)
+
+    return f"""    upstream web {{
+        least_conn;
+{servers(site.web)}
+        keepalive 64;
+    }}
+    upstream live {{
+{servers(site.live)}
+    }}"""
+
+
+def entrances(site: Site) -> str:
+    """Where this server listens; with a certificate the plain port leads to the one with TLS."""
+    plain = f"listen {site.listens_at} backlog={BACKLOG};"
+    names = f"        set $web {site.web[0]};\n        set $live {site.live[0]};\n" if site.resolver else ""
+    if site.certificate is None:
+        # Whoever took the TLS off says how the visitor came; what says nothing comes from inside.
+        redirect = (
+            '        if ($http_x_forwarded_proto = "http") { return 308 https://$host$request_uri; }\n' if site.is_behind_https else ""
+        )
+        return f"        {plain}\n{redirect}{names}"
+    return f"""        listen {site.listens_at_tls} ssl http2 backlog={BACKLOG};
+        ssl_certificate {quoted(site.certificate)};
+        ssl_certificate_key {quoted(site.key)};
+        ssl_protocols TLSv1.2 TLSv1.3;
+        ssl_ciphers {TLS_1_2_CIPHERS};
+        ssl_prefer_server_ciphers off;
+        ssl_session_cache shared:tls:10m;
+        ssl_session_timeout 1d;
+        ssl_session_tickets off;
+{names}"""
+
+
+def plain_server(site: Site) -> str:
+    """The port without TLS beside the one with it: a way there, and an answer to whoever looks whether the proxy lives."""
+    if site.certificate is None:
+        return ""
+    return f"""
+    server {{
+        listen {site.listens_at} backlog={BACKLOG};
+        location = {ALIVE} {{ access_log off; return 204; }}
+        location / {{ return 308 https://$host$request_uri; }}
+    }}"""

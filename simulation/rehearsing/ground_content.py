@@ -1,0 +1,63 @@
+"""The hash that names the ground about routes: its zones, its heights, and what stands on it."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from inspection.geodesy.local_frame import LocalFrame
+from missions.mavlink.frozen import FrozenRoute
+from simulation.verdict.flown import FloatArray
+from simulation.verdict.judging import Surroundings
+
+BESIDE_DEG = 0.02  # some 2 km beside the waypoints, as far as verdicts tell of zones
+LOOK_EACH_M = 30.0  # at heights, along the routes
+DEGREE_DIGITS, METRE_DIGITS = 7, 1
+
+
+def ground_content(routes: Sequence[FrozenRoute], around: Surroundings) -> str:
+    """SHA-256 of what a verdict on the routes would be held against; what lies farther away does not change it."""
+    hashed = hashlib.sha256()
+    for part in (*_zones(routes, around), *_standing(around), _heights(routes, around)):
+        hashed.update(part)
+        hashed.update(b"\0")
+    return hashed.hexdigest()
+
+
+def _zones(routes: Sequence[FrozenRoute], around: Surroundings) -> Iterator[bytes]:
+    """Whatever they are called, and in whichever order they were drawn."""
+    table, places = around.zones, _places(routes)
+    (west, south), (east, north) = places.min(axis=0) - BESIDE_DEG, places.max(axis=0) + BESIDE_DEG
+    box = table.box
+    near = np.flatnonzero((box[:, 0] <= east) & (box[:, 2] >= west) & (box[:, 1] <= north) & (box[:, 3] >= south)).tolist()
+    yield from sorted(table.wkb[row] + repr((tuple(table.limits[row]), table.schedules[row])).encode() for row in near)
+
+
+def _standing(around: Surroundings) -> Iterator[bytes]:
+    standing = around.standing
+    ends = np.round(np.hstack([standing.start, standing.end]), DEGREE_DIGITS)
+    tops = np.round(np.column_stack([standing.start_top_m, standing.end_top_m]), METRE_DIGITS)
+    rows = np.hstack([ends, tops]) + 0.0  # without a sign of zero
+    yield rows[np.lexsort(rows.T[::-1])].tobytes()
+
+
+def _heights(routes: Sequence[FrozenRoute], around: Surroundings) -> bytes:
+    found = around.ground_amsl_m(np.vstack([_along(route) for route in routes]))
+    return (np.round(found, METRE_DIGITS) + 0.0).tobytes()
+
+
+def _along(route: FrozenRoute) -> FloatArray:
+    """Places (n, 2) lon, lat along a route, its waypoints among them."""
+    places = _places([route])
+    frame = LocalFrame.around(*places[0].tolist())
+    lengths_m = np.hypot(*np.diff(frame.to_metres(places), axis=0).T)
+    parts = [
+        start + np.linspace(0.0, 1.0, max(int(np.ceil(length_m / LOOK_EACH_M)), 1), endpoint=False)[:, None] * (end - start)
+        for start, end, length_m in zip(places[:-1], places[1:], lengths_m, strict=True)
+    ]
+    along: FloatArray = np.vstack([*parts, places[-1:]])
+    return along
+
+
+def _places(routes: Sequence[FrozenRoute]) -> FloatArray:
+    return np.array([waypoint.position for route in routes for waypoint in route.waypoints], dtype=np.float64)

@@ -1,0 +1,15 @@
+/** How fast a UAV's own clock runs: a simulated one may fly faster than real time. Every time that a page shows is of the clock on the wall. */
+
+import { t } from "../text.js";
+import { numberText } from "../units.js";
+
+const ALIKE = 0.1; // as much as what was learnt of a clock may be off
+
+/** Its seconds a second: the whole number that is learnt more or less; 1 of what is no simulated UAV. */
+export function rateOf({ link, is_simulated }) {
+  const rate = is_simulated ? (link?.clock_rate ?? 1) : 1;
+  const whole = Math.round(rate);
+  return Math.abs(rate - whole) <= ALIKE * rate ? whole : Math.round(rate * 10) / 10;
+}
+
+export const rateWords = (rate) => t("It flies {rate} times as fast as the clock on the wall, by which all times here are told.", { rate: numberText(rate, Number.isInteger(rate) ? 0 : 1) });

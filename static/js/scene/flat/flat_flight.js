@@ -1,0 +1,85 @@
+/** Ways and UAVs from above, on a plain canvas: planned thin and dashed, flown solid, estimated hollow in its ring. */
+
+import { ESTIMATED, LOST, MEASURED } from "../sources/pieces.js";
+
+const ROUTES = 8;
+const DART = [[0, -13], [9, 11], [0, 6], [-9, 11]];
+const REST = 0.35; // of what is not looked at
+const LEAST_RING_PX = 14;
+
+const colourOf = (palette, place) => palette.routes[place % ROUTES];
+
+function stroke(context, positions, onScreen, until = Infinity) {
+  context.beginPath();
+  for (let at = 0; at < positions.length && at / 3 < until; at += 3) context[at ? "lineTo" : "moveTo"](...onScreen([positions[at], positions[at + 1], positions[at + 2]]));
+  context.stroke();
+}
+
+export function drawWays(context, { planned, flown, onScreen, palette, at_ms, looked }) {
+  const light = (place) => (context.globalAlpha = looked === null || looked === place ? 1 : REST);
+  context.lineJoin = "round";
+  for (const { place, positions } of planned) {
+    light(place);
+    context.strokeStyle = colourOf(palette, place);
+    context.lineWidth = 1.6;
+    context.setLineDash([6, 4]);
+    stroke(context, positions, onScreen);
+  }
+  for (const { place, pieces } of flown) {
+    light(place);
+    context.strokeStyle = colourOf(palette, place);
+    context.lineWidth = 3.6;
+    for (const { kind, positions, at_ms: times } of pieces) {
+      if (at_ms !== null && times[0] > at_ms) continue;
+      const after = at_ms === null ? -1 : times.findIndex((time) => time > at_ms);
+      context.setLineDash(kind === ESTIMATED ? [1, 5] : []);
+      stroke(context, positions, onScreen, after < 0 ? Infinity : after + 1);
+    }
+  }
+  context.setLineDash([]);
+  context.globalAlpha = 1;
+}
+
+export function drawUavs(context, { drawn, chosen, onScreen, palette, metresPerPixel, turn }) {
+  for (const uav of drawn) {
+    const { kind, bound } = uav.moment;
+    const [x, y] = onScreen(uav.place);
+    context.save();
+    context.translate(x, y);
+    context.strokeStyle = kind === LOST ? palette.inkSecond : uav.colour;
+    if (kind === ESTIMATED && bound) ring(context, bound, metresPerPixel, turn, uav.colour);
+    context.rotate((uav.heading_deg * Math.PI) / 180 - turn);
+    context.beginPath();
+    DART.forEach(([right, down], index) => context[index ? "lineTo" : "moveTo"](right, down));
+    context.closePath();
+    context.fillStyle = kind === MEASURED ? uav.colour : palette.raised;
+    context.lineWidth = kind === MEASURED ? 2 : 2.75;
+    if (kind === MEASURED) context.strokeStyle = palette.casing;
+    context.fill();
+    context.stroke();
+    if (uav.route === chosen) {
+      context.strokeStyle = palette.select;
+      context.lineWidth = 2;
+      context.beginPath();
+      context.arc(0, 0, 19, 0, 2 * Math.PI);
+      context.stroke();
+    }
+    context.restore();
+  }
+}
+
+function ring(context, { along_m, across_m, bearing_deg }, metresPerPixel, turn, colour) {
+  context.save();
+  context.rotate((bearing_deg * Math.PI) / 180 - turn);
+  context.beginPath();
+  context.ellipse(0, 0, Math.max(LEAST_RING_PX, across_m / metresPerPixel), Math.max(LEAST_RING_PX, along_m / metresPerPixel), 0, 0, 2 * Math.PI);
+  context.globalAlpha = 0.15;
+  context.fillStyle = colour;
+  context.fill();
+  context.globalAlpha = 1;
+  context.strokeStyle = colour;
+  context.lineWidth = 1.5;
+  context.setLineDash([5, 4]);
+  context.stroke();
+  context.restore();
+}

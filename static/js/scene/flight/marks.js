@@ -1,0 +1,79 @@
+/** Lines and arrows round the UAVs of a moment: the pole to the ground, the way since the last report, the wind. */
+
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, LineBasicMaterial, Mesh, MeshBasicMaterial, Vector3 } from "../three.js";
+import { towards } from "../cameras/vectors.js";
+
+const WIND_AWAY_M = 3.2; // of the arrow's middle above the UAV
+const FULL_WIND_MPS = 12; // an arrow of full length
+const DASHES = 24;
+
+/** A flat arrow towards the north, 1 m long, its middle at 0. */
+function arrowShape() {
+  const outline = [[-0.05, 0.5], [0.05, 0.5], [0.05, -0.1], [-0.05, -0.1]];
+  const head = [[-0.17, -0.1], [0.17, -0.1], [0, -0.5]];
+  const corners = [outline[0], outline[1], outline[2], outline[0], outline[2], outline[3], ...head];
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners.flatMap(([x, z]) => [x, 0, z])), 3));
+  return geometry;
+}
+
+export function createMarks(count) {
+  const group = new Group();
+  const position = new BufferAttribute(new Float32Array(count * (DASHES + 1) * 6), 3);
+  const colours = new BufferAttribute(new Float32Array(count * (DASHES + 1) * 6), 3);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", position);
+  geometry.setAttribute("color", colours);
+  const lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.85 }));
+  lines.frustumCulled = false;
+  const arrow = new Mesh(arrowShape(), new MeshBasicMaterial({ side: DoubleSide, transparent: true, opacity: 0.9 }));
+  arrow.visible = false;
+  arrow.renderOrder = 6;
+  group.add(lines, arrow);
+  const colour = new Color();
+  let used = 0;
+
+  function segment(from, to, { r, g, b }) {
+    for (const end of [from, to]) {
+      position.setXYZ(used, ...end);
+      colours.setXYZ(used, r, g, b);
+      used += 1;
+    }
+  }
+
+  return {
+    group,
+    /** drawn: moments with { colour, report: place of the last report or null }; wind: { speed_mps, from_deg } or null at the chosen one. */
+    show(drawn, { wind, chosen, palette, metresPerPixel }) {
+      used = 0;
+      for (const { place, ground, colour: hex, report } of drawn) {
+        colour.set(hex);
+        if (place[1] - ground > 0.5) segment(place, [place[0], ground, place[2]], colour);
+        if (report) {
+          for (let dash = 0; dash < DASHES; dash += 2) {
+            const at = (share) => [0, 1, 2].map((axis) => report[axis] + (place[axis] - report[axis]) * share);
+            segment(at(dash / DASHES), at((dash + 1) / DASHES), colour);
+          }
+        }
+      }
+      geometry.setDrawRange(0, used);
+      position.needsUpdate = true;
+      colours.needsUpdate = true;
+      lines.visible = used > 0;
+      const uav = drawn.find(({ route }) => route === chosen);
+      arrow.visible = Boolean(uav && wind && wind.speed_mps > 0.2);
+      if (!arrow.visible) return;
+      const scale = Math.max(1, 40 * metresPerPixel(uav.place));
+      arrow.position.set(uav.place[0], uav.place[1] + WIND_AWAY_M * Math.max(1, scale * 0.6), uav.place[2]);
+      arrow.lookAt(new Vector3(...towards(wind.from_deg)).add(arrow.position)); // its tail, at +z, is where the wind comes from
+      arrow.scale.setScalar(scale * (0.5 + 1.5 * Math.min(1, wind.speed_mps / FULL_WIND_MPS)));
+      arrow.material.color.set(palette.inkSecond);
+    },
+    dispose() {
+      geometry.dispose();
+      lines.material.dispose();
+      arrow.geometry.dispose();
+      arrow.material.dispose();
+    },
+  };
+}

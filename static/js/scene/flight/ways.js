@@ -1,0 +1,217 @@
+/** Planned and flown ways as ribbons with height poles: one drawing for all routes of a kind, cut off at the moment that is shown. */
+
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, Mesh, ShaderMaterial } from "../three.js";
+import { heightPoles, ribbon } from "../geometry/ribbon.js";
+import { ESTIMATED } from "../sources/pieces.js";
+
+const ROUTES = 8;
+const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
+const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
+const APART_M = 0.8; // points of a way that are nearer to each other show nothing more
+const ALWAYS_S = -1e9; // a time that is over
+const FOR_EVER_S = 1e30;
+
+const VERTEX = `
+  uniform vec2 viewport; uniform float leastPx; uniform float mostPx; uniform float halfWidth;
+  attribute vec3 tangent; attribute float along; attribute float at; attribute float route; attribute float dashed; attribute float side;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
+  void main() {
+    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    vec3 way = (modelViewMatrix * vec4(tangent, 0.0)).xyz;
+    vec3 across = cross(way, normalize(seen.xyz));
+    across = length(across) > 1e-4 ? normalize(across) : vec3(1.0, 0.0, 0.0);
+    float metresPerPixel = 2.0 * max(-seen.z, 0.01) / (projectionMatrix[1][1] * viewport.y);
+    seen.xyz += across * side * clamp(halfWidth, 0.5 * leastPx * metresPerPixel, 0.5 * mostPx * metresPerPixel);
+    vAlong = along; vAt = at; vDashed = dashed; vRoute = route;
+    gl_Position = projectionMatrix * seen;
+  }`;
+const LINE_VERTEX = `
+  attribute float at; attribute float route;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
+  void main() {
+    vAlong = 0.0; vAt = at; vDashed = 0.0; vRoute = route;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }`;
+const FRAGMENT = `
+  uniform vec3 colours[${ROUTES}]; uniform float now; uniform float opacity; uniform float later; uniform float looked; uniform float rest;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
+  void main() {
+    if (vDashed > 0.5) {
+      float period = max(5.0, exp2(ceil(log2(max(fwidth(vAlong) * 9.0, 1e-4)))));
+      if (fract(vAlong / period) > 0.56) discard;
+    }
+    int number = int(mod(vRoute + 0.5, ${ROUTES}.0));
+    float alpha = opacity * (vAt > now ? later : 1.0) * (looked < -0.5 || abs(looked - vRoute) < 0.5 ? 1.0 : rest);
+    if (alpha < 0.01) discard;
+    vec3 colour = colours[0];
+    for (int i = 1; i < ${ROUTES}; i++) if (i == number) colour = colours[i];
+    gl_FragColor = vec4(colour, alpha);
+    #include <colorspace_fragment>
+  }`;
+
+function material({ isLine, width_m = 0, least_px = 1, most_px = 1, opacity, later }) {
+  return new ShaderMaterial({
+    vertexShader: isLine ? LINE_VERTEX : VERTEX,
+    fragmentShader: FRAGMENT,
+    uniforms: {
+      viewport: { value: [1, 1] }, leastPx: { value: least_px }, mostPx: { value: most_px }, halfWidth: { value: width_m / 2 }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: FOR_EVER_S }, opacity: { value: opacity },
+      later: { value: later }, looked: { value: -1 }, rest: { value: 0.35 },
+    },
+    transparent: true,
+    depthWrite: false,
+    side: DoubleSide,
+  });
+}
+
+/** Unit directions along a line of points, n × 3. */
+function tangentsOf(positions) {
+  const count = positions.length / 3;
+  const found = new Float32Array(positions.length);
+  for (let point = 0; point < count; point += 1) {
+    const [from, to] = [Math.max(point - 1, 0) * 3, Math.min(point + 1, count - 1) * 3];
+    const way = [0, 1, 2].map((axis) => positions[to + axis] - positions[from + axis]);
+    const length = Math.hypot(...way) || 1;
+    way.forEach((metres, axis) => (found[point * 3 + axis] = metres / length));
+  }
+  return found;
+}
+
+/** Names of a ribbon's attributes with the numbers in each vertex; it is as wide as its material says, and turns to the camera. */
+const ATTRIBUTES = { position: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
+
+/** Without the points that lie next to each other: { positions, at_s }; the first and the last one stay. */
+export function thinned({ positions, at_s, ...line }) {
+  const [kept, times] = [[], []];
+  const count = positions.length / 3;
+  for (let point = 0; point < count; point += 1) {
+    const [x, y, z] = positions.slice(point * 3, point * 3 + 3);
+    const end = kept.length;
+    if (end && point < count - 1 && Math.hypot(x - kept[end - 3], y - kept[end - 2], z - kept[end - 1]) < APART_M) continue;
+    kept.push(x, y, z);
+    if (at_s) times.push(at_s[point]);
+  }
+  return { ...line, positions: kept, at_s: at_s && times };
+}
+
+/** lines: [{ place, positions, at_s, dashed }] → attributes and index of all of them together. */
+export function ribbonArrays(lines) {
+  const drawn = lines.map(thinned).filter(({ positions }) => positions.length >= 6).map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
+  const count = drawn.reduce((sum, { positions }) => sum + (positions.length / 3) * 2, 0);
+  const arrays = Object.fromEntries(Object.entries(ATTRIBUTES).map(([name, size]) => [name, new Float32Array(count * size)]));
+  const index = new Uint32Array(drawn.reduce((sum, { band }) => sum + band.index.length, 0));
+  let [first, put] = [0, 0];
+  for (const { place, positions, at_s, dashed, band, tangents } of drawn) {
+    arrays.along.set(band.along_m, first);
+    for (let vertex = 0; vertex < band.along_m.length; vertex += 1) {
+      const point = vertex >> 1;
+      for (let axis = 0; axis < 3; axis += 1) {
+        arrays.position[(first + vertex) * 3 + axis] = positions[point * 3 + axis];
+        arrays.tangent[(first + vertex) * 3 + axis] = tangents[point * 3 + axis];
+      }
+      arrays.at[first + vertex] = at_s ? at_s[point] : ALWAYS_S;
+      arrays.route[first + vertex] = place;
+      arrays.dashed[first + vertex] = dashed ? 1 : 0;
+      arrays.side[first + vertex] = vertex % 2 ? 1 : -1;
+    }
+    for (const number of band.index) index[put++] = number + first;
+    first += band.along_m.length;
+  }
+  return { arrays, index };
+}
+
+/** Poles of lines: positions of their ends, with route and time of each end. */
+export function poleArrays(lines, groundAt, spacing_m) {
+  const [position, route, at] = [[], [], []];
+  for (const { place, positions, at_s } of lines) {
+    const { segments } = heightPoles(positions, groundAt, { spacing_m });
+    const poles = segments.length / 6;
+    const whenPassed = at_s && passing(positions, at_s);
+    for (let pole = 0; pole < poles; pole += 1) {
+      const when = !at_s ? ALWAYS_S : pole === poles - 1 ? at_s.at(-1) : whenPassed(pole * spacing_m);
+      for (let axis = 0; axis < 6; axis += 1) position.push(segments[pole * 6 + axis]);
+      route.push(place, place);
+      at.push(when, when);
+    }
+  }
+  return { arrays: { position: new Float32Array(position), route: new Float32Array(route), at: new Float32Array(at) } };
+}
+
+/** When so many metres over the ground were flown; asked for in rising order. */
+function passing(positions, at_s) {
+  let [point, way_m] = [0, 0];
+  return (wanted_m) => {
+    for (; point < at_s.length - 1; point += 1) {
+      const step_m = Math.hypot(positions[point * 3 + 3] - positions[point * 3], positions[point * 3 + 5] - positions[point * 3 + 2]);
+      if (way_m + step_m >= wanted_m) return at_s[point] + (at_s[point + 1] - at_s[point]) * (step_m > 0 ? (wanted_m - way_m) / step_m : 0);
+      way_m += step_m;
+    }
+    return at_s.at(-1);
+  };
+}
+
+function geometryOf({ arrays, index = null }, sizes) {
+  const geometry = new BufferGeometry();
+  for (const [name, array] of Object.entries(arrays)) geometry.setAttribute(name, new BufferAttribute(array, sizes[name]));
+  if (index) geometry.setIndex(new BufferAttribute(index, 1));
+  return geometry;
+}
+
+function drawing(Kind, look, order) {
+  const object = new Kind(new BufferGeometry(), look);
+  object.frustumCulled = false; // attributes besides the position move its vertices
+  object.renderOrder = order;
+  object.visible = false;
+  return object;
+}
+
+function refill(object, built, sizes) {
+  object.geometry.dispose();
+  object.geometry = geometryOf(built, sizes);
+  object.visible = built.arrays.position.length > 0;
+}
+
+/** groundAt(x, z) → y of the drawn ground. */
+export function createWays(groundAt) {
+  const group = new Group();
+  const planned = drawing(Mesh, material({ ...PLANNED, opacity: 0.85, later: 1 }), 1);
+  const plannedPoles = drawing(LineSegments, material({ isLine: true, opacity: 0.22, later: 1 }), 1);
+  const flown = drawing(Mesh, material({ ...FLOWN, opacity: 1, later: 0.16 }), 2);
+  const flownPoles = drawing(LineSegments, material({ isLine: true, opacity: 0.32, later: 0 }), 1);
+  const all = [planned, plannedPoles, flown, flownPoles];
+  group.add(...all);
+  let from_ms = 0;
+
+  return {
+    group,
+    /** lines: of drawFlight().plannedLines(). */
+    showPlanned(lines) {
+      const dashed = lines.map((line) => ({ ...line, at_s: null, dashed: true }));
+      refill(planned, ribbonArrays(dashed), ATTRIBUTES);
+      refill(plannedPoles, poleArrays(dashed, groundAt, PLANNED.poles_m), { position: 3, route: 1, at: 1 });
+    },
+    /** routes: of drawFlight().flownLines(); begins_ms: from which times are counted, so that they stay exact. */
+    showFlown(routes, begins_ms) {
+      from_ms = begins_ms;
+      const lines = routes.flatMap(({ place, pieces }) => pieces.map(({ kind, positions, at_ms }) => ({ place, positions, at_s: at_ms.map((at) => (at - from_ms) / 1_000), dashed: kind === ESTIMATED })));
+      refill(flown, ribbonArrays(lines), ATTRIBUTES);
+      refill(flownPoles, poleArrays(lines.filter(({ dashed }) => !dashed), groundAt, FLOWN.poles_m), { position: 3, route: 1, at: 1 });
+    },
+    /** at_ms: what is later is faint; looked: place of the route that is looked at, or null. */
+    frame({ at_ms, looked, viewport }) {
+      for (const { material: look } of all) {
+        look.uniforms.now.value = at_ms === null ? FOR_EVER_S : (at_ms - from_ms) / 1_000;
+        look.uniforms.looked.value = looked ?? -1;
+        look.uniforms.viewport.value = viewport;
+      }
+    },
+    setPalette(palette) {
+      for (const { material: look } of all) look.uniforms.colours.value.forEach((colour, index) => colour.set(palette.routes[index]));
+    },
+    dispose() {
+      for (const { geometry, material: look } of all) {
+        geometry.dispose();
+        look.dispose();
+      }
+    },
+  };
+}

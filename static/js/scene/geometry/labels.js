@@ -1,0 +1,20 @@
+/** Where names may stand. Values in, a list out; the view draws them, and leaves out what would collide. */
+
+const TOP_M = 4; // over the top of what is named
+
+/** [{ kind, id, text, position: [x, y, z], weight }], heavier first. */
+export function labelsOf(scene, frame, volumes) {
+  const labels = [];
+  scene.zones.forEach((zone, number) => labels.push({ kind: "zone", id: zone.id, text: zone.name, position: volumes[number].middle, weight: volumes[number].isInForce ? 90 : 60 }));
+  for (const { id, label, position, ground_amsl_m, height_m, voltage_v } of scene.supports) {
+    if (id === null) continue;
+    const weight = 20 + Math.min((voltage_v ?? 0) / 20_000, 30);
+    labels.push({ kind: "tower", id, text: label, position: frame.toLocal(...position, ground_amsl_m + height_m + TOP_M), weight });
+  }
+  for (const { id, label, polygons, deck_amsl_m } of scene.bridges) {
+    const points = polygons.flatMap(([outline]) => outline);
+    const [lon, lat] = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
+    labels.push({ kind: "bridge", id, text: label, position: frame.toLocal(lon, lat, deck_amsl_m + TOP_M), weight: 15 });
+  }
+  return labels.sort((one, other) => other.weight - one.weight);
+}

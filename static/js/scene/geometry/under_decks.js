@@ -1,0 +1,34 @@
+/** Whether a place lies on a bridge that carries rails, and how high its deck is. Values in, a function out. */
+
+const CARRIES_RAILS = /railway/;
+
+/** Gives deckAt(x, z) -> y of the deck, or null. */
+export function deckUnder(bridges, frame) {
+  const decks = bridges
+    .filter(({ carries }) => CARRIES_RAILS.test(carries))
+    .flatMap(({ polygons, deck_amsl_m }) =>
+      polygons.map(([outline]) => {
+        const ring = outline.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]);
+        const [xs, zs] = [ring.map(([x]) => x), ring.map(([, z]) => z)];
+        return { ring, box: [Math.min(...xs), Math.min(...zs), Math.max(...xs), Math.max(...zs)], y: deck_amsl_m - frame.origin.altitude_amsl_m };
+      }),
+    );
+  return (x, z) => {
+    let highest = null;
+    for (const { ring, box, y } of decks) {
+      if (x < box[0] || x > box[2] || z < box[1] || z > box[3] || (highest !== null && y <= highest)) continue;
+      if (isInside(ring, x, z)) highest = y;
+    }
+    return highest;
+  };
+}
+
+/** Whether a ray from the place crosses the ring an odd number of times. */
+export function isInside(ring, x, z) {
+  let inside = false;
+  for (let at = 0; at < ring.length - 1; at += 1) {
+    const [[ax, az], [bx, bz]] = [ring[at], ring[at + 1]];
+    if (az > z !== bz > z && x < ax + ((bx - ax) * (z - az)) / (bz - az)) inside = !inside;
+  }
+  return inside;
+}

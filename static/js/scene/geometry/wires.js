@@ -1,0 +1,59 @@
+/** All wires of a scene as polylines in the frame: from slot to slot, with their sag. */
+
+import { direction } from "../frame.js";
+import { hang, piecesFor } from "./catenary.js";
+
+/** A support's foot in the frame, and its axes on the ground: { foot: [x, y, z], along: [x, z], across: [x, z] (to the right) }. */
+export function standing(support, frame) {
+  const along = direction(support.bearing_deg);
+  return { foot: frame.toLocal(...support.position, support.ground_amsl_m), along, across: [-along[1], along[0]] };
+}
+
+/** Where something hangs at a support: [across_m, height_m] as a point in the frame. */
+export function slotPoint({ foot, across }, [across_m, height_m]) {
+  return [foot[0] + across_m * across[0], foot[1] + height_m, foot[2] + across_m * across[1]];
+}
+
+/**
+ * Gives { points: Float64Array (x, y, z …), first: Uint32Array (n + 1: a wire's first point), span: Uint32Array (n), isEarth: Uint8Array (n) }.
+ */
+export function wiresOf(scene, frame) {
+  const stands = scene.supports.map((support) => standing(support, frame));
+  const [points, first, span, isEarth] = [[], [0], [], []];
+  const add = (start, end, sag_m, number, earth) => {
+    hang(start, end, sag_m, piecesFor(sag_m), points);
+    first.push(points.length / 3);
+    span.push(number);
+    isEarth.push(earth);
+  };
+  scene.spans.forEach((own, number) => {
+    const ends = [own.from, own.to].map((place) => ({ support: scene.supports[place], stand: stands[place] }));
+    const [phases, earth] = [pairs(ends, "slots", own.phases), pairs(ends, "earth", own.earth)];
+    for (const [start, end] of phases) add(start, end, own.sag_m, number, 0);
+    for (const [start, end] of earth) add(start, end, own.sag_m * scene.rules.earth_sag_share, number, 1);
+  });
+  return { points: Float64Array.from(points), first: Uint32Array.from(first), span: Uint32Array.from(span), isEarth: Uint8Array.from(isEarth) };
+}
+
+/** Which slot goes to which: both ends sorted from left to right as the span is seen from its start, then from below. */
+function pairs(ends, kind, wanted) {
+  const [start, end] = ends.map(({ stand }) => stand);
+  const [x, z] = [end.foot[0] - start.foot[0], end.foot[2] - start.foot[2]];
+  const length = Math.hypot(x, z) || 1;
+  const right = [-z / length, x / length];
+  const sorted = ends.map(({ support, stand }) => {
+    const turned = stand.across[0] * right[0] + stand.across[1] * right[1] < 0 ? -1 : 1;
+    return chosen(support[kind], wanted)
+      .sort((one, other) => turned * (one[0] - other[0]) || one[1] - other[1])
+      .map((slot) => slotPoint(stand, slot));
+  });
+  return Array.from({ length: Math.min(wanted, sorted[0].length, sorted[1].length) }, (_, place) => [sorted[0][place], sorted[1][place]]);
+}
+
+/** Of more slots than wires: one side's where that is enough, else the inner ones. */
+function chosen(slots, wanted) {
+  if (slots.length <= wanted) return [...slots];
+  const side = slots.filter(([across_m]) => across_m > 0);
+  const from = side.length >= wanted ? side : slots;
+  return [...from].sort((one, other) => Math.abs(one[0]) - Math.abs(other[0]) || one[1] - other[1]).slice(0, wanted);
+}

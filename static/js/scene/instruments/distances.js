@@ -1,0 +1,118 @@
+/** How far a UAV is from the nearest wire, tower and zone: in space, from the data that the scene is drawn from. Values in, values out. */
+
+/**
+ * Everything that can be near, in the frame: prepared once for a scene.
+ *
+ * sceneData: of GET /api/v1/scene; wires: { points, first } as the world draws them; groundAt(x, z) → y.
+ */
+export function surroundingsOf(sceneData, frame, wires, groundAt) {
+  const origin_m = frame.origin.altitude_amsl_m;
+  const towers = sceneData.supports
+    .filter(({ kind }) => kind !== "vertex")
+    .map(({ id, label, position, ground_amsl_m, height_m }) => {
+      const [x, y, z] = frame.toLocal(position[0], position[1], ground_amsl_m);
+      return { id, label, x, z, bottom: y, top: y + height_m };
+    });
+  const zones = sceneData.zones.map(({ id, name, polygons, lower, upper, schedule, schedule_words }) => ({
+    id, name, lower, upper, schedule, schedule_words,
+    polygons: polygons.map((rings) => rings.map((ring) => ring.map(([lon, lat]) => { const [x, , z] = frame.toLocal(lon, lat, 0); return [x, z]; }))),
+  }));
+  return { towers, wires, boxes: boxesOf(wires), zones, groundAt, origin_m };
+}
+
+/** The box round each polyline: [least x, y, z, most x, y, z] each. */
+function boxesOf({ points, first }) {
+  const boxes = new Float64Array(Math.max(first.length - 1, 0) * 6);
+  for (let line = 0; line < first.length - 1; line += 1) {
+    for (let axis = 0; axis < 3; axis += 1) {
+      let [least, most] = [Infinity, -Infinity];
+      for (let at = first[line]; at < first[line + 1]; at += 1) {
+        const value = points[at * 3 + axis];
+        if (value < least) least = value;
+        if (value > most) most = value;
+      }
+      boxes[line * 6 + axis] = least;
+      boxes[line * 6 + 3 + axis] = most;
+    }
+  }
+  return boxes;
+}
+
+const beyond = (value, least, most) => (value < least ? least - value : value > most ? value - most : 0);
+
+/** The nearest point of the wires: { away_m, line, point } or null; nothing farther than reach_m is looked for. */
+export function nearestWire({ wires: { points, first }, boxes }, [x, y, z], reach_m = Infinity) {
+  let nearest = null;
+  let least = reach_m;
+  for (let line = 0; line < first.length - 1; line += 1) {
+    const box = line * 6;
+    if (Math.hypot(beyond(x, boxes[box], boxes[box + 3]), beyond(y, boxes[box + 1], boxes[box + 4]), beyond(z, boxes[box + 2], boxes[box + 5])) >= least) continue;
+    for (let at = first[line]; at < first[line + 1] - 1; at += 1) {
+      const from = at * 3;
+      const [dx, dy, dz] = [points[from + 3] - points[from], points[from + 4] - points[from + 1], points[from + 5] - points[from + 2]];
+      const length2 = dx * dx + dy * dy + dz * dz;
+      const share = length2 > 0 ? Math.min(1, Math.max(0, ((x - points[from]) * dx + (y - points[from + 1]) * dy + (z - points[from + 2]) * dz) / length2)) : 0;
+      const point = [points[from] + share * dx, points[from + 1] + share * dy, points[from + 2] + share * dz];
+      const away_m = Math.hypot(x - point[0], y - point[1], z - point[2]);
+      if (away_m < least) [least, nearest] = [away_m, { away_m, line, point }];
+    }
+  }
+  return nearest;
+}
+
+/** The nearest tower as the pole that it stands round: { away_m, tower, point } or null. */
+export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
+  let nearest = null;
+  let least = reach_m;
+  for (const tower of towers) {
+    const beside = Math.hypot(x - tower.x, z - tower.z);
+    if (beside >= least) continue;
+    const away_m = Math.hypot(beside, beyond(y, tower.bottom, tower.top));
+    if (away_m < least) [least, nearest] = [away_m, { away_m, tower, point: [tower.x, Math.min(tower.top, Math.max(tower.bottom, y)), tower.z] }];
+  }
+  return nearest;
+}
+
+const limitAt = ({ above, m }, ground, origin_m, otherwise) => (above === "open" || m === null ? otherwise : above === "ground" ? ground + m : m - origin_m);
+
+/** The nearest zone of those that keep(zone): { away_m, zone, isInside } or null; beside it and over or under it together. */
+export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () => true) {
+  let nearest = null;
+  for (const zone of zones) {
+    if (!keep(zone)) continue;
+    const ground = groundAt(x, z);
+    const height_m = beyond(y, limitAt(zone.lower, ground, origin_m, -Infinity), limitAt(zone.upper, ground, origin_m, Infinity));
+    for (const rings of zone.polygons) {
+      const beside_m = isWithin(rings, x, z) ? 0 : edgeDistance(rings, x, z);
+      const away_m = Math.hypot(beside_m, height_m);
+      if (!nearest || away_m < nearest.away_m) nearest = { away_m, zone, isInside: away_m === 0 };
+    }
+  }
+  return nearest;
+}
+
+/** Even-odd: inside the outline and in none of the holes. */
+function isWithin(rings, x, z) {
+  let isIn = false;
+  for (const ring of rings) {
+    for (let at = 0, before = ring.length - 1; at < ring.length; before = at, at += 1) {
+      const [[xa, za], [xb, zb]] = [ring[at], ring[before]];
+      if (za > z !== zb > z && x < ((xb - xa) * (z - za)) / (zb - za) + xa) isIn = !isIn;
+    }
+  }
+  return isIn;
+}
+
+function edgeDistance(rings, x, z) {
+  let least = Infinity;
+  for (const ring of rings) {
+    for (let at = 0; at < ring.length - 1; at += 1) {
+      const [[xa, za], [xb, zb]] = [ring[at], ring[at + 1]];
+      const [dx, dz] = [xb - xa, zb - za];
+      const length2 = dx * dx + dz * dz;
+      const share = length2 > 0 ? Math.min(1, Math.max(0, ((x - xa) * dx + (z - za) * dz) / length2)) : 0;
+      least = Math.min(least, Math.hypot(x - xa - share * dx, z - za - share * dz));
+    }
+  }
+  return least;
+}

@@ -1,0 +1,80 @@
+/** Names in the picture: UAVs, targets, and what stands on the ground, as text of the page that never covers another one. */
+
+import { h } from "../dom.js";
+import { placeLabels } from "./label_places.js";
+
+const MOST_OF_GROUND = 14;
+const GROUND_REACH_M = { zone: 6_000, line: 2_500, tower: 420, bridge: 1_500, railway: 1_500 };
+const USUAL_REACH_M = 800;
+const TOUCHES_PX = 40; // beyond the edge nothing is measured
+
+/** onPick(item): a label was clicked. */
+export function createLabels(container) {
+  const layer = h("div", { class: "scene-labels", "aria-hidden": "true" });
+  container.append(layer);
+  const elements = new Map(); // key → { element, text, width, height }
+  let placed = new Map();
+
+  function elementOf({ key, className, parts }) {
+    const text = parts.join("\n");
+    let known = elements.get(key);
+    if (!known) {
+      known = { element: h("div", { class: "scene-label" }), text: null, className: "" };
+      elements.set(key, known);
+      layer.append(known.element);
+    }
+    if (known.text !== text || known.className !== className) {
+      known.text = text;
+      known.className = className;
+      known.element.className = `scene-label ${className}`;
+      known.element.replaceChildren(...parts.filter(Boolean).map((part, index) => h(index === 0 ? "b" : "span", {}, part)));
+      known.element.style.visibility = "hidden";
+      known.element.style.display = "";
+      [known.width, known.height] = [known.element.offsetWidth, known.element.offsetHeight];
+    }
+    return known;
+  }
+
+  return {
+    element: layer,
+    /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture. */
+    show(items, project, size) {
+      const seen = [];
+      for (const item of items) {
+        const at = project(item.place);
+        if (!at || at.x < -TOUCHES_PX || at.y < -TOUCHES_PX || at.x > size.width + TOUCHES_PX || at.y > size.height + TOUCHES_PX) continue;
+        const { width, height } = elementOf(item);
+        seen.push({ ...item, x: at.x, y: at.y, width, height });
+      }
+      placed = placeLabels(seen, size, placed);
+      for (const [key, known] of elements) {
+        const at = placed.get(key);
+        if (!at) known.element.style.display = "none";
+        else {
+          known.element.style.display = "";
+          known.element.style.visibility = "";
+          known.element.style.transform = `translate(${Math.round(at.left)}px, ${Math.round(at.top)}px)`;
+        }
+      }
+      const keys = new Set(items.map(({ key }) => key));
+      for (const [key, { element }] of elements) {
+        if (keys.has(key)) continue;
+        element.remove();
+        elements.delete(key);
+      }
+    },
+    /** What stands where, for a still picture: [{ text: [words], className, left, top, width, height }]. */
+    shown: () => [...placed].map(([key, { left, top }]) => ({ ...elements.get(key), left, top })),
+    dispose: () => layer.remove(),
+  };
+}
+
+/** Of the world's labels those that are near enough, the nearest and heaviest first. eye: the camera's place. */
+export function groundLabels(labels, eye, most = MOST_OF_GROUND) {
+  return labels
+    .map((label) => ({ ...label, away_m: Math.hypot(label.position[0] - eye[0], label.position[1] - eye[1], label.position[2] - eye[2]) }))
+    .filter(({ kind, away_m }) => away_m < (GROUND_REACH_M[kind] ?? USUAL_REACH_M))
+    .sort((a, b) => b.weight / (200 + b.away_m) - a.weight / (200 + a.away_m))
+    .slice(0, most)
+    .map(({ kind, id, text, position, weight, away_m }) => ({ key: `${kind} ${id}`, place: position, parts: [text], className: `ground ${kind}`, weight: Math.min(1, weight / 100) * 20 - away_m / 1_000 }));
+}

@@ -1,0 +1,96 @@
+/** The page of the 3D view: one mission, from where and when the address says. */
+
+import { ApiError, get, signInAddress } from "../api.js";
+import { byId, h, icon } from "../dom.js";
+import { openFeed } from "../live/feed.js";
+import { readPage, startChrome } from "../page/chrome.js";
+import { t } from "../text.js";
+import { sceneKeys } from "./keys.js";
+import { readLink } from "./link.js";
+import { readSource } from "./sources/read.js";
+import { openStage } from "./stage.js";
+
+const KEPT_MS = 400; // after a change the address says it
+const SOURCE_WORDS = { plan: t("Plan"), rehearsal: t("Rehearsal"), live: t("Live"), record: t("Record") };
+
+const page = readPage();
+const root = byId("scene");
+let stage = null;
+let mission = null;
+let feed = null;
+let timer = 0;
+let opened = 0; // the last one wins
+
+const noStage = { press: () => false };
+const acts = new Proxy({}, { get: (_target, name) => (...given) => (stage ?? noStage)[name]?.(...given) ?? false });
+
+function keepAddress() {
+  clearTimeout(timer);
+  timer = setTimeout(() => stage && history.replaceState(null, "", stage.address()), KEPT_MS);
+}
+
+function tell(words, { isFault = false } = {}) {
+  root.replaceChildren(h("p", { class: "scene-waiting", role: isFault ? "alert" : "status" }, isFault && icon("cloud-off"), ` ${words}`));
+}
+
+async function open(wanted, link = null) {
+  const turn = ++opened;
+  stage?.dispose();
+  stage = null;
+  feed?.close();
+  feed = null;
+  tell(t("Reading what there is to see."));
+  try {
+    const { source, choices } = await readSource(mission, wanted);
+    if (turn !== opened) return;
+    drawSources(source, choices);
+    if (!source.routes.length) return tell(t("There is nothing to see yet: plan the mission first."));
+    if (source.kind === "live") follow(source);
+    stage = await openStage(root, { mission: { id: page.mission, name: mission.name }, source, link, now_ms: () => feed?.now_ms() ?? Date.now(), onChange: keepAddress });
+    if (turn !== opened) stage.dispose();
+    root.dataset.kind = stage.kind;
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (turn !== opened) return;
+    tell(error.message, { isFault: true });
+    if (error.isSignedOut) root.firstElementChild.append(" ", h("a", { href: signInAddress() }, t("Sign in")));
+  }
+}
+
+function follow(source) {
+  let revision = source.revision;
+  feed = openFeed({
+    mission: page.mission,
+    onChange() {
+      if (!source.take({ uavs: [...feed.shown.uavs.values()], now_ms: feed.now_ms() })) return;
+      stage?.refresh(source.revision !== revision);
+      revision = source.revision;
+    },
+  });
+}
+
+function drawSources(source, choices) {
+  byId("scene-sources").replaceChildren(
+    h("legend", { class: "unseen" }, t("What is shown")),
+    ...choices.map((kind) => h("label", {}, h("input", { type: "radio", name: "source", value: kind, checked: kind === source.kind, onchange: () => void open({ kind, rehearsal: null, run: null }).then(keepAddress) }), h("span", { class: "segment" }, SOURCE_WORDS[kind]))),
+  );
+  const runs = byId("scene-runs");
+  runs.hidden = (source.runs?.length ?? 0) < 2;
+  runs.replaceChildren(...(source.runs ?? []).map(({ sequence, words }) => h("option", { value: sequence }, words)));
+  if (source.runs) runs.value = source.run;
+  runs.onchange = () => void open({ kind: "rehearsal", rehearsal: source.rehearsal, run: Number(runs.value) }).then(keepAddress);
+}
+
+startChrome({ bindings: sceneKeys(acts) });
+addEventListener("pagehide", () => feed?.close());
+
+try {
+  mission = (await get(`/missions/${page.mission}`)).data;
+  const link = readLink(location.search);
+  await open(link.source, link);
+} catch (error) {
+  if (!(error instanceof ApiError)) throw error;
+  tell(error.message, { isFault: true });
+}
+document.documentElement.dataset.loaded = "true";
+globalThis.spanwiseScene = { figures: () => stage?.figures() ?? null }; // for measurements: benchmarks/scene.py

@@ -1,0 +1,27 @@
+/** How much of the ground a flight needs round it. Values in, values out. */
+
+const ROUND_M = 900; // on each side of what is flown
+const LONGEST_M = 39_000; // a side of what the server gives at once
+const METRES_PER_DEGREE = 111_195;
+
+/** places: [[lon, lat], …] → [west, south, east, north] round them, cut to what can be asked for; null without places. */
+export function boxRound(places) {
+  if (!places.length) return null;
+  const spans = [0, 1].map((axis) => {
+    const values = places.map((place) => place[axis]);
+    return [values.reduce((least, value) => Math.min(least, value)), values.reduce((most, value) => Math.max(most, value))];
+  });
+  const latitude = (spans[1][0] + spans[1][1]) / 2;
+  const metres = [METRES_PER_DEGREE * Math.cos((latitude * Math.PI) / 180), METRES_PER_DEGREE];
+  const [[west, east], [south, north]] = spans.map(([least, most], axis) => {
+    const middle = (least + most) / 2;
+    const half = Math.min((most - least) / 2 + ROUND_M / metres[axis], LONGEST_M / 2 / metres[axis]);
+    return [middle - half, middle + half];
+  });
+  return [west, south, east, north].map((degrees) => Number(degrees.toFixed(5)));
+}
+
+/** All places of a source: planned, flown, its targets. */
+export function placesOf({ routes, targets }) {
+  return [...routes.flatMap(({ planned, pieces }) => [...planned.map(({ position }) => position), ...pieces.flatMap(({ samples }) => samples.map(({ position }) => position))]), ...targets.map(({ position }) => position)];
+}

@@ -1,0 +1,41 @@
+/** A mission's record as the view shows it: what was measured, and in the silence what was estimated. */
+
+import { isOver } from "../../report/sentence.js";
+import { eventsOf, spanOf } from "../../report/timeline.js";
+import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../../report/track.js";
+import { completed, ESTIMATED, MEASURED } from "./pieces.js";
+import { targetsOf } from "./plan_source.js";
+
+const sampleOf = (sample) => ({ ...sample, altitude_relative_m: sample.height_m });
+
+/** Pieces of a record's track, by time; a stretch of estimates goes from the report before it to the one after it. */
+export function piecesOf(track) {
+  const known = (samples) => samples.filter(({ position }) => position !== null).map(sampleOf);
+  const measured = track.measured.map((run) => ({ kind: MEASURED, samples: completed(known(run)) }));
+  const estimated = track.estimated.map((run) => ({ kind: ESTIMATED, samples: completed(known(run)) }));
+  return [...measured, ...estimated].filter(({ samples }) => samples.length > 0).sort((a, b) => a.samples[0].at_ms - b.samples[0].at_ms || a.samples.at(-1).at_ms - b.samples.at(-1).at_ms);
+}
+
+/** loaded: of report/load.js. → a source, see sources/read.js. */
+export function recordSource({ record, records, estimates, alerts }) {
+  const silence_ms = silenceOf_ms(Math.max(records.every_s ?? 0, estimates.every_s ?? 0));
+  const [measured, estimated] = [tracksOf(records.features), estimatesOf(estimates.features)];
+  const routes = record.routes.map(({ place, uav, name, waypoints, is_simulated }) => {
+    const track = trackOf(measured.get(uav) ?? [], estimated.get(uav) ?? [], silence_ms);
+    return { place, uav, name, is_simulated, track, planned: waypoints.map(({ arrival_s, ...point }) => ({ ...point, altitude_amsl_m: null, at_s: arrival_s })), pieces: piecesOf(track) };
+  });
+  const departs_ms = Date.parse(record.mission.departs_at ?? record.mission.started_at ?? 0) || 0;
+  return {
+    kind: "record", isSimulated: routes.some(({ is_simulated }) => is_simulated), departs_ms, hasDate: true, routes,
+    span: spanOf(routes.map(({ track }) => track)),
+    targets: targetsOf(routes, record.targets),
+    events: eventsOf({ routes, targets: record.targets, alerts, isOver: isOver(record) }),
+    windAt: (at_ms) => windMeasured(routes, at_ms),
+  };
+}
+
+/** The newest wind that a UAV told before a moment: { speed_mps, from_deg }; null where none did. */
+export function windMeasured(routes, at_ms) {
+  const told = routes.map(({ track }) => track.samples.findLast((sample) => sample.at_ms <= at_ms && sample.wind)).filter(Boolean);
+  return told.sort((a, b) => b.at_ms - a.at_ms)[0]?.wind ?? null;
+}

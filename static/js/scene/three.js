@@ -1,0 +1,3 @@
+/** Where the 3D library is, said once. */
+
+export * from "/static/lib/three/three.module.min.js";

@@ -1,0 +1,66 @@
+/** What is drawn as lines, with colours and widths: wires by voltage, rails, edges of zones. Each as [segments, tints, sizes] of lines.js. */
+
+import { voltageColour } from "../../map/style.js";
+import { Color } from "../three.js";
+
+const WIRE_PX = [[380_000, 1.5], [200_000, 1.35], [100_000, 1.2], [0, 1]];
+const WIRE_M = 0.11; // a bundle, or a rope with the eye's help
+const EARTH = { px: 0.8, m: 0.05 };
+const RAIL = { px: 0.7, m: 0.14 };
+const EDGE_PX = 1.6;
+const REST_DASH_M = 40;
+
+export function wireSegments({ points, first, span, isEarth }, scene, palette) {
+  const count = span.length ? points.length / 3 - span.length : 0;
+  const lines = arrays(count);
+  const colour = new Color();
+  let at = 0;
+  for (let wire = 0; wire < span.length; wire += 1) {
+    const { voltage_v } = scene.spans[span[wire]];
+    colour.set(voltageColour(palette, voltage_v === null ? null : voltage_v / 1_000));
+    const px = isEarth[wire] ? EARTH.px : WIRE_PX.find(([least]) => (voltage_v ?? 0) >= least)[1];
+    for (let point = first[wire]; point < first[wire + 1] - 1; point += 1) {
+      lines.put(at, points.subarray(point * 3, point * 3 + 6), colour, 0, px, isEarth[wire] ? EARTH.m : WIRE_M);
+      at += 1;
+    }
+  }
+  return lines.all;
+}
+
+export function railSegments(rails, palette) {
+  const lines = arrays(rails.reduce((sum, own) => sum + own.length / 6, 0));
+  const colour = new Color(palette.railway).lerp(new Color(palette.ink), 0.35);
+  let at = 0;
+  for (const own of rails) {
+    for (let place = 0; place < own.length; place += 6) {
+      lines.put(at, own.subarray(place, place + 6), colour, 0, RAIL.px, RAIL.m);
+      at += 1;
+    }
+  }
+  return lines.all;
+}
+
+export function edgeSegments(volumes, palette) {
+  const lines = arrays(volumes.reduce((sum, { edges }) => sum + edges.length / 6, 0));
+  const colour = new Color(palette.zone);
+  let at = 0;
+  for (const { edges, isInForce } of volumes) {
+    for (let place = 0; place < edges.length; place += 6) {
+      lines.put(at, edges.subarray(place, place + 6), colour, isInForce ? 0 : REST_DASH_M, isInForce ? EDGE_PX : 1.2, 0);
+      at += 1;
+    }
+  }
+  return lines.all;
+}
+
+function arrays(count) {
+  const [segments, tints, sizes] = [new Float32Array(count * 6), new Float32Array(count * 4), new Float32Array(count * 2)];
+  return {
+    all: [segments, tints, sizes],
+    put(at, ends, colour, dash_m, px, metres) {
+      segments.set(ends, at * 6);
+      tints.set([colour.r, colour.g, colour.b, dash_m], at * 4);
+      sizes.set([px, metres], at * 2);
+    },
+  };
+}

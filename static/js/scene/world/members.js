@@ -1,0 +1,100 @@
+/** Members of supports: one draw call for the outlines of all, one for the bracing of those near by. */
+
+import { Color, CylinderGeometry, DynamicDrawUsage, InstancedMesh, MeshDepthMaterial, MeshLambertMaterial, Vector2 } from "../three.js";
+import { memberMatrices } from "../geometry/struts.js";
+
+const LEAST_PX = 1.15; // an outline is never thinner on the screen
+const LEAST_SHADOW_PX = 2.4; // nor its shadow in the shadow map
+const SIZE = new Vector2();
+
+/** fog and light as every Lambert surface; far members are made as wide as a pixel. */
+function memberMaterial(leastPx) {
+  const material = new MeshLambertMaterial();
+  const uniforms = { leastPx: { value: leastPx }, tanPerPx: { value: 0.001 } };
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nuniform float leastPx;\nuniform float tanPerPx;")
+      .replace(
+        "#include <begin_vertex>",
+        `#include <begin_vertex>
+        {
+          float wide = length(instanceMatrix[0].xyz);
+          vec4 place = modelViewMatrix * (instanceMatrix * vec4(0.0, position.y, 0.0, 1.0));
+          transformed.xz *= max(1.0, leastPx * tanPerPx * max(-place.z, 0.0) / wide);
+        }`,
+      );
+  };
+  return { material, uniforms };
+}
+
+/** What shadows are made of. */
+function shadowMaterial(leastShadow) {
+  const material = new MeshDepthMaterial();
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.leastShadow = leastShadow;
+    shader.vertexShader = shader.vertexShader
+      .replace("#include <common>", "#include <common>\nuniform float leastShadow;")
+      .replace("#include <begin_vertex>", "#include <begin_vertex>\ntransformed.xz *= max(1.0, leastShadow / length(instanceMatrix[0].xyz));");
+  };
+  return material;
+}
+
+/** Gives { mesh, shadowPixel(metres), set({ ends, width_m, tone }, colours), dispose() }; colours: Float32Array of 3 for each member, in the working space. */
+export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
+  const prism = new CylinderGeometry(0.5, 0.5, 1, 4, 1, true);
+  const { material, uniforms } = memberMaterial(leastPx);
+  const leastShadow = { value: 0.2 };
+  const depth = shadowMaterial(leastShadow);
+  const holder = { mesh: new InstancedMesh(prism, material, 1) };
+
+  function reserve(capacity) {
+    if (capacity <= holder.mesh.instanceMatrix.count) return;
+    const next = new InstancedMesh(prism, material, capacity);
+    next.instanceMatrix.setUsage(DynamicDrawUsage);
+    next.setColorAt(0, new Color());
+    const { parent } = holder.mesh;
+    if (parent) parent.add(next);
+    holder.mesh.removeFromParent();
+    holder.mesh.dispose();
+    holder.mesh = next;
+    dress(next);
+  }
+  function dress(own) {
+    own.frustumCulled = false;
+    own.castShadow = castShadow;
+    own.customDepthMaterial = depth;
+    own.onBeforeRender = (renderer, _scene, camera) => {
+      const height = renderer.getDrawingBufferSize(SIZE).y;
+      uniforms.tanPerPx.value = (2 * Math.tan(((camera.fov ?? 50) * Math.PI) / 360) * renderer.getPixelRatio()) / Math.max(height, 1);
+    };
+  }
+  holder.mesh.setColorAt(0, new Color());
+  holder.mesh.count = 0;
+  dress(holder.mesh);
+  return {
+    get mesh() {
+      return holder.mesh;
+    },
+    /** How wide a pixel of the shadow map is. */
+    shadowPixel(metres) {
+      leastShadow.value = LEAST_SHADOW_PX * metres;
+    },
+    set(members, colours) {
+      const count = members.width_m.length;
+      reserve(Math.max(Math.ceil(count * 1.25), 64));
+      memberMatrices(members, holder.mesh.instanceMatrix.array);
+      holder.mesh.instanceColor.array.set(colours);
+      holder.mesh.count = count;
+      holder.mesh.visible = count > 0;
+      holder.mesh.instanceMatrix.needsUpdate = true;
+      holder.mesh.instanceColor.needsUpdate = true;
+    },
+    dispose() {
+      holder.mesh.dispose();
+      prism.dispose();
+      material.dispose();
+      depth.dispose();
+    },
+  };
+}

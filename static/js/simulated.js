@@ -1,0 +1,14 @@
+/** The one mark of what no real aircraft does, wherever a UAV or what it did is named. */
+
+import { h } from "./dom.js";
+import { t } from "./text.js";
+
+export const simulatedMark = () => h("span", { class: "simulated-mark", title: t("No real aircraft") }, t("Simulated"));
+
+/** Shows or hides the mark behind `before`, which stays where it is. */
+export function markSimulated(before, isSimulated) {
+  const next = before.nextElementSibling;
+  const mark = next?.classList.contains("simulated-mark") ? next : null;
+  if (isSimulated && !mark) before.after(simulatedMark());
+  if (!isSimulated && mark) mark.remove();
+}

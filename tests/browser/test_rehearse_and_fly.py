@@ -1,0 +1,181 @@
+"""A mission from the first click to its record: picked, planned, rehearsed, approved, sent, flown by simulated UAVs, watched, over."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.conftest import Visitor
+from tests.browser.operator_map import TOO_WIDE, asks, clicks_at, targets, wait_for_map
+from tests.browser.pictures import HAS_PICTURES, Picture
+from tests.browser.simulated_mission import (
+    FLIGHT_MS,
+    SOON_MS,
+    answers,
+    card,
+    flies_in_simulation,
+    panel_of,
+    retires,
+    simulated_uavs,
+    two_towers,
+)
+from tests.browser.test_accessibility import faults
+
+pytestmark = pytest.mark.browser
+
+NAME = "Dotterel"
+SILENT_S = "600"  # until somebody ends it
+
+
+@pytest.fixture
+def towers(visitor: Visitor) -> Iterator[list[list[float]]]:
+    """Where two of them stand, with a simulated UAV of the fleet beside."""
+    page = visitor.signs_in("ada")
+    found = [tower["geometry"]["coordinates"] for tower in two_towers(page)]
+    uavs = simulated_uavs(page, NAME, at=found[0])
+    page.context.close()
+    yield found
+    retires(visitor.signs_in("ada"), uavs)
+
+
+def test_a_mission_is_picked_planned_rehearsed_approved_flown_in_simulation_and_read_afterwards(
+    visitor: Visitor, towers: list[list[float]], picture: Picture
+) -> None:
+    page = visitor.signs_in("opal")
+    plans(page, towers, picture)
+    rehearses(page, picture)
+    approves_and_sends(page, picture)
+    key = page.url.split("/missions/")[1].split("/")[0].split("#")[0]
+    page.get_by_role("link", name="Fly", exact=True).click()
+    wait_for_map(page)
+    flies(page, key, picture)
+    loses_the_link_and_finds_it_again(page, picture)
+    comes_home(page, picture)
+    page.get_by_role("link", name="Report", exact=True).click()
+    reads_the_record(page, picture)
+    if HAS_PICTURES:
+        shows_more_of_it(visitor, key, picture)
+
+
+def plans(page: Page, towers: list[list[float]], picture: Picture) -> None:
+    page.goto("/missions/new")
+    wait_for_map(page)
+    for number, tower in enumerate(towers, 1):
+        clicks_at(page, tower)
+        expect(page.locator("#target-list li")).to_have_count(number)
+    picture(page, "flow-1-picked")
+    page.get_by_role("checkbox", name=NAME).check()
+    page.get_by_role("switch", name="Return to start").check()
+    page.get_by_role("button", name="Plan P").click()
+    expect(page.locator("#plan-sentence")).to_contain_text("All back in", timeout=SOON_MS)
+    assert len(targets(page)) == 2
+    expect(page.locator(".mission-title .simulated-mark")).to_be_visible()
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page).to_have_url(re.compile(r"/missions/[0-9a-f]{8}-"), timeout=SOON_MS)
+    picture(page, "flow-2-planned")
+
+
+def rehearses(page: Page, picture: Picture) -> None:
+    page.get_by_role("link", name="Rehearse", exact=True).click()
+    wait_for_map(page)
+    expect(page).to_have_url(re.compile("/rehearse"))
+    panel = page.get_by_role("region", name="Rehearsal")
+    expect(panel).to_contain_text("Not rehearsed yet")
+    panel.get_by_role("button", name="Rehearse", exact=True).click()
+    expect(panel.locator("#rehearsal-sentence")).to_have_text(re.compile("^It passes.*As planned"), timeout=FLIGHT_MS)
+    expect(panel.get_by_role("img", name="Height above take-off by time")).to_be_visible()
+    expect(panel.get_by_role("img", name="Battery by time")).to_be_visible()
+    expect(panel.locator(".rehearsal-targets li")).to_have_count(2)
+    expect(page).to_have_url(re.compile(r"/rehearse\?rehearsal=[0-9a-f-]{36}&run=0"))
+    page.reload()
+    wait_for_map(page)
+    expect(panel.locator("#rehearsal-sentence")).to_have_text(re.compile("^It passes"))
+    picture(page, "flow-3-rehearsed")
+
+
+def approves_and_sends(page: Page, picture: Picture) -> None:
+    page.get_by_role("button", name="Approve", exact=True).click()
+    question = page.get_by_role("dialog")
+    expect(question).to_contain_text(f"Simulated, no real aircraft: {NAME}.")
+    picture(page, "flow-4-approve")
+    answers(page, "Approve")
+    expect(page.locator("#mission-state")).to_have_text("Approved", timeout=SOON_MS)
+    page.get_by_role("link", name="Plan", exact=True).click()
+    wait_for_map(page)
+    page.get_by_role("button", name="Send to UAVs").click()
+    answers(page, "Send to UAVs")
+    expect(page.locator("#mission-state")).to_have_text("Dispatched", timeout=SOON_MS)
+    expect(page.locator("#flyers .simulated-mark")).to_be_visible()
+
+
+def flies(page: Page, key: str, picture: Picture) -> None:
+    flies_in_simulation(page, "10 times real time")
+    expect(card(page, NAME).locator(".simulated-mark").first).to_be_visible(timeout=SOON_MS)
+    page.get_by_role("link", name="Plan", exact=True).click()
+    wait_for_map(page)
+    expect(page.locator("#flyers")).to_contain_text("On the UAV: what was approved", timeout=SOON_MS)
+    picture(page, "flow-5-on-board")
+    page.locator("#flyers").get_by_role("button", name="Start", exact=True).click()
+    answers(page, f"Start {NAME}")
+    page.get_by_role("link", name="Fly", exact=True).click()
+    wait_for_map(page)
+    expect(page.locator("#mission-state")).to_have_text("Active", timeout=SOON_MS)
+    marker = page.locator(".map-flyer")
+    expect(marker).to_have_class(re.compile("measured"), timeout=SOON_MS)
+    expect(card(page, NAME).locator(".figures")).to_contain_text("over take-off")
+    first = marker.get_attribute("style") or ""
+    expect(marker).not_to_have_attribute("style", first, timeout=SOON_MS)  # it moves
+    picture(page, "flow-6-flying")
+
+
+def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
+    """At real time, so that the flight waits for whoever looks at it."""
+    panel = panel_of(page)
+    panel.get_by_role("combobox", name="Pace").select_option(label="Real time")
+    expect(panel.locator("#simulation-state")).to_contain_text("in real time", timeout=SOON_MS)
+    panel.get_by_label("Link or GPS lost for").fill(SILENT_S)
+    panel.get_by_role("button", name="Lose the link").click()
+    expect(panel.locator(".simulation-uavs")).to_contain_text("its link is lost", timeout=SOON_MS)
+    alert = page.locator(".alert").filter(has_text=re.compile("is late|is lost"))
+    expect(alert.first).to_be_visible(timeout=SOON_MS)
+    expect(alert.first.locator(".simulated-mark")).to_be_visible()
+    expect(page.locator(".map-flyer")).to_have_class(re.compile("estimated"), timeout=SOON_MS)
+    expect(card(page, NAME).locator(".estimate")).to_contain_text("95 of 100 times")
+    picture(page, "flow-7-link-lost")
+    alert.first.get_by_role("button", name="Acknowledge").click()
+    expect(page.locator(".alert.known").filter(has_text="Acknowledged by opal").first).to_be_visible(timeout=SOON_MS)
+    panel.get_by_role("button", name="All well again").click()
+    expect(page.locator(".map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
+
+
+def comes_home(page: Page, picture: Picture) -> None:
+    panel_of(page).get_by_role("combobox", name="Pace").select_option(label="10 times real time")
+    expect(page.locator("#mission-state")).to_have_text("Completed", timeout=FLIGHT_MS)
+    expect(page.locator("#board .complete")).to_have_count(2)
+    assert faults(page) == []
+    assert page.evaluate(TOO_WIDE) == []
+    picture(page, "flow-8-completed")
+
+
+def reads_the_record(page: Page, picture: Picture) -> None:
+    wait_for_map(page)
+    expect(page.locator("#report-state")).to_have_text("Completed")
+    expect(page.locator("#report-sentence")).to_contain_text("2", timeout=SOON_MS)
+    expect(page.locator("#report-said")).to_contain_text("Flown in simulation, by no real aircraft.")
+    expect(page.get_by_role("row", name=re.compile(r"^Distance .*\d"))).to_be_visible()
+    expect(page.get_by_role("img", name="Height above take-off by time")).to_be_visible()
+    expect(page.locator("#replay-strips .replay-row")).to_have_count(1)
+    picture(page, "flow-9-record")
+
+
+def shows_more_of_it(visitor: Visitor, key: str, picture: Picture) -> None:
+    """Dark, and on a phone; for the documentation alone."""
+    for theme, size, mark in (("dark", (1440, 900), "dark"), ("light", (390, 844), "phone")):
+        page = visitor.signs_in("vera", theme=theme, size=size, touch=size[0] < 600)
+        for stage in ("rehearse", "fly", "report"):
+            page.goto(f"/missions/{key}/{stage}")
+            wait_for_map(page)
+            picture(page, f"flow-{stage}-{mark}")
+        assert asks(page, f"/missions/{key}")["state"] == "completed"
+        page.context.close()

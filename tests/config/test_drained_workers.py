@@ -1,0 +1,83 @@
+"""A worker that is told to stop (SIGTERM) finishes what is short, gives back what is long, and ends by itself."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from uuid import uuid4
+
+import pytest
+from celery import Celery
+from django.conf import settings
+from redis import Redis
+
+PATIENCE_S = 180.0
+
+
+class Queue:
+    """A queue of its own, and what its tasks have noted."""
+
+    def __init__(self, folder: Path) -> None:
+        self.name = f"slow-{uuid4().hex[:8]}"
+        self.folder = folder
+        self.redis = Redis.from_url(settings.REDIS_URL)
+        self.app = Celery("sender", broker=settings.CELERY_BROKER_URL)
+
+    def send(self, seconds: float) -> None:
+        self.app.send_task("tests.config.slow_tasks.take", args=[seconds], queue=self.name)
+
+    def notes(self) -> list[str]:
+        return [note.decode() for note in self.redis.lrange(f"{self.name}.notes", 0, -1)]
+
+    @contextmanager
+    def worker(self) -> Iterator[subprocess.Popen[bytes]]:
+        """As scripts/programs.py starts one: TERM says the same as QUIT."""
+        environment = os.environ | {"SLOW_QUEUE": self.name, "REDIS_URL": settings.REDIS_URL, "REMAP_SIGTERM": "SIGQUIT"}
+        environment |= {"SPANWISE_VAR": str(self.folder), "SPANWISE_SECRET_KEY": "of-the-test", "SPANWISE_METRICS": ""}
+        command = [sys.executable, "-m", "celery", "--app", "tests.config.slow_tasks", "--quiet", "worker", "--queues", self.name]
+        command += ["--concurrency", "1", "--hostname", f"{uuid4()}@%h", "--without-mingle", "--without-gossip", "--without-heartbeat"]
+        process = subprocess.Popen(command, cwd=settings.BASE_DIR, env=environment, start_new_session=True)  # noqa: S603
+        try:
+            yield process
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait(PATIENCE_S)
+
+
+@pytest.fixture
+def queue(tmp_path: Path) -> Iterator[Queue]:
+    made = Queue(tmp_path)
+    yield made
+    made.redis.delete(made.name, f"{made.name}.notes", f"_kombu.binding.{made.name}")
+
+
+def wait_for(is_so: Callable[[], bool]) -> None:
+    deadline_s = time.monotonic() + PATIENCE_S
+    while not is_so():
+        assert time.monotonic() < deadline_s, "it never came"
+        time.sleep(0.05)
+
+
+def test_a_short_task_is_finished_and_a_long_one_given_back_to_the_next_worker(queue: Queue) -> None:
+    with ExitStack() as first:
+        process = first.enter_context(queue.worker())
+        queue.send(1.0)
+        wait_for(lambda: queue.notes() == ["began"])
+        process.terminate()
+        assert process.wait(PATIENCE_S) >= 0, "it had to be killed"
+    assert queue.notes() == ["began", "done"]
+
+    with ExitStack() as second:
+        process = second.enter_context(queue.worker())
+        queue.send(3_600.0)
+        wait_for(lambda: queue.notes().count("began") >= 2)
+        begun = queue.notes().count("began")
+        process.terminate()
+        assert process.wait(PATIENCE_S) >= 0, "it had to be killed"
+        with queue.worker():
+            wait_for(lambda: queue.notes().count("began") > begun)

@@ -1,0 +1,70 @@
+"""A task knows the request that it was asked for in, and is counted with its outcome."""
+
+import threading
+from collections.abc import Iterator
+from uuid import uuid4
+
+import pytest
+from celery.contrib.testing.worker import start_worker
+from prometheus_client import REGISTRY
+
+from config.celery import app
+from operation.log_context import about, facts
+
+PATIENCE_S = 120
+
+_heard: list[dict[str, str]] = []
+_is_done = threading.Event()
+
+
+@app.task(name="tests.note_what_it_is_about")
+def note_what_it_is_about(job_id: str) -> None:
+    _heard.append(dict(facts()))
+    _is_done.set()
+
+
+@app.task(name="tests.fall")
+def fall() -> None:
+    _is_done.set()
+    raise ValueError("as it should")
+
+
+@pytest.fixture(autouse=True)
+def _nothing_heard() -> None:
+    _heard.clear()
+    _is_done.clear()
+
+
+@pytest.fixture(scope="module")
+def queue() -> Iterator[str]:
+    """A real worker of Spanwise's own application, in a thread, at a queue of its own."""
+    name = f"watched-{uuid4().hex[:8]}"
+    with start_worker(app, pool="solo", perform_ping_check=False, queues=[name], shutdown_timeout=PATIENCE_S):
+        yield name
+
+
+def counted(task: str, outcome: str) -> float:
+    return REGISTRY.get_sample_value("spanwise_tasks_total", {"task": task, "outcome": outcome}) or 0.0
+
+
+def test_what_the_work_is_about_goes_with_a_task(queue: str) -> None:
+    before = counted(note_what_it_is_about.name, "done")
+    with about(request="request-of-today", mission="m-7", uav="3", job="another"):
+        note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
+    assert _is_done.wait(PATIENCE_S)
+    assert _heard == [{"request": "request-of-today", "mission": "m-7", "uav": "3", "job": "job-9"}]
+    while counted(note_what_it_is_about.name, "done") == before:
+        threading.Event().wait(0.02)
+
+
+def test_a_task_of_nobodys_request_is_about_its_job_alone_and_a_failed_one_is_counted_so(queue: str) -> None:
+    before = counted(fall.name, "failed")
+    note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
+    assert _is_done.wait(PATIENCE_S)
+    assert _heard == [{"job": "job-9"}]
+    _is_done.clear()
+    fall.apply_async(queue=queue)
+    assert _is_done.wait(PATIENCE_S)
+    while counted(fall.name, "failed") == before:
+        threading.Event().wait(0.02)
+    assert facts() == {}
