@@ -4,7 +4,7 @@
 
 JSBSim flies both airframes along the very mission items (tests/telemetry/estimation/simulated.py): with holds, photos and things looked
 at, winds that differ from the forecast, gusts and turbulence, and with pauses, returns and landings; with --lines every other flight goes
-along power lines of OSM files. What is heard of it has the errors of GPS and barometer, is late and lost as in benchmarks/estimator.py.
+along power lines of OSM files. What is heard of it has the errors of GPS and barometer, is late and lost, as in benchmarks/estimator.py.
 With --write the table goes to docs/performance.md. Exits with 1 where a bar is missed.
 """
 

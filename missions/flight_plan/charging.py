@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from missions.flight_plan.conditions import Conditions
-from missions.flight_plan.leg_taken import J_PER_WH, leg_taken, speeds, table_of
+from missions.flight_plan.leg_taken import J_PER_WH, landing_taken, leg_taken, speeds, table_of, take_off_taken
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.timing import Timing
@@ -140,9 +140,11 @@ def _way_to_towers(
         agl_m = float(waypoints.points.agl_m[place])
         density = conditions.air_density(None if waypoints.amsl_m is None else float(waypoints.amsl_m[place]))
         low_m = min(tops_m[number], agl_m)
-        for way, start_m, end_m in ((down, agl_m, low_m), (up, low_m, agl_m)):
-            seconds, joules = leg_taken(0.0, 0.0, 0.0, start_m, end_m, end_m - start_m, conditions.wind_table, density, own, table)
-            way[number] = seconds, joules / J_PER_WH
+        air = conditions.wind_table, density, own, table
+        touching, lifting = landing_taken(agl_m + low_m, *air), take_off_taken(agl_m + low_m, *air)  # half way between the two
+        for way, start_m, end_m, besides in ((down, agl_m, low_m, touching), (up, low_m, agl_m, lifting)):
+            seconds, joules = leg_taken(0.0, 0.0, 0.0, start_m, end_m, end_m - start_m, *air)
+            way[number] = seconds + besides[0], (joules + besides[1]) / J_PER_WH
     return down, up
 
 

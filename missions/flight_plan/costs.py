@@ -18,7 +18,7 @@ from inspection.graph.along_ways import chain_arrays
 from inspection.graph.condensed import NumberArray
 from inspection.graph.inspection_graph import InspectionGraph
 from missions.flight_plan.conditions import Conditions, air_density
-from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, leg_taken
+from missions.flight_plan.leg_taken import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.ways_taken import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
 from missions.routing.problem import End
@@ -228,7 +228,7 @@ def _at_visits(
         low_m = min(level_m, transit_m)
         known_m = ground_m[uavs + visit]
         density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, temperature_c)
-        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = hold_taken(flown[1, visit], level_m, wind, density, own, table)
+        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = stay_taken(flown[1, visit], level_m, wind, density, own, table)
         for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
             east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
             length_m = math.hypot(east, north)
@@ -239,9 +239,10 @@ def _at_visits(
         down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
         up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
         landing = leg_taken(0.0, 0.0, 0.0, level_m, 0.0, -level_m, wind, density, own, table)
+        touching = landing_taken(level_m, wind, density, own, table)
         for part in range(2):
             parts[part, SERVICE, visit] += down[part]
-            parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part]
+            parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part] + touching[part]
     highest_m = 0.0
     for uav in range(uavs):
         if not math.isnan(ground_m[uav]):
@@ -249,6 +250,10 @@ def _at_visits(
     density = air_density(highest_m, temperature_c)
     columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
     columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
+    lifting, touching = take_off_taken(transit_m, wind, density, own, table), landing_taken(transit_m, wind, density, own, table)
+    for part in range(2):
+        columns[part, TAKE_OFF] += lifting[part]
+        columns[part, LANDING] += touching[part]
     parts[1] /= J_PER_WH
     columns[1] /= J_PER_WH
     return parts, columns

@@ -19,22 +19,36 @@ NO_TABLE = np.zeros((0, 0, 0))  # in place of a table of power: without a batter
 
 
 class Speeds(NamedTuple):
-    """Of a UAV on a plan, m/s: wanted over ground, most through the air, straight up, straight down."""
+    """Of a UAV on a plan, m/s: wanted over ground, most through the air, straight up, straight down.
+
+    And seconds that these do not tell, each beside flying at them: slowing down to a stand, or speeding up from it; settling there;
+    leaving the ground; coming down on it.
+    """
 
     cruise_mps: float
     limit_mps: float
     climb_mps: float
     descent_mps: float
+    brake_s: float
+    settle_s: float
+    lift_s: float
+    touch_s: float
 
 
 def speeds(performance: Performance, cruise_speed_mps: float, rules: FlightRules) -> Speeds:
     """Up and down as the UAV has it, else as the plan's rules do."""
     limit, up, down = performance.max_airspeed_mps, performance.climb_speed_mps, performance.descent_speed_mps
+    manoeuvres = rules.manoeuvres
+    down_mps = float(rules.climb_speed_mps if down is None else down)
     return Speeds(
         float(cruise_speed_mps),
         float(cruise_speed_mps if limit is None else limit),  # of an airspeed that is not stated it is known to fly its speed
         float(rules.climb_speed_mps if up is None else up),
-        float(rules.climb_speed_mps if down is None else down),
+        down_mps,
+        brake_s=cruise_speed_mps / (2.0 * manoeuvres.acceleration_mps2),
+        settle_s=manoeuvres.settle_s,
+        lift_s=manoeuvres.lift_s,
+        touch_s=max(manoeuvres.slow_below_m / manoeuvres.landing_mps - manoeuvres.slow_below_m / down_mps, 0.0),
     )
 
 
@@ -133,3 +147,25 @@ def hold_taken(hold_s: float, agl_m: float, wind: FloatArray, density: float, ow
     if wind_mps > own.limit_mps:
         return np.inf, np.inf
     return hold_s, hold_s * watts(table, LEVEL, wind_mps, density) if len(table) > 0 else 0.0
+
+
+@njit(cache=True, nogil=True)
+def stay_taken(hold_s: float, agl_m: float, wind: FloatArray, density: float, own: Speeds, table: FloatArray) -> tuple[float, float]:
+    """As hold_taken, with what slowing down before a stay, settling and speeding up after it take beside flying on."""
+    stops_s = 2.0 * own.brake_s + own.settle_s if hold_s > 0.0 else 0.0
+    return hold_taken(hold_s + stops_s, agl_m, wind, density, own, table)
+
+
+@njit(cache=True, nogil=True)
+def take_off_taken(agl_m: float, wind: FloatArray, density: float, own: Speeds, table: FloatArray) -> tuple[float, float]:
+    """What a take-off to this height takes beside the climb: until it climbs, and then until it flies at its speed."""
+    return hold_taken(own.lift_s + own.brake_s, 0.5 * agl_m, wind, density, own, table)
+
+
+@njit(cache=True, nogil=True)
+def landing_taken(agl_m: float, wind: FloatArray, density: float, own: Speeds, table: FloatArray) -> tuple[float, float]:
+    """What a landing from this height takes beside the descent: to a stand before it, and slowly near the ground.
+
+    One that lands where it has stayed stands already: for it this errs on the long side.
+    """
+    return hold_taken(own.brake_s + own.settle_s + own.touch_s, 0.5 * agl_m, wind, density, own, table)

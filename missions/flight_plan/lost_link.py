@@ -14,7 +14,7 @@ from inspection.graph.spans import Spans, spans_between
 from missions.flight_plan.clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
 from missions.flight_plan.conditions import Conditions, air_density
 from missions.flight_plan.heights import SAMPLE_SPACING_M, GroundHeights
-from missions.flight_plan.leg_taken import J_PER_WH, hold_taken, leg_taken, speeds, table_of
+from missions.flight_plan.leg_taken import J_PER_WH, hold_taken, landing_taken, leg_taken, speeds, table_of
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.spans_below import tops_below
@@ -226,7 +226,8 @@ class _Air:
         is_known = waypoints.amsl_m is not None
         density = air_density(here_m if is_known else 0.0, self.temperature_c)
         up = leg_taken(0.0, 0.0, 0.0, agl_m, level_agl_m, level_m - here_m, self.wind, density, self.own, self.table)
-        stay = hold_taken(stays_s, agl_m, self.wind, density, self.own, self.table)
+        stops_s = 2.0 * self.own.brake_s + self.own.settle_s  # however short it stays: it turns round
+        stay = hold_taken(stays_s + stops_s, agl_m, self.wind, density, self.own, self.table)
         density = air_density(level_m if one.is_known else 0.0, self.temperature_c)
         # The ground under it rises and falls, so that one of the winds between its least and its greatest height may be met.
         across = max(
@@ -236,7 +237,8 @@ class _Air:
             ),
             key=lambda found: found[1] if len(self.table) else found[0],
         )
-        down = leg_taken(0.0, 0.0, 0.0, down_m, 0.0, -down_m, self.wind, density, self.own, self.table)
+        touching = landing_taken(down_m, self.wind, density, self.own, self.table)
+        down = np.add(leg_taken(0.0, 0.0, 0.0, down_m, 0.0, -down_m, self.wind, density, self.own, self.table), touching)
         sums = np.cumsum([np.add(stay, up), across, down], axis=0)
         return [(float(seconds), float(joules)) for seconds, joules in sums]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy.short_vector import short_vector_m
 from missions.flight_plan.conditions import air_density
-from missions.flight_plan.leg_taken import Speeds, hold_taken, leg_taken
+from missions.flight_plan.leg_taken import Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
 from missions.flight_plan.ways_taken import Air
 
 FloatArray = NDArray[np.float64]
@@ -76,17 +76,22 @@ def _at_nodes(
     density = air_density(0.0, temperature_c)
     columns[0, 0], columns[0, 1] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
     columns[1, 0], columns[1, 1] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
+    lifting, touching = take_off_taken(transit_m, wind, density, own, table), landing_taken(transit_m, wind, density, own, table)
+    for part in range(2):
+        columns[TAKE_OFF, part] += lifting[part]
+        columns[LANDING, part] += touching[part]
     for node in range(len(level_m)):
         level = level_m[node]
         if node > 0 and level == level_m[node - 1] and hold_s[node] == hold_s[node - 1]:
             taken[node] = taken[node - 1]
             continue
         low_m = min(level, transit_m)
-        held_s, held_j = hold_taken(hold_s[node], level, wind, density, own, table)
+        held_s, held_j = stay_taken(hold_s[node], level, wind, density, own, table)
         down_s, down_j = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
         taken[node, 0, 0], taken[node, 0, 1] = held_s + down_s, held_j + down_j
         up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
         landing = leg_taken(0.0, 0.0, 0.0, level, 0.0, -level, wind, density, own, table)
+        touching = landing_taken(level, wind, density, own, table)
         taken[node, 1, 0], taken[node, 1, 1] = up
-        taken[node, 2, 0], taken[node, 2, 1] = landing
+        taken[node, 2, 0], taken[node, 2, 1] = landing[0] + touching[0], landing[1] + touching[1]
     return taken, columns

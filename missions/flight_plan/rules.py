@@ -1,6 +1,31 @@
 """Heights and speeds that a plan keeps."""
 
+import math
 from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Manoeuvres:
+    """What no speed tells: how a UAV leaves the ground, stops, goes on and comes down; as simulated flights do (decision 0039).
+
+    acceleration_mps2   along its way: PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5, neither from the first moment on
+    settle_s            from coming to a stand until it counts as standing
+    lift_s              from the motors' start until it climbs at its speed
+    landing_mps         how fast it comes down below slow_below_m: PX4's MPC_LAND_SPEED; ArduCopter's is 0.5
+    """
+
+    acceleration_mps2: float = 2.0
+    settle_s: float = 1.5
+    lift_s: float = 1.5
+    landing_mps: float = 0.7
+    slow_below_m: float = 8.0
+
+    def __post_init__(self) -> None:
+        if not (self.acceleration_mps2 > 0 and self.landing_mps > 0 and min(self.settle_s, self.lift_s, self.slow_below_m) >= 0):
+            raise ValueError("acceleration_mps2 and landing_mps must be above 0, the others not below")
+
+
+AT_ONCE = Manoeuvres(acceleration_mps2=math.inf, settle_s=0.0, lift_s=0.0, landing_mps=math.inf, slow_below_m=0.0)  # a UAV without mass
 
 
 @dataclass(frozen=True)
@@ -14,6 +39,7 @@ class FlightRules:
     turnaround_s: float = 600.0  # from the landing of one flight to the take-off of the next, with another battery
     longest_leg_m: float = 900.0  # PX4's MIS_DIST_WPS; the geodesic then keeps to the drawn line within 0.1 m
     terrain_tolerance_m: float = 10.0  # how far the height above ground may stray between waypoints before one is put in
+    manoeuvres: Manoeuvres = Manoeuvres()
 
     def __post_init__(self) -> None:
         if not 0 < self.transit_agl_m <= self.max_agl_m:

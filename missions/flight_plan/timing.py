@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 
 from inspection.geodesy.short_vector import short_vector_m
 from missions.flight_plan.conditions import Conditions, air_density, wind_in_table
-from missions.flight_plan.leg_taken import J_PER_WH, Speeds, hold_taken, is_closed, speeds, table_of, taken_in_wind
+from missions.flight_plan.leg_taken import (
+    J_PER_WH,
+    Speeds,
+    hold_taken,
+    is_closed,
+    landing_taken,
+    speeds,
+    table_of,
+    take_off_taken,
+    taken_in_wind,
+)
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.rules import FlightRules
@@ -52,9 +62,8 @@ def timing(
 
     Each leg is flown level, in the wind of its middle height, and then straight up or down to its end, in the same wind; a UAV that does
     both at once is sooner there, so this errs on the long side. The column from the ground at the start counts, and with `lands` the one
-    at the end. A leg with a speed of its own is flown at that, within the airspeed limit like any other. Turns and changes of speed do not
-    count: flights with a turn each 500 m were measured to take 3 to 7 % longer. Without heights above sea level the air is taken to be
-    that of the sea.
+    at the end. A leg with a speed of its own is flown at that, within the airspeed limit like any other. Taking off, stopping to stay and
+    landing count with what `Manoeuvres` say of them; turns do not. Without heights above sea level the air is taken to be that of the sea.
     """
     points = waypoints.points
     battery_wh = performance.battery_wh
@@ -137,17 +146,28 @@ def _timing(
             wind_agl_m, wind_here = (before_m, after_m), wind_in_table(wind, 0.5 * (before_m + after_m))
         flown = own
         if place < len(wanted_mps):
-            flown = Speeds(wanted_mps[place], own.limit_mps, own.climb_mps, own.descent_mps)
+            flown = Speeds(
+                wanted_mps[place], own.limit_mps, own.climb_mps, own.descent_mps, own.brake_s, own.settle_s, own.lift_s, own.touch_s
+            )
         # As leg_taken: most legs are level, and in the wind of the leg before.
         seconds, joules = taken_in_wind(length_m, east, north, rise_m, wind_here[0], wind_here[1], density, flown, table)
         if before_m != after_m and is_closed(length_m > 0.0, east, north, before_m, after_m, wind, flown):
             seconds = joules = np.inf
         now_s, now_j = now_s + seconds, now_j + joules
+        if place == 0:
+            seconds, joules = take_off_taken(agl_m[0], wind, density, own, table)
+            now_s, now_j = now_s + seconds, now_j + joules
         if place < count:
+            if hold_s[place] > 0.0:
+                seconds, joules = hold_taken(own.brake_s, agl_m[place], wind, density, own, table)
+                now_s, now_j = now_s + seconds, now_j + joules
             arrival_s[place], used_j[place] = now_s, now_j
             if hold_s[place] > 0.0:
-                seconds, joules = hold_taken(hold_s[place], agl_m[place], wind, density, own, table)
+                seconds, joules = hold_taken(own.settle_s + hold_s[place] + own.brake_s, agl_m[place], wind, density, own, table)
                 now_s, now_j = now_s + seconds, now_j + joules
+        else:
+            seconds, joules = landing_taken(agl_m[count - 1], wind, density, own, table)
+            now_s, now_j = now_s + seconds, now_j + joules
         if math.isinf(now_s):
             return arrival_s, used_j, now_s, now_j, min(place, count - 1)
     return arrival_s, used_j, now_s, now_j, -1

@@ -47,9 +47,13 @@ class Assignment:
     held_back: dict[int, str]
 
 
-def least_ready_s(action: EndAction, targets_agl_m: Sequence[float], rules: FlightRules) -> float:
+def least_ready_s(action: EndAction, cruise_speed_mps: float, targets_agl_m: Sequence[float], rules: FlightRules) -> float:
     return ready_s(
-        targets_agl_m, lands=action is not EndAction.HOVER, ends_at_target=action in (EndAction.HOVER, EndAction.LAND), rules=rules
+        targets_agl_m,
+        lands=action is not EndAction.HOVER,
+        ends_at_target=action in (EndAction.HOVER, EndAction.LAND),
+        cruise_speed_mps=cruise_speed_mps,
+        rules=rules,
     )
 
 

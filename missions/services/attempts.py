@@ -91,7 +91,8 @@ def attempt(
     counts = needs_counting(request)
     takes_s = None
     if not counts:
-        takes_s = [target_s(height_m, place.task.hold_s, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
+        slowest_mps = min((request.uavs[uav].cruise_speed_mps for uav in uavs), default=scene.flight.cruise_speed_mps)
+        takes_s = [target_s(height_m, place.task.hold_s, slowest_mps, scene.flight) for place, height_m in zip(places, agl_m, strict=True)]
     visits, courses = visits_of_places(places, takes_s)
     ways = ways_between(
         scene.graph,
@@ -105,7 +106,9 @@ def attempt(
     )
     drawing = Drawing(request, scene, places, agl_m, visits, courses, ways, bases)
     costs = counted(drawing, uavs) if counts else None
-    ready = [0.0 if counts else least_ready_s(request.end_action(uav), agl_m, scene.flight) for uav in uavs]
+    ready = [
+        0.0 if counts else least_ready_s(request.end_action(uav), request.uavs[uav].cruise_speed_mps, agl_m, scene.flight) for uav in uavs
+    ]
     no_landing = _no_landing(request, uavs, places, scene)
     asked = assignment(
         request, uavs, places, visits, ways, grounded, ready, costs, usable_share, no_landing, scene.flight.turnaround_s, kept_from

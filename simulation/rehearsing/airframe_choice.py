@@ -1,4 +1,4 @@
-"""Which simulated airframe flies for a type of UAV: the nearest by mass and by how long it stays up."""
+"""Which simulated airframe flies for a type of UAV: the nearest by speed, mass and how long it stays up."""
 
 import math
 from collections.abc import Iterable
@@ -10,11 +10,12 @@ from missions.flight_plan.power import power_w
 
 @dataclass(frozen=True)
 class Candidate:
-    """A simulated airframe as it is compared: kilograms, and minutes of hover on its own battery."""
+    """A simulated airframe as it is compared: kilograms, minutes of hover on its own battery, and the most it flies over ground."""
 
     code: str
     mass_kg: float
     endurance_min: float
+    max_speed_mps: float
 
 
 def endurance_min(performance: Performance) -> float | None:
@@ -22,9 +23,16 @@ def endurance_min(performance: Performance) -> float | None:
     return None if performance.battery_wh is None else performance.battery_wh / power_w(performance) * 60.0
 
 
-def nearest_airframe(performance: Performance, candidates: Iterable[Candidate]) -> str:
-    """The code of the one whose mass, and endurance where it is known, differ least as ratios; the first of equals."""
-    own_min = endurance_min(performance)
+def nearest_airframe(performance: Performance, speed_mps: float, candidates: Iterable[Candidate]) -> str:
+    """The code of the one whose mass, and endurance where it is known, differ least as ratios; the first of equals.
+
+    Of a UAV whose battery is not known only those are looked at that fly at its speed, or else the fastest: there a slower one would say
+    nothing but that it comes late. Where a battery is known, it has to be drained as by a UAV of that mass.
+    """
+    own_min, candidates = endurance_min(performance), tuple(candidates)
+    if own_min is None:
+        wanted_mps = min(speed_mps, max(candidate.max_speed_mps for candidate in candidates))
+        candidates = tuple(candidate for candidate in candidates if candidate.max_speed_mps >= wanted_mps)
 
     def differs(candidate: Candidate) -> float:
         by_mass = abs(math.log(candidate.mass_kg / performance.mass_kg))

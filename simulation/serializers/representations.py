@@ -136,7 +136,7 @@ def _stand_in_words(uav: Mapping[str, Any]) -> str:
         return _("%(uav)s: the simulated %(airframe)s, as said for its type, with that one's battery of %(battery)s Wh") % values
     if uav["has_own_battery"]:
         return _("%(uav)s: the simulated %(airframe)s, the nearest by mass and endurance, with its own battery of %(battery)s Wh") % values
-    return _("%(uav)s: the simulated %(airframe)s, the nearest by mass and endurance, with that one's battery of %(battery)s Wh") % values
+    return _("%(uav)s: the simulated %(airframe)s, the nearest by speed and mass, with that one's battery of %(battery)s Wh") % values
 
 
 def _run(run: RehearsalRun, rehearsal: Rehearsal) -> dict[str, Any]:

@@ -237,7 +237,7 @@ class AirframeListSerializer(serializers.Serializer):
 
 
 class TypeAirframeSerializer(serializers.Serializer):
-    airframe = serializers.CharField(allow_null=True, help_text="code of what was chosen; null: the nearest by mass and endurance")
+    airframe = serializers.CharField(allow_null=True, help_text="code of what was chosen; null: the nearest by speed, mass and endurance")
     flown = serializers.CharField(read_only=True, help_text="code of what flies")
 
 

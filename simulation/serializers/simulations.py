@@ -1,5 +1,6 @@
 """Simulated UAVs in real time, in the shapes of the API."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from django.conf import settings
@@ -31,6 +32,12 @@ REASONS = {
         "installation ports of its own (SPANWISE_SIMULATOR_PORTS)."
     ),
 }
+
+
+NOT_OF_THE_FLEET = gettext_lazy(
+    "UAVs of the pool are not of the fleet. A UAV of the fleet that is marked as simulated is flown with a mission: start "
+    "its simulated flight."
+)
 
 
 class ConditionsField(serializers.JSONField):
@@ -98,6 +105,11 @@ class PoolUavSerializer(KnownFieldsSerializer):
     ground_amsl_m = serializers.FloatField(
         min_value=-500, max_value=9_000, allow_null=True, default=None, help_text="of the ground there, where no terrain model tells it"
     )
+
+    def to_internal_value(self, data: Any) -> Any:
+        if isinstance(data, Mapping) and "uav" in data:
+            raise serializers.ValidationError({"uav": [NOT_OF_THE_FLEET]})
+        return super().to_internal_value(data)
 
 
 class SimulationInputSerializer(KnownFieldsSerializer):

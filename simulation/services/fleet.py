@@ -10,7 +10,7 @@ from simulation.models import SimulatedAirframe
 from simulation.rehearsing.airframe_choice import nearest_airframe
 from simulation.rehearsing.candidates import CANDIDATES
 
-CHOSEN, NEAREST = "chosen", "nearest"  # why it flies: said for the type, or the nearest by mass and endurance
+CHOSEN, NEAREST = "chosen", "nearest"  # why it flies: said for the type, or the nearest by speed, mass and endurance
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class StandIn:
 def stand_in_of(uav: MissionUav) -> StandIn:
     performance = performance_from_json(uav.performance or None)
     chosen = _chosen(uav)
-    airframe = AIRFRAMES[chosen or nearest_airframe(performance, CANDIDATES)]
+    airframe = AIRFRAMES[chosen or nearest_airframe(performance, uav.cruise_speed_mps, CANDIDATES)]
     own_wh = performance.battery_wh
     return StandIn(
         uav=uav.sequence,
@@ -50,7 +50,7 @@ def airframe_of_type(uav_type: UavType) -> str:
     """The code of what flies for a type's UAVs that have no figures of their own."""
     chosen = SimulatedAirframe.objects.filter(uav_type=uav_type).values_list("airframe", flat=True).first()
     figures = {name: getattr(uav_type, name) for name in PERFORMANCE_KEYS}
-    return chosen if chosen in AIRFRAMES else nearest_airframe(performance_from_json(figures), CANDIDATES)
+    return chosen if chosen in AIRFRAMES else nearest_airframe(performance_from_json(figures), uav_type.cruise_speed_mps, CANDIDATES)
 
 
 def _chosen(uav: MissionUav) -> str | None:

@@ -110,7 +110,8 @@ class Simulations(APIView):
         summary="Start simulated UAVs for a ground station or a program of one's own",
         description=(
             "Each listens at a UDP port of its own until its lifetime ends: `connect` says where, with commands for QGroundControl, "
-            "MAVProxy and MAVSDK. They are not of the fleet, and no gateway hears them. One whose simulator is lost begins anew."
+            "MAVProxy and MAVSDK. They are not of the fleet, and no gateway hears them: a UAV of the fleet is flown in simulation with a "
+            "mission (POST /missions/{id}/simulated-flights). One whose simulator is lost begins anew."
         ),
         request=shapes.SimulationInputSerializer,
         responses={201: shapes.SimulationSerializer, **QUOTA},

@@ -6,7 +6,7 @@ import { bridgeSolid } from "../../static/js/scene/geometry/bridges.js";
 import { catenaryConstant, sagAt } from "../../static/js/scene/geometry/catenary.js";
 import { groundMesh, makeGround } from "../../static/js/scene/geometry/ground.js";
 import { labelsOf } from "../../static/js/scene/geometry/labels.js";
-import { railwayTrack } from "../../static/js/scene/geometry/railways.js";
+import { railwayTracks } from "../../static/js/scene/geometry/railways.js";
 import { heightPoles, ribbon } from "../../static/js/scene/geometry/ribbon.js";
 import { memberMatrices } from "../../static/js/scene/geometry/struts.js";
 import { sunAt } from "../../static/js/scene/geometry/sun.js";
@@ -269,16 +269,24 @@ test("upright and standing ways have a ribbon without gaps in its numbers", () =
   }
 });
 
-test("rails lie on the ground, rise to the bridge that carries them, and no steeper than a ramp", () => {
+test("rails lie on the ground, rise to the bridge that carries them, and no steeper than a ramp, also from one way to the next", () => {
   const deckAt = deckUnder(scene.bridges, frame);
-  const track = railwayTrack(scene.railways[0], { frame, ground, deckAt });
-  const heights = [];
-  for (let at = 0; at < track.bed.vertices.length; at += 6) heights.push([0, 1, 2].map((axis) => (track.bed.vertices[at + axis] + track.bed.vertices[at + 3 + axis]) / 2));
-  const onDeck = heights.filter(([x, , z]) => deckAt(x, z) !== null);
+  const [from, middle, to] = scene.railways[0].line;
+  const near = [middle[0] - 0.0025, middle[1] - 0.00025]; // a way of its own up to just before the bridge
+  const railways = [[from, near], [near, middle, to]].map((line) => ({ ...scene.railways[0], line }));
+  const ways = railwayTracks(railways, { frame, ground, deckAt }).map(({ bed, rails }) => {
+    const heights = [];
+    for (let at = 0; at < bed.vertices.length; at += 12) heights.push([0, 1, 2].map((axis) => (bed.vertices[at + 3 + axis] + bed.vertices[at + 6 + axis]) / 2));
+    assert.equal(rails.length / 6, (heights.length - 1) * 4);
+    return heights;
+  });
+  const onDeck = ways[1].filter(([x, , z]) => deckAt(x, z) !== null);
   assert.ok(onDeck.length > 5);
   for (const [, y] of onDeck) close(y, 330 - 200 + 0.35, 0.01);
-  for (const [x, y, z] of heights) assert.ok(y >= ground.heightAt(x, z) + 0.3);
-  assert.equal(track.rails.length / 6, (heights.length - 1) * 4);
+  for (const [x, y, z] of ways.flat()) assert.ok(y >= ground.heightAt(x, z) + 0.3);
+  close(ways[0].at(-1)[1], ways[1][0][1], 0.06);
+  const [x, y, z] = ways[0].at(-1);
+  assert.ok(y > ground.heightAt(x, z) + 5, "the dam begins before the bridge's own way");
 });
 
 test("a bridge is a slab at its deck's height with piers down to the ground", () => {

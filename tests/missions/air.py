@@ -15,6 +15,9 @@ from missions.flight_plan.performance import Performance
 from missions.services import PlanRequest
 
 CLIMB_MPS = 2.5
+# Until it climbs; to a stand or from it, beside flying at its speed; until it stands; the last metres of a landing.
+LIFTS_S, ACCELERATION_MPS2, SETTLES_S = 1.5, 2.0, 1.5
+TOUCHES_S = 8.0 / 0.7 - 8.0 / CLIMB_MPS
 
 
 def wind_mps(request: PlanRequest, agl_m: float) -> tuple[float, float]:
@@ -32,6 +35,11 @@ def wind_mps(request: PlanRequest, agl_m: float) -> tuple[float, float]:
 def density(amsl_m: float, temperature_c: float) -> float:
     """ISO 2533's pressure, and the temperature on the ground."""
     return 101_325.0 * (1.0 - 0.0065 * amsl_m / 288.15) ** 5.25588 / (287.05287 * (temperature_c + 273.15))
+
+
+def brakes_s(speed_mps: float) -> float:
+    """Slowing down takes v / a for a way of v² / 2 a."""
+    return 0.5 * speed_mps / ACCELERATION_MPS2
 
 
 def limit_mps(uav: Any) -> float:

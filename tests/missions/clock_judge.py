@@ -12,13 +12,16 @@ from typing import Any
 
 from inspection.models import Asset
 from missions.services import PlanRequest
-from tests.missions.air import CLIMB_MPS, density, speeds_mps, watts, wind_mps
+from tests.missions.air import CLIMB_MPS, LIFTS_S, SETTLES_S, TOUCHES_S, brakes_s, density, speeds_mps, watts, wind_mps
 from tests.missions.plane import apart_m, east_north
 
 CLOCK_SHARE, CLOCK_S = 0.005, 2.0  # what times may differ by: another Earth, rounding to tenths
 ENERGY_SHARE, ENERGY_WH = 0.01, 0.05
 TURNAROUND_S = 600.0
 UNTAGGED_TOWER_M = 45.0
+USUAL_SPEED_MPS = 12.0  # at which it is reckoned to come to a tower where it charges, and to leave it
+DOWN_ON_TOWER_S = brakes_s(USUAL_SPEED_MPS) + SETTLES_S + TOUCHES_S  # beside the way down
+OFF_TOWER_S = LIFTS_S + brakes_s(USUAL_SPEED_MPS)
 
 
 @dataclass
@@ -102,7 +105,7 @@ def _wrong_stops(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Itera
         given_wh = stop["charging_s"] * (request.charging_w - uav.performance.avionics_w) / 3_600.0
         if abs(given_wh - stop["charged_wh"]) > 0.01 * given_wh + 0.02:
             yield f"gets {given_wh:.2f} Wh at a tower, not {stop['charged_wh']:.2f} Wh"
-        way_s = 2.0 * (point["altitude_agl_m"] - tower_top_m(point)) / CLIMB_MPS
+        way_s = 2.0 * (point["altitude_agl_m"] - tower_top_m(point)) / CLIMB_MPS + DOWN_ON_TOWER_S + OFF_TOWER_S
         if abs(stop["charging_s"] + way_s - stop["stopped_s"]) > 0.3:
             yield f"stops for {stop['stopped_s']:.0f} s at a tower, not {stop['charging_s'] + way_s:.0f} s"
 
@@ -114,7 +117,7 @@ def tower_top_m(point: dict[str, Any]) -> float:
 
 
 def clock_of(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Clock:
-    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg level first, then straight up or down."""
+    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg level first, then straight up or down; and each stop."""
     points = route["waypoints"]
     stops = [place for place, point in enumerate(points) if point["kind"] == "base"]
     charging = {stop["waypoint"]: stop for stop in route["charging"]}
@@ -159,6 +162,13 @@ def _fly(
             ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
             spend(length_m / ground_mps, air_mps, 0.0, air)
         spend(abs(rise_m) / CLIMB_MPS, math.hypot(*wind), CLIMB_MPS if rise_m > 0 else 0.0, air)
+        hold_s, here_mps = (point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"]))
+        if number == 0:
+            spend(LIFTS_S + brakes_s(uav.cruise_speed_mps), math.hypot(*wind), 0.0, air)
+        if number == len(places):
+            spend(brakes_s(uav.cruise_speed_mps) + SETTLES_S + TOUCHES_S, math.hypot(*wind), 0.0, air)
+        elif hold_s > 0.0:
+            spend(brakes_s(uav.cruise_speed_mps), here_mps, 0.0, air)
         clock.left_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
         if number < len(places):
             clock.arrival_s.append(now_s)
@@ -168,13 +178,15 @@ def _fly(
             if stop is not None:
                 agl_m, top_m = point["altitude_agl_m"], tower_top_m(point)
                 column = math.hypot(*wind_mps(request, (agl_m + top_m) / 2))
-                spend((agl_m - top_m) / CLIMB_MPS, column, 0.0, air)
+                spend((agl_m - top_m) / CLIMB_MPS + DOWN_ON_TOWER_S, column, 0.0, air)
                 clock.left_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
                 now_s += stop["charging_s"]
                 charged_wh += stop["charged_wh"]
                 clock.full_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
                 spend((agl_m - top_m) / CLIMB_MPS, column, CLIMB_MPS, air)
-            spend((point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"])), 0.0, air)
+                spend(OFF_TOWER_S, column, 0.0, air)
+            if hold_s > 0.0:
+                spend(SETTLES_S + hold_s + brakes_s(uav.cruise_speed_mps), here_mps, 0.0, air)
     clock.left_wh.append(battery_wh - joules / 3_600.0 + charged_wh)
     clock.full_wh.append(battery_wh)
     clock.flights_wh.append(joules / 3_600.0)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from missions.services import PlanRequest
-from tests.missions.air import CLIMB_MPS, density, speeds_mps, watts, wind_mps
+from tests.missions.air import CLIMB_MPS, SETTLES_S, TOUCHES_S, brakes_s, density, speeds_mps, watts, wind_mps
 from tests.missions.ground_judge import CLEARANCE_M, Hills, along
 from tests.missions.plane import apart_m, east_north
 from tests.missions.wire_judge import WireJudge
@@ -92,6 +92,7 @@ class ReturnJudge:
     ) -> tuple[list[float], float] | None:
         """Seconds until it has stayed and climbed, is over the haven, has landed; and Wh. None where the wind is too strong."""
         stays_s = (request.lost_link.hold_s if request.lost_link.behaviour == "hold" else 0.0) + (point["task"] or {}).get("hold_s", 0.0)
+        stays_s += 2.0 * brakes_s(uav.cruise_speed_mps) + SETTLES_S
         agl_m, here_m = point["altitude_agl_m"], float(ground_m[0]) + point["altitude_agl_m"]
         air_here, air = (density(height_m if is_known else 0.0, request.conditions.temperature_c) for height_m in (here_m, level_m))
         up_agl_m, down_m = level_m - float(ground_m[0]), level_m - float(ground_m[-1])
@@ -99,7 +100,7 @@ class ReturnJudge:
         def power(at_m: float, climb_mps: float, air_density: float) -> float:
             return watts(uav.performance, math.hypot(*wind_mps(request, at_m)), climb_mps, air_density)
 
-        up_s, down_s = (level_m - here_m) / CLIMB_MPS, down_m / CLIMB_MPS
+        up_s, down_s = (level_m - here_m) / CLIMB_MPS, down_m / CLIMB_MPS + brakes_s(uav.cruise_speed_mps) + SETTLES_S + TOUCHES_S
         joules = stays_s * power(agl_m, 0.0, air_here) + up_s * power((agl_m + up_agl_m) / 2, CLIMB_MPS, air_here)
         joules += down_s * power(down_m / 2, 0.0, air)
         length_m = apart_m(point["position"], haven)

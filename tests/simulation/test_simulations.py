@@ -1,12 +1,17 @@
 """Simulated UAVs in real time: who may be stood in for, quotas, leases, lifetimes, and what a lost simulator leaves."""
 
+import socket
+
 import pytest
 
 from missions.models import CredentialKind, LinkKind, Mission, MissionState, Uav
 from missions.services.refused import Refused
 from simulation.models import SimulationChange, SimulationState
+from simulation.serializers.simulations import simulation_json
 from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation, end_vehicle
 from simulation.services.simulator_leases import end_single_ones, end_those_over, release_simulations, renew_simulations, take_changes
+from simulation.simulator.options import Options
+from simulation.simulator.process import Simulator
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import world
 from tests.simulation.simulations import LONG_AGO, fresh, lose, pool, stand_ins, taken
@@ -123,6 +128,20 @@ def test_no_simulation_lasts_longer_than_the_setting_says(settings, person):
     settings.LONGEST_SIMULATION_H = 0.5
     simulation = pool(person, lifetime_s=86_400.0)
     assert (simulation.lifetime_ends_at - fresh(simulation).created_at).total_seconds() == pytest.approx(1_800, abs=5)
+
+
+def test_a_port_that_another_program_has_is_told_by_its_name(settings, person):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        port = other.getsockname()[1]
+        settings.SIMULATOR_PORTS = f"{port}-{port}"
+        simulation = pool(person, 1)
+        simulator = Simulator(Options("one", 10.0, ("127.0.0.1", 1), "127.0.0.1"))
+        simulator.round()
+    told = simulation_json(fresh(simulation))
+    assert (told["state"], told["reason"]) == ("failed", "port-taken"), told
+    assert "SPANWISE_SIMULATOR_PORTS" in told["message"]
+    assert simulator.flights == {}
 
 
 # Leases

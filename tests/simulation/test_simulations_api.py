@@ -95,6 +95,12 @@ def test_what_cannot_be_flown_is_told_where_it_stands(client, body, place):
     assert not Simulation.objects.exists()
 
 
+def test_a_uav_of_the_fleet_is_not_of_the_pool_and_the_way_is_told(client):
+    (uav,) = fleet("Tern")
+    told = error(post(client, "simulations", {"uavs": [{"position": HERE, "uav": uav.pk}]}), 400)
+    assert "start its simulated flight" in json.dumps(told)
+
+
 def test_the_quota_is_told(settings, client):
     settings.MOST_SIMULATED_UAVS = 1
     told = error(post(client, "simulations", {"uavs": [{"position": HERE}] * 2}), 429)

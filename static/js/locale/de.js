@@ -21,9 +21,10 @@ import monitor from "./de/monitor.js";
 import planning from "./de/planning.js";
 import rehearsal from "./de/rehearsal.js";
 import report from "./de/report.js";
+import scene from "./de/scene.js";
 import simulation from "./de/simulation.js";
 import terrain from "./de/terrain.js";
 import uavChanges from "./de/uav_changes.js";
 import zones from "./de/zones.js";
 
-export default { ...account, ...admin, ...administration, ...alertLimits, ...assets, ...draw, ...fleet, ...flight, ...flying, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...monitor, ...planning, ...rehearsal, ...report, ...simulation, ...terrain, ...uavChanges, ...zones };
+export default { ...account, ...admin, ...administration, ...alertLimits, ...assets, ...draw, ...fleet, ...flight, ...flying, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...monitor, ...planning, ...rehearsal, ...report, ...scene, ...simulation, ...terrain, ...uavChanges, ...zones };

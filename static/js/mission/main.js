@@ -4,6 +4,7 @@ import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountWorkbench } from "../page/workbench.js";
+import { mountSceneOpener } from "../scene/opener.js";
 import { createHistory, createStore } from "../store.js";
 import { t } from "../text.js";
 import { createActions } from "./actions.js";
@@ -63,7 +64,8 @@ mountStages(store);
 mountHeader(store, actions, page.canPlan, { canCopy: page.canFly, showPlace: (position) => map.goTo({ position, zoom: 14 }) });
 const flyingKeys = page.isFrozen ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) }) : [];
 if (page.canPlan) mountApprove(store, flying);
-const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), { canRehearse: page.canFly, isFrozen: page.isFrozen, isStage });
+const scene = mountSceneOpener(sceneOfMission);
+const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), { canRehearse: page.canFly, isFrozen: page.isFrozen, isStage, seeInSpace: () => void scene.open() });
 flying.watch();
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
@@ -97,6 +99,7 @@ startChrome({
     ...flyingKeys,
     ...rehearsalKeys,
     ...map.bindings,
+    scene.binding,
     { keys: ["f"], words: t("Fit the mission"), act: () => map.fit() },
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
     { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
@@ -110,6 +113,22 @@ startChrome({
 watchMission(store, { editor, take: actions.take, connectedAgain: actions.connectedAgain, tellDeleted: actions.tellDeleted, readFleet: fleetOfOrganisation });
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
+
+/** What is stored of the mission: the run of a rehearsal that is shown, else the plan. */
+function sceneOfMission() {
+  const { mission, rehearsal } = store.state;
+  if (!mission?.plan) return null;
+  const run = rehearsal.track ? { kind: "rehearsal", rehearsal: rehearsal.detail.id, run: rehearsal.run } : null;
+  return { mission: mission.id, wanted: run };
+}
+
+store.listen(["mission"], ({ mission }) => scene.show(Boolean(mission?.plan)));
+let runSeen = null;
+store.listen(["rehearsal"], ({ rehearsal: { track } }) => {
+  const isOther = track !== null && track !== runSeen;
+  if (isOther && runSeen !== null && scene.isOpen()) void scene.open(); // another run was chosen
+  if (isOther) runSeen = track;
+});
 
 function planningKeys() {
   const choose = (tool) => () => store.update({ tool });

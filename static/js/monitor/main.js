@@ -5,6 +5,7 @@ import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountWorkbench } from "../page/workbench.js";
+import { mountSceneOpener } from "../scene/opener.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
 import { createCommanding } from "./commanding.js";
@@ -33,6 +34,10 @@ const store = createStore({
 const pick = (id) => store.update({ chosen: id, isFollowing: store.state.isFollowing && store.state.chosen === id });
 const layout = mountWorkbench({ dockOnPhone: null });
 const map = mountMonitorMap(store, page, { pick });
+const scene = mountSceneOpener(() => {
+  const mission = missionSeen(store.state);
+  return mission && { mission, now_ms: () => feed.now_ms(), follow: followFeed };
+});
 const commanding = page.canFly ? createCommanding(store) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
@@ -49,6 +54,22 @@ mountBoard(store, {
 mountSimulation(page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
+
+/** On the page of one mission that one, else the one of the chosen UAV, else the first. */
+const missionSeen = ({ uavs, chosen, missions }) => page.mission ?? uavs.find(({ id }) => id === chosen)?.mission ?? missions[0]?.id ?? null;
+store.listen(["missions"], (state) => scene.show(missionSeen(state) !== null));
+
+/** The 3D view is told what the page is told. */
+function followFeed(stage) {
+  const { source } = stage;
+  if (source.kind !== "live") return () => {};
+  let { revision } = source;
+  return store.listen(["uavs", "now_ms"], ({ uavs, now_ms }) => {
+    if (!source.take({ uavs, now_ms })) return;
+    stage.refresh(source.revision !== revision);
+    revision = source.revision;
+  });
+}
 
 function step(by) {
   const { uavs, alerts, chosen } = store.state;
@@ -78,6 +99,7 @@ startChrome({
     ...alertKeys,
     ...commandKeys,
     ...map.bindings,
+    scene.binding,
     { keys: ["f"], words: t("Fit what flies"), act: () => map.fit() },
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
     { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },

@@ -3,6 +3,7 @@
 import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { mountSceneOpener } from "../scene/opener.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { createDock } from "./dock.js";
@@ -28,6 +29,8 @@ const layout = mountLayout();
 const map = createReportMap(page, { onPick: choose });
 const dock = createDock({ onChoose: choose });
 const player = createPlayer({ onMove: show });
+const scene = mountSceneOpener(() => loaded && { mission: page.mission, ...(player.span() ? { record: loaded, player } : { wanted: { kind: "plan" } }) });
+let loaded = null; // of the API
 let record = null;
 let routes = []; // of the record, each with its track, targets, alerts
 let events = [];
@@ -59,7 +62,8 @@ function tellFault(error) {
   else if (error) fault.replaceChildren(icon("cloud-off"), h("span", {}, `${t("The record could not be read.")} ${error.message} ${t("It is tried again every half minute.")}`));
 }
 
-function take(loaded) {
+function take(answer) {
+  loaded = answer;
   record = loaded.record;
   labels = labelsOf(record.routes);
   const silence_ms = silenceOf_ms(Math.max(loaded.records.every_s ?? 0, loaded.estimates.every_s ?? 0));
@@ -138,6 +142,7 @@ function show() {
   if (!player.span()) return;
   dock.point(player.at_ms, looked, eventWords(player.at_ms));
   map.point(player.at_ms, looked);
+  scene.stage()?.point(looked);
 }
 
 function step(direction) {
@@ -192,6 +197,7 @@ startChrome({
     { keys: ["["], words: t("Fold the side"), act: () => layout.fold("side") },
     { keys: ["]"], words: t("Fold the dock"), act: () => layout.fold("dock") },
     ...map.bindings,
+    scene.binding,
     { keys: ["escape"], act: () => (looked === null ? map.closeTop() : (choose(looked), true)) },
   ],
 });

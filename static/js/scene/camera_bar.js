@@ -18,7 +18,7 @@ export function createCameraBar({ routes, acts, isPanel, openAddress }) {
   const element = h(
     "div",
     { class: "scene-bar", role: "group", "aria-label": t("Camera") },
-    h("fieldset", { class: "segments scene-cameras" }, h("legend", { class: "unseen" }, t("Camera")), cameras.map(({ mode, input }) => h("label", { title: `${CAMERA_LONG[mode]} (${CAMERA_KEYS[mode].toUpperCase()})` }, input, h("span", { class: "segment" }, icon(CAMERA_ICONS[mode], "small"), h("span", { class: "scene-camera-name" }, CAMERA_WORDS[mode]))))),
+    h("fieldset", { class: "segments line scene-cameras" }, h("legend", { class: "unseen" }, t("Camera")), cameras.map(({ mode, input }) => h("label", { title: `${CAMERA_LONG[mode]} (${CAMERA_KEYS[mode].toUpperCase()})` }, input, h("span", { class: "segment" }, icon(CAMERA_ICONS[mode], "small"), h("span", { class: "scene-camera-name" }, CAMERA_WORDS[mode]))))),
     routes.length > 1 && h("div", { class: "scene-uavs", role: "group", "aria-label": t("UAVs") }, uavs.map(({ button: own }) => own)),
     h("div", { class: "control-group scene-acts" },
       button("maximize-2", t("See all of it"), "F", () => acts.fit()),

@@ -5,7 +5,7 @@ import { t, tn } from "../text.js";
 import { heightText } from "../units.js";
 import { isInForce } from "../zones/in_force.js";
 import { CAMERA_LONG } from "./camera_bar.js";
-import { lengthOf, minus } from "./cameras/vectors.js";
+import { between, lengthOf, minus } from "./cameras/vectors.js";
 import { nearestTower, nearestWire, nearestZone } from "./instruments/distances.js";
 import { certaintyText, readingsOf } from "./instruments/readings.js";
 import { taskOf } from "./instruments/task.js";
@@ -19,6 +19,8 @@ const REACH_M = 3_000; // wires and towers are looked for
 const PICK_PX = { uav: 26, target: 18 };
 const TARGET_NAMES_M = 500; // from where on a target has its name besides its label
 const ROUTES = 8;
+const TOGETHER_M = 90;
+const TOGETHER_SHARE = 0.4;
 
 /** See stage.js for what it is given. → { draw({ dt_s }), pick({ x, y }), drawn(), describe() }. */
 export function createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette, atNow, isCalm, surroundings, choose, seeTarget }) {
@@ -61,7 +63,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     drawn = drawnAt(at_ms);
     const subject = drawn.find(({ route }) => route === stage.chosen) ?? null;
     const target = targetToSee(source, stage.target, subject?.task, stage.chosen);
-    const focus = target ? where.get(target.place) : null;
+    const focus = target ? focusOf(where.get(target.place), subject) : null;
     const pose = rig.pose({ subject, focus, dt_s, groundAt: picture.groundAt });
     const away_m = rig.mode === "free" && subject ? lengthOf(minus(pose.eye, subject.place)) : lengthOf(minus(pose.eye, pose.look));
     const sun = sunTime(source, at_ms, longitude_deg);
@@ -77,6 +79,11 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     return goesOn || (player?.isPlaying ?? false) || isFlying || hands.isHeld() || rig.isMoving(subject) || (source.isGliding?.(at_ms) ?? false);
   }
 
+  /** What is orbited: the target, with the UAV in the picture while it is at it. */
+  function focusOf(place, subject) {
+    return subject && lengthOf(minus(subject.place, place)) < TOGETHER_M ? between(place, subject.place, TOGETHER_SHARE) : place;
+  }
+
   function write({ subject, pose, sun, wind, isPlaying, now_ms, target }) {
     const isDue = !isPlaying || now_ms - read_ms >= READ_EVERY_MS;
     if (isDue) {
@@ -90,7 +97,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
       const words = describe(subject, target);
       if (canvas.getAttribute("aria-label") !== words) canvas.setAttribute("aria-label", words);
     }
-    labels.show([...drawn.filter(({ route }) => rig.mode !== "onboard" || route !== stage.chosen).map(labelOf), ...targets.map((one) => targetLabel(one, pose.eye)), ...ground], picture.project, picture.size);
+    labels.show([...drawn.filter(({ route }) => (rig.mode !== "onboard" && rig.mode !== "chase") || route !== stage.chosen).map(labelOf), ...targets.map((one) => targetLabel(one, pose.eye)), ...ground], picture.project, picture.size);
   }
 
   function nearestOf(uav, date) {

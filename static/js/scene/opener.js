@@ -4,13 +4,14 @@ import { h } from "../dom.js";
 import { say } from "../page/toast.js";
 import { t } from "../text.js";
 
-/** options() → what openPanel of panel.js takes, or null where there is nothing to see. → { toggle, open, close, show(isThere) }. */
+/** options() → what openPanel of panel.js takes, or null where there is nothing to see. → { toggle, open, close, isOpen, stage, show(isThere), binding }. */
 export function mountSceneOpener(options) {
   const frame = document.querySelector(".map-frame");
   const button = h("button", { class: "icon-button scene-open", type: "button", "aria-pressed": "false", "aria-label": t("3D view"), title: `${t("3D view")} (D)`, onclick: () => void toggle() }, h("b", {}, "3D"));
   const group = h("div", { class: "control-group" }, button);
   frame.querySelector(".map-controls").append(group);
-  let panel = null; // a promise while it opens
+  let panel = null; // a promise
+  let stage = null; // of the open panel, once it is there
 
   async function open() {
     const asked = options();
@@ -22,8 +23,8 @@ export function mountSceneOpener(options) {
       openPanel(frame, {
         ...asked,
         onClose() {
-          if (panel === own) panel = null;
-          if (panel) return;
+          if (panel !== own && panel !== null) return;
+          panel = stage = null;
           button.setAttribute("aria-pressed", "false");
           frame.classList.remove("with-scene");
           button.focus({ preventScroll: true });
@@ -32,7 +33,9 @@ export function mountSceneOpener(options) {
     );
     panel = own;
     try {
-      return await own;
+      const opened = await own;
+      if (panel === own) stage = opened.stage;
+      return opened;
     } catch (error) {
       if (panel === own) panel = null;
       button.setAttribute("aria-pressed", "false");
@@ -44,7 +47,7 @@ export function mountSceneOpener(options) {
 
   function close() {
     const open_ = panel;
-    panel = null;
+    panel = stage = null;
     void open_?.then(({ close: end }) => end(), () => {});
     return open_ !== null;
   }
@@ -56,8 +59,8 @@ export function mountSceneOpener(options) {
     open,
     close,
     isOpen: () => panel !== null,
-    /** The view that is open, once it is: its stage, or null. */
-    stage: async () => (panel ? ((await panel).stage ?? null) : null),
+    /** What is seen, or null while nothing is. */
+    stage: () => stage,
     show: (isThere) => (group.hidden = !isThere),
     binding: { keys: ["d"], words: t("3D view, and back"), act: () => toggle() },
   };

@@ -7,6 +7,7 @@ import { staticAddress } from "../static_address.js";
 import { t } from "../text.js";
 import { sceneKeys } from "./keys.js";
 import { readSource } from "./sources/read.js";
+import { recordSource } from "./sources/record_source.js";
 import { openStage } from "./stage.js";
 
 let styles = null;
@@ -22,9 +23,9 @@ function loadStyles() {
 
 /**
  * frame: the element that holds the map. mission: its id; wanted: a source of link.js or null for the usual; player: the page's own, or null;
- * prepared: a source that the page has already; follow(stage) → a function that ends it: for a source that lives. onClose().
+ * record: of report/load.js, where the page has it already; follow(stage) → a function that ends it: for a source that lives. onClose().
  */
-export async function openPanel(frame, { mission, wanted = null, prepared = null, player = null, now_ms, follow = () => () => {}, onClose = () => {} }) {
+export async function openPanel(frame, { mission, wanted = null, record = null, player = null, now_ms, follow = () => () => {}, onClose = () => {} }) {
   const root = h("div", { class: "scene-root" }, h("p", { class: "scene-waiting" }, t("Reading what there is to see.")));
   const element = h("section", { class: "scene-panel", "aria-label": t("3D view") }, root);
   await loadStyles();
@@ -41,7 +42,7 @@ export async function openPanel(frame, { mission, wanted = null, prepared = null
 
   try {
     const { data: detail } = await get(`/missions/${mission}`);
-    const source = prepared ?? (await readSource(detail, wanted)).source;
+    const source = record ? recordSource(record) : (await readSource(detail, wanted)).source;
     if (!source.routes.length) throw new ApiError(t("There is nothing to see yet: plan the mission first."));
     stage = await openStage(root, { mission: { id: mission, name: detail.name }, source, isPanel: true, player, now_ms, onClose: close, openAddress: () => stage?.address() ?? `/missions/${mission}/3d` });
     unfollow = follow(stage);

@@ -125,7 +125,8 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
     ...acts,
     source,
     kind: picture.kind,
-    figures: () => picture.figures?.() ?? null,
+    /** For measurements: of view.js, and how many towers stand within the picture. */
+    figures: () => (picture.figures ? { ...picture.figures(), towers: towersIn(picture, scene) } : null),
     request: picture.request,
     /** For a page with a time of its own: it has moved, or another UAV is looked at. */
     point(place) {
@@ -146,6 +147,13 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
       root.replaceChildren();
     },
   };
+}
+
+function towersIn({ project, size, frame }, { supports }) {
+  return supports.filter(({ kind, position, ground_amsl_m, height_m }) => {
+    const at = kind === "vertex" ? null : project(frame.toLocal(position[0], position[1], ground_amsl_m + height_m / 2));
+    return at && at.x >= 0 && at.y >= 0 && at.x <= size.width && at.y <= size.height;
+  }).length;
 }
 
 async function readScene(source) {

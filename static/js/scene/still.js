@@ -72,6 +72,6 @@ export async function download(canvas, name) {
 
 /** "north-belt-2026-09-10-091204-chase.png": of letters, digits and hyphens in any language. */
 export function fileName(mission, at, camera) {
-  const plain = mission.toLowerCase().normalize("NFKD").replace(/[^\p{Letter}\p{Number}]+/gu, "-").replace(/^-+|-+$/g, "");
+  const plain = mission.toLowerCase().normalize("NFC").replace(/[^\p{Letter}\p{Number}]+/gu, "-").replace(/^-+|-+$/g, "");
   return `${[plain || "mission", at, camera].filter(Boolean).join("-")}.png`;
 }

@@ -1,6 +1,6 @@
 /** The picture: renderer, camera and a loop that draws only when something is another than before. */
 
-import { Color, PCFSoftShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "./three.js";
+import { Color, PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "./three.js";
 
 const SLOW_MS = 45; // a frame that takes longer, many times over, is drawn with fewer pixels
 const SLOW_FRAMES = 12;
@@ -32,7 +32,7 @@ function rendererOn(canvas) {
 export function createView(container, canvas, { draw, onLost = () => {}, onFound = () => {} }) {
   const renderer = rendererOn(canvas);
   renderer.shadowMap.enabled = true;
-  renderer.shadowMap.type = PCFSoftShadowMap;
+  renderer.shadowMap.type = PCFShadowMap;
   renderer.info.autoReset = false;
   const scene = new Scene();
   scene.background = new Color();

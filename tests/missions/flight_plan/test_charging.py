@@ -11,12 +11,12 @@ from missions.flight_plan.charging import CannotCharge, ChargerTooWeak, Charging
 from missions.flight_plan.conditions import Conditions
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import AT_ONCE, FlightRules
 from missions.flight_plan.timing import Timing, timing
 from missions.flight_plan.waypoints import NONE, Waypoints
 from tests.missions.flight_plan.test_timing import route
 
-RULES = FlightRules()
+RULES = FlightRules(manoeuvres=AT_ONCE)
 IRIS = Performance(battery_wh=50, reserve_percent=20)  # 40 Wh may be used
 CALM = Conditions()
 UP_WH = 6 * power_w(IRIS, climb_mps=2.5) / 3600  # over the 15 m of clearance

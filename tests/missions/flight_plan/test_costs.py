@@ -130,6 +130,9 @@ def counted(costs: FlightCosts, uav: int, order: list[int]) -> tuple[float, floa
 TOWERS = line_graph([at(0, 0), at(1000, 0), at(2000, 0)], [45, 45, 45])
 EAST = World(TOWERS, [at(0, 0)], [([at(2000, 0)], 45.0, 10.0)])
 WEST_WIND = Conditions((WindLayer(10, 5, 270),))
+# At 10 m/s and 2 m/s2: 1.5 s until it climbs and 2.5 s until it flies; 2.5 s to a stand, 1.5 s there and 2.5 s away again; to a stand, and
+# the last 8 m at 0.7 instead of 2.5 m/s.
+TAKING_OFF_S, STOPPING_S, LANDING_S = 4.0, 6.5, 4.0 + 8 / 0.7 - 8 / 2.5
 
 
 def test_where_no_base_is_free_there_is_no_way_to_land_at_one() -> None:
@@ -139,26 +142,26 @@ def test_where_no_base_is_free_there_is_no_way_to_land_at_one() -> None:
 
 
 def test_in_calm_air_a_route_takes_its_parts() -> None:
-    """60 m up at 2.5 m/s, 2 km at 10 m/s, 15 m down, 10 s there, 15 m up, 2 km back and 60 m down."""
+    """60 m up at 2.5 m/s, 2 km at 10 m/s, 15 m down, 10 s there, 15 m up, 2 km back and 60 m down; each with its manoeuvres."""
     costs = EAST.costs([IRIS], [RETURN], Conditions())
-    assert costs.seconds.first[0, 0] == pytest.approx(24 + 200, abs=0.01)
-    assert costs.seconds.service[0, 0] == pytest.approx(6 + 10, abs=0.01)
-    assert costs.seconds.end[0, 0] == pytest.approx(6 + 200 + 24, abs=0.01)
+    assert costs.seconds.first[0, 0] == pytest.approx(24 + TAKING_OFF_S + 200, abs=0.01)
+    assert costs.seconds.service[0, 0] == pytest.approx(6 + 10 + STOPPING_S, abs=0.01)
+    assert costs.seconds.end[0, 0] == pytest.approx(6 + 200 + 24 + LANDING_S, abs=0.01)
     hover, level, up = (
         power_w(IRIS.performance),
         power_w(IRIS.performance, airspeed_mps=10),
         power_w(IRIS.performance, climb_mps=2.5),
     )
-    assert costs.wh.first[0, 0] == pytest.approx((24 * up + 200 * level) / 3600, rel=1e-3)
-    assert costs.wh.service[0, 0] == pytest.approx((6 + 10) * hover / 3600, rel=1e-3)
-    assert costs.wh.end[0, 0] == pytest.approx((6 * up + 200 * level + 24 * hover) / 3600, rel=1e-3)
+    assert costs.wh.first[0, 0] == pytest.approx((24 * up + TAKING_OFF_S * hover + 200 * level) / 3600, rel=1e-3)
+    assert costs.wh.service[0, 0] == pytest.approx((6 + 10 + STOPPING_S) * hover / 3600, rel=1e-3)
+    assert costs.wh.end[0, 0] == pytest.approx((6 * up + 200 * level + (24 + LANDING_S) * hover) / 3600, rel=1e-3)
 
 
 def test_wind_makes_the_way_there_and_the_way_back_differ() -> None:
     """14 m/s of airspeed hold 10 m/s against no more than 4 m/s: against 5 m/s it is 9 m/s."""
     costs = EAST.costs([IRIS], [RETURN], WEST_WIND)
-    assert costs.seconds.first[0, 0] == pytest.approx(24 + 200, abs=0.01)
-    assert costs.seconds.end[0, 0] == pytest.approx(6 + 2000 / 9 + 24, abs=0.01)
+    assert costs.seconds.first[0, 0] == pytest.approx(24 + TAKING_OFF_S + 200, abs=0.01)
+    assert costs.seconds.end[0, 0] == pytest.approx(6 + 2000 / 9 + 24 + LANDING_S, abs=0.01)
     assert costs.wh.end[0, 0] > 1.2 * costs.wh.first[0, 0]
 
 

@@ -20,13 +20,13 @@ from missions.flight_plan.lost_link import (
 )
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import AT_ONCE, FlightRules
 from missions.flight_plan.sorties import joined_sorties, timing_of_route
 from missions.flight_plan.timing import timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
 
-RULES = FlightRules()
+RULES = FlightRules(manoeuvres=AT_ONCE)
 CALM = Conditions()
 KM_DEG = 1 / 111.31949  # of longitude on the equator
 GO_HOME = LostLinkPlan(LostLink.RETURN)

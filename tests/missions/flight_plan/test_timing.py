@@ -15,12 +15,12 @@ from inspection.geodesy.wgs84 import WGS84
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import NoHeadway, power_w
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import AT_ONCE, FlightRules
 from missions.flight_plan.timing import Timing, timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
 
-RULES = FlightRules(climb_speed_mps=2.5)
+RULES = FlightRules(climb_speed_mps=2.5, manoeuvres=AT_ONCE)  # of what can be worked out by hand
 CALM = Conditions()
 IRIS = Performance(battery_wh=56.6)
 FRAME = LocalFrame.around(9.0, 47.0)
@@ -37,9 +37,15 @@ def route(*stops: Stop, amsl_m: float | None = None) -> Waypoints:
 
 
 def flown(
-    waypoints: Waypoints, conditions: Conditions = CALM, performance: Performance = IRIS, *, speed_mps: float = 10, lands: bool = True
+    waypoints: Waypoints,
+    conditions: Conditions = CALM,
+    performance: Performance = IRIS,
+    *,
+    speed_mps: float = 10,
+    lands: bool = True,
+    rules: FlightRules = RULES,
 ) -> Timing:
-    return timing(waypoints, cruise_speed_mps=speed_mps, performance=performance, conditions=conditions, lands=lands, rules=RULES)
+    return timing(waypoints, cruise_speed_mps=speed_mps, performance=performance, conditions=conditions, lands=lands, rules=rules)
 
 
 def test_a_waypoint_is_reached_after_climb_and_flight_and_left_after_its_hold() -> None:
@@ -57,6 +63,16 @@ def test_each_part_is_paid_with_its_own_power() -> None:
     assert found.total_wh == pytest.approx(used_wh[-1] + 10 * hover / 3600, rel=1e-3)
     assert found.battery_left_percent == pytest.approx(100 - used_wh / 56.6 * 100, abs=0.01)
     assert found.end_percent == pytest.approx(100 - (found.total_wh or 0) / 56.6 * 100)
+
+
+def test_a_uav_with_mass_takes_its_time_to_lift_to_stop_and_to_touch_down() -> None:
+    """At 10 m/s and 2 m/s2 slowing down and speeding up cost 2.5 s each; 1.5 s to lift off and to settle; 8 m at 0.7 instead of 2.5 m/s."""
+    at_once = flown(route((0, 0, 50, 0), (1000, 0, 50, 30), (1000, 900, 50, 0)))
+    slow = flown(route((0, 0, 50, 0), (1000, 0, 50, 30), (1000, 900, 50, 0)), rules=FlightRules())
+    assert slow.arrival_s - at_once.arrival_s == pytest.approx([4.0, 6.5, 10.5], abs=0.01)
+    more_s = 10.5 + 4.0 + 8 / 0.7 - 8 / 2.5
+    assert slow.total_s - at_once.total_s == pytest.approx(more_s, abs=0.01)
+    assert (slow.total_wh or 0) - (at_once.total_wh or 0) == pytest.approx(more_s * power_w(IRIS) / 3600, rel=1e-3)
 
 
 def test_a_battery_that_does_not_suffice_falls_below_nothing() -> None:

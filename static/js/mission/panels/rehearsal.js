@@ -21,8 +21,8 @@ export function whyNotRehearsed(state) {
   return "";
 }
 
-/** rehearsing: see rehearsal_actions.js; canRehearse: operators; isStage: the page is about it alone. */
-export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isStage }) {
+/** rehearsing: see rehearsal_actions.js; canRehearse: operators; isStage: the page is about it alone; seeInSpace(): opens the 3D view of what is shown. */
+export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isStage, seeInSpace }) {
   const section = byId("rehearsal");
   const place = (name) => byId(`rehearsal-${name}`);
   let chosenRoute = null;
@@ -118,6 +118,7 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isSta
   function runOf(detail, run, track) {
     return [
       h("p", { class: "rehearsal-air" }, airWords(run.conditions)),
+      h("button", { type: "button", class: "button small", onclick: seeInSpace }, icon("move-3d", "small"), t("See it in 3D")),
       run.verdict.routes.map((route) => {
         const isOpen = (chosenRoute ?? worstRoute(run.verdict)) === route.uav;
         const flown = track?.routes.find(({ uav }) => uav === route.uav);

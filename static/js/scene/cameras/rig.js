@@ -5,8 +5,8 @@ import { between, directionOf, lengthOf, minus, plus, towards, turn_deg, within 
 export const CAMERAS = ["chase", "orbit", "free", "top", "onboard"];
 
 const BEGINNINGS = {
-  chase: { bearing_deg: 0, elevation_deg: 17, distance_m: 26 }, // bearing: of the camera behind the UAV's tail
-  orbit: { bearing_deg: 215, elevation_deg: 18, distance_m: 85 }, // bearing: from the target to the camera
+  chase: { bearing_deg: 0, elevation_deg: 14, distance_m: 11 }, // bearing: of the camera behind the UAV's tail
+  orbit: { bearing_deg: 215, elevation_deg: 14, distance_m: 110 }, // bearing: from the target to the camera
   top: { bearing_deg: 0, elevation_deg: 90, distance_m: 420 },
   free: { bearing_deg: 0, elevation_deg: -12, distance_m: 0 }, // bearing, elevation: of what is looked at
   onboard: { bearing_deg: 0, elevation_deg: -18, distance_m: 0 }, // bearing: beside the nose

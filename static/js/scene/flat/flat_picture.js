@@ -1,7 +1,8 @@
 /** The same flight seen from straight above, drawn without WebGL: for machines that have no graphics for the picture in space. */
 
 import { makeFrame } from "../frame.js";
-import { gridHeights } from "./grid_heights.js";
+import { makeGround } from "../geometry/ground.js";
+import { wiresOf } from "../geometry/wires.js";
 import { drawGround } from "./flat_ground.js";
 import { drawUavs, drawWays } from "./flat_flight.js";
 
@@ -15,6 +16,7 @@ export function createFlatPicture(container, canvas, { palette, draw }) {
   let colours = palette;
   let [scene, flight, planned, flown] = [null, null, [], []];
   let heights = () => 0;
+  let wires = null;
   let [wanted, last_ms, isOver] = [0, 0, false];
   let at = { centre: [0, 0, 0], metresPerPixel: 1, turn: 0 };
 
@@ -52,13 +54,14 @@ export function createFlatPicture(container, canvas, { palette, draw }) {
     request,
     frame: null,
     groundAt: (x, z) => heights(x, z),
-    wires: () => ({ points: new Float64Array(0), first: new Uint32Array(1) }),
+    wires: () => wires,
     labels: () => [],
     isNight: () => false,
     showGround(next) {
       scene = next;
       picture.frame = makeFrame(next.origin);
-      heights = gridHeights(next.ground, picture.frame);
+      heights = makeGround(next.ground, picture.frame).heightAt;
+      wires = wiresOf(next, picture.frame);
     },
     showFlight(next) {
       flight = next;

@@ -1,6 +1,6 @@
 /** A source's routes and moments as places of the frame: what the drawings and the instruments read. Values in, values out. */
 
-import { directionOf, lengthOf, minus, towards } from "../cameras/vectors.js";
+import { lengthOf, minus, towards } from "../cameras/vectors.js";
 import { aboveGround, altitudeOf, trustIn, trustInPlan } from "../sources/heights.js";
 
 const CAMERA_DOWN_DEG = -25; // where it looks that looks at nothing: ahead and down
@@ -63,7 +63,7 @@ export function drawFlight(source, { frame, groundAt, groundKind }) {
       const [x, y, z] = place(moment, takeOffs.get(route.place), trust);
       const ground = groundAt(x, z);
       const away = target && minus(target, [x, y, z]);
-      const seesTarget = away && moment.isInAir !== false && lengthOf(away) > 0.5 && lengthOf(away) < SEES_TARGET_M && directionOf(away).elevation_deg > -89;
+      const seesTarget = away && moment.isInAir !== false && lengthOf(away) > 0.5 && lengthOf(away) < SEES_TARGET_M;
       return {
         route: route.place, moment, place: [x, y, z], ground, heading_deg: moment.heading_deg ?? 0, roll_deg: moment.roll_deg ?? 0, pitch_deg: moment.pitch_deg ?? 0,
         camera: seesTarget ? away.map((metres) => metres / lengthOf(away)) : towards(moment.heading_deg ?? 0, CAMERA_DOWN_DEG), seesTarget: Boolean(seesTarget),

@@ -7,8 +7,9 @@ import { RADIANS } from "../cameras/vectors.js";
 import { ESTIMATED, LOST, MEASURED, PLANNED } from "../sources/pieces.js";
 import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
-const LEAST_PX = 30; // across: from far away it is drawn larger than it is
+const LEAST_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
+const MOST_CONE = 1.6; // times that, from far away
 const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
 const LEAST_BOUND_M = 1.5;
 const LEAST_BOUND_PX = 14; // radius
@@ -76,6 +77,7 @@ export function createUavs(count) {
     show(drawn, { palette, metresPerPixel, dt_s = 0, hidden = null }) {
       spin += dt_s * 23; // seen turning, not as fast as they do
       const numbers = { solid: 0, ghosts: 0, rotors: 0, cones: 0, bounds: 0 };
+      cones.material.opacity = palette.isDark ? 0.06 : 0.1;
       cones.material.blending = palette.isDark ? AdditiveBlending : NormalBlending;
       for (const uav of drawn) {
         if (uav.route === hidden) continue;
@@ -98,7 +100,7 @@ export function createUavs(count) {
         }
         if (uav.isInAir && (kind === MEASURED || kind === PLANNED)) {
           turn.setFromUnitVectors(down, aim.set(...uav.camera));
-          matrix.compose(at, turn, size.setScalar(Math.min(scale, 6)));
+          matrix.compose(at, turn, size.setScalar(Math.min(scale, MOST_CONE)));
           put(cones, numbers.cones++, uav.colour);
         }
         if (kind === ESTIMATED && bound) {

@@ -5,40 +5,36 @@ import { heightPoles, ribbon } from "../geometry/ribbon.js";
 import { ESTIMATED } from "../sources/pieces.js";
 
 const ROUTES = 8;
-const PLANNED = { width_m: 0.5, least_px: 1.4, poles_m: 120 };
-const FLOWN = { width_m: 1.1, least_px: 3.2, poles_m: 60 };
+const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
+const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
+const APART_M = 0.8; // points of a way that are nearer to each other show nothing more
 const ALWAYS_S = -1e9; // a time that is over
 const FOR_EVER_S = 1e30;
 
 const VERTEX = `
-  uniform vec2 viewport; uniform float leastPx;
-  attribute vec3 middle; attribute vec3 tangent; attribute float along; attribute float at; attribute float route; attribute float dashed; attribute float side;
-  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute; varying float vDepth;
+  uniform vec2 viewport; uniform float leastPx; uniform float mostPx; uniform float halfWidth;
+  attribute vec3 tangent; attribute float along; attribute float at; attribute float route; attribute float dashed; attribute float side;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
   void main() {
-    vec4 centre = projectionMatrix * modelViewMatrix * vec4(middle, 1.0);
-    vec4 corner = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-    vec4 ahead = projectionMatrix * modelViewMatrix * vec4(middle + tangent * 0.5, 1.0);
-    if (centre.w > 0.05 && ahead.w > 0.05) {
-      vec2 way = (ahead.xy / ahead.w - centre.xy / centre.w) * viewport;
-      vec2 across = length(way) > 1e-6 ? normalize(vec2(-way.y, way.x)) : vec2(1.0, 0.0);
-      vec2 wide = (corner.xy / corner.w - centre.xy / centre.w) * viewport * 0.5;
-      float reach = dot(wide, across);
-      if (corner.w < 0.05 || abs(reach) < leastPx * 0.5) corner = vec4(centre.xy + across * sign(side) * leastPx / viewport * centre.w, centre.z, centre.w);
-    }
-    vAlong = along; vAt = at; vDashed = dashed; vRoute = route; vDepth = centre.w;
-    gl_Position = corner;
+    vec4 seen = modelViewMatrix * vec4(position, 1.0);
+    vec3 way = (modelViewMatrix * vec4(tangent, 0.0)).xyz;
+    vec3 across = cross(way, normalize(seen.xyz));
+    across = length(across) > 1e-4 ? normalize(across) : vec3(1.0, 0.0, 0.0);
+    float metresPerPixel = 2.0 * max(-seen.z, 0.01) / (projectionMatrix[1][1] * viewport.y);
+    seen.xyz += across * side * clamp(halfWidth, 0.5 * leastPx * metresPerPixel, 0.5 * mostPx * metresPerPixel);
+    vAlong = along; vAt = at; vDashed = dashed; vRoute = route;
+    gl_Position = projectionMatrix * seen;
   }`;
 const LINE_VERTEX = `
   attribute float at; attribute float route;
-  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute; varying float vDepth;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
   void main() {
     vAlong = 0.0; vAt = at; vDashed = 0.0; vRoute = route;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-    vDepth = gl_Position.w;
   }`;
 const FRAGMENT = `
   uniform vec3 colours[${ROUTES}]; uniform float now; uniform float opacity; uniform float later; uniform float looked; uniform float rest;
-  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute; varying float vDepth;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
   void main() {
     if (vDashed > 0.5) {
       float period = max(5.0, exp2(ceil(log2(max(fwidth(vAlong) * 9.0, 1e-4)))));
@@ -53,12 +49,12 @@ const FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
-function material({ isLine, least_px = 1, opacity, later }) {
+function material({ isLine, width_m = 0, least_px = 1, most_px = 1, opacity, later }) {
   return new ShaderMaterial({
     vertexShader: isLine ? LINE_VERTEX : VERTEX,
     fragmentShader: FRAGMENT,
     uniforms: {
-      viewport: { value: [1, 1] }, leastPx: { value: least_px }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: FOR_EVER_S }, opacity: { value: opacity },
+      viewport: { value: [1, 1] }, leastPx: { value: least_px }, mostPx: { value: most_px }, halfWidth: { value: width_m / 2 }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: FOR_EVER_S }, opacity: { value: opacity },
       later: { value: later }, looked: { value: -1 }, rest: { value: 0.35 },
     },
     transparent: true,
@@ -80,23 +76,36 @@ function tangentsOf(positions) {
   return found;
 }
 
-/** Names of a ribbon's attributes with the numbers in each vertex. */
-const ATTRIBUTES = { position: 3, middle: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
+/** Names of a ribbon's attributes with the numbers in each vertex; it is as wide as its material says, and turns to the camera. */
+const ATTRIBUTES = { position: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
+
+/** Without the points that lie next to each other: { positions, at_s }; the first and the last one stay. */
+export function thinned({ positions, at_s, ...line }) {
+  const [kept, times] = [[], []];
+  const count = positions.length / 3;
+  for (let point = 0; point < count; point += 1) {
+    const [x, y, z] = positions.slice(point * 3, point * 3 + 3);
+    const end = kept.length;
+    if (end && point < count - 1 && Math.hypot(x - kept[end - 3], y - kept[end - 2], z - kept[end - 1]) < APART_M) continue;
+    kept.push(x, y, z);
+    if (at_s) times.push(at_s[point]);
+  }
+  return { ...line, positions: kept, at_s: at_s && times };
+}
 
 /** lines: [{ place, positions, at_s, dashed }] → attributes and index of all of them together. */
-export function ribbonArrays(lines, width_m) {
-  const drawn = lines.filter(({ positions }) => positions.length >= 6).map((line) => ({ ...line, band: ribbon(line.positions, { width_m }), tangents: tangentsOf(line.positions) }));
+export function ribbonArrays(lines) {
+  const drawn = lines.map(thinned).filter(({ positions }) => positions.length >= 6).map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
   const count = drawn.reduce((sum, { positions }) => sum + (positions.length / 3) * 2, 0);
   const arrays = Object.fromEntries(Object.entries(ATTRIBUTES).map(([name, size]) => [name, new Float32Array(count * size)]));
   const index = new Uint32Array(drawn.reduce((sum, { band }) => sum + band.index.length, 0));
   let [first, put] = [0, 0];
   for (const { place, positions, at_s, dashed, band, tangents } of drawn) {
-    arrays.position.set(band.vertices, first * 3);
     arrays.along.set(band.along_m, first);
     for (let vertex = 0; vertex < band.along_m.length; vertex += 1) {
       const point = vertex >> 1;
       for (let axis = 0; axis < 3; axis += 1) {
-        arrays.middle[(first + vertex) * 3 + axis] = positions[point * 3 + axis];
+        arrays.position[(first + vertex) * 3 + axis] = positions[point * 3 + axis];
         arrays.tangent[(first + vertex) * 3 + axis] = tangents[point * 3 + axis];
       }
       arrays.at[first + vertex] = at_s ? at_s[point] : ALWAYS_S;
@@ -164,9 +173,9 @@ function refill(object, built, sizes) {
 /** groundAt(x, z) → y of the drawn ground. */
 export function createWays(groundAt) {
   const group = new Group();
-  const planned = drawing(Mesh, material({ least_px: PLANNED.least_px, opacity: 0.85, later: 1 }), 1);
+  const planned = drawing(Mesh, material({ ...PLANNED, opacity: 0.85, later: 1 }), 1);
   const plannedPoles = drawing(LineSegments, material({ isLine: true, opacity: 0.22, later: 1 }), 1);
-  const flown = drawing(Mesh, material({ least_px: FLOWN.least_px, opacity: 1, later: 0.16 }), 2);
+  const flown = drawing(Mesh, material({ ...FLOWN, opacity: 1, later: 0.16 }), 2);
   const flownPoles = drawing(LineSegments, material({ isLine: true, opacity: 0.32, later: 0 }), 1);
   const all = [planned, plannedPoles, flown, flownPoles];
   group.add(...all);
@@ -177,14 +186,14 @@ export function createWays(groundAt) {
     /** lines: of drawFlight().plannedLines(). */
     showPlanned(lines) {
       const dashed = lines.map((line) => ({ ...line, at_s: null, dashed: true }));
-      refill(planned, ribbonArrays(dashed, PLANNED.width_m), ATTRIBUTES);
+      refill(planned, ribbonArrays(dashed), ATTRIBUTES);
       refill(plannedPoles, poleArrays(dashed, groundAt, PLANNED.poles_m), { position: 3, route: 1, at: 1 });
     },
     /** routes: of drawFlight().flownLines(); begins_ms: from which times are counted, so that they stay exact. */
     showFlown(routes, begins_ms) {
       from_ms = begins_ms;
       const lines = routes.flatMap(({ place, pieces }) => pieces.map(({ kind, positions, at_ms }) => ({ place, positions, at_s: at_ms.map((at) => (at - from_ms) / 1_000), dashed: kind === ESTIMATED })));
-      refill(flown, ribbonArrays(lines, FLOWN.width_m), ATTRIBUTES);
+      refill(flown, ribbonArrays(lines), ATTRIBUTES);
       refill(flownPoles, poleArrays(lines.filter(({ dashed }) => !dashed), groundAt, FLOWN.poles_m), { position: 3, route: 1, at: 1 });
     },
     /** at_ms: what is later is faint; looked: place of the route that is looked at, or null. */

@@ -4,8 +4,9 @@ import { triangulate } from "./triangulate.js";
 
 const SLAB_M = 1.4;
 const PIER_EVERY_M = 30;
-const PIER_M = 1.6; // across
-const LEAST_ROOM_M = 3; // below the slab, for a pier to be seen
+const PIER_M = 1.4; // along the bridge
+const INSET_M = 1.5; // of abutments
+const LEAST_ROOM_M = 0.5; // below the slab, for a pier to be seen
 
 /** Gives { vertices, index } without normals: faces are flat. */
 export function bridgeSolid(bridge, { frame, ground }) {
@@ -17,9 +18,9 @@ export function bridgeSolid(bridge, { frame, ground }) {
     addFace(solid, points, triangles, deck, -1);
     addFace(solid, points, triangles, deck - SLAB_M, 1);
     for (const ring of flat) addSides(solid, ring, deck - SLAB_M, deck);
-    for (const [x, z] of piers(flat[0])) {
-      const foot = ground.heightAt(x, z);
-      if (deck - SLAB_M - foot > LEAST_ROOM_M) addPier(solid, x, z, foot - 1, deck - SLAB_M);
+    for (const wall of supportsOf(flat[0])) {
+      const foot = Math.min(...wall.map(([x, z]) => ground.heightAt(x, z)));
+      if (deck - SLAB_M - foot > LEAST_ROOM_M) addSides(solid, wall, foot - 1, deck - SLAB_M);
     }
   }
   return { vertices: Float32Array.from(solid.vertices), index: Uint32Array.from(solid.index) };
@@ -42,36 +43,42 @@ function addSides({ vertices, index }, ring, low, high) {
   }
 }
 
-function addPier(solid, x, z, low, high) {
-  const half = PIER_M / 2;
-  addSides(solid, [[x - half, z - half], [x + half, z - half], [x + half, z + half], [x - half, z + half], [x - half, z - half]], low, high);
-}
-
-/** Along the longest line through the outline, evenly; none at its ends. */
-function piers(ring) {
+/** Abutments at both ends and piers between them, evenly along the longest line through the outline: rings of four corners, closed. */
+function supportsOf(ring) {
   const [x0, z0] = [0, 1].map((axis) => ring.reduce((sum, point) => sum + point[axis], 0) / ring.length);
   let [xx, xz, zz] = [0, 0, 0];
   for (const [x, z] of ring) [xx, xz, zz] = [xx + (x - x0) ** 2, xz + (x - x0) * (z - z0), zz + (z - z0) ** 2];
   const angle = Math.atan2(2 * xz, xx - zz) / 2;
   const [along_x, along_z] = [Math.cos(angle), Math.sin(angle)];
   const reach = ring.map(([x, z]) => (x - x0) * along_x + (z - z0) * along_z);
-  const [from, to] = [Math.min(...reach), Math.max(...reach)];
-  const fields = Math.floor((to - from) / PIER_EVERY_M);
-  const places = [];
-  for (let field = 1; field < fields; field += 1) {
+  const [from, to] = [Math.min(...reach) + INSET_M, Math.max(...reach) - INSET_M];
+  if (to - from < 4 * INSET_M) return [];
+  const fields = Math.max(Math.round((to - from) / PIER_EVERY_M), 1);
+  const walls = [];
+  for (let field = 0; field <= fields; field += 1) {
     const along = from + ((to - from) * field) / fields;
-    const middle = middleAcross(ring, [x0, z0], [along_x, along_z], along);
-    if (middle !== null) places.push([x0 + along * along_x - middle * along_z, z0 + along * along_z + middle * along_x]);
+    const across = widthAt(ring, [x0, z0], [along_x, along_z], along);
+    if (across === null) continue;
+    const isEnd = field === 0 || field === fields;
+    const [middle, half] = [(across[0] + across[1]) / 2, (across[1] - across[0]) / 2 - (isEnd ? 0.3 : 0)];
+    const wide = isEnd ? half : Math.min(half * 0.55, 6);
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]];
+    walls.push(
+      corners.map(([u, v]) => {
+        const [far, side] = [along + (u * PIER_M) / 2, middle + v * wide];
+        return [x0 + far * along_x - side * along_z, z0 + far * along_z + side * along_x];
+      }),
+    );
   }
-  return places;
+  return walls;
 }
 
-/** Between the outermost crossings of the outline with the line across at `along`. */
-function middleAcross(ring, [x0, z0], [along_x, along_z], along) {
+/** Between the outermost crossings of the outline with the line across at `along`; null where it does not cross. */
+function widthAt(ring, [x0, z0], [along_x, along_z], along) {
   const crossings = [];
   for (let at = 0; at < ring.length - 1; at += 1) {
     const [here, there] = [ring[at], ring[at + 1]].map(([x, z]) => [(x - x0) * along_x + (z - z0) * along_z - along, (z - z0) * along_x - (x - x0) * along_z]);
     if (here[0] * there[0] < 0) crossings.push(here[1] + ((there[1] - here[1]) * -here[0]) / (there[0] - here[0]));
   }
-  return crossings.length ? (Math.min(...crossings) + Math.max(...crossings)) / 2 : null;
+  return crossings.length ? [Math.min(...crossings), Math.max(...crossings)] : null;
 }

@@ -19,7 +19,7 @@ export function sagAt(share, length_m, sag_m, constant = catenaryConstant(length
 }
 
 /** So many straight pieces that none is farther than this from the curve. */
-export function piecesFor(sag_m, within_m = 0.12) {
+export function piecesFor(sag_m, within_m = 0.06) {
   return Math.min(Math.max(Math.ceil(Math.sqrt(Math.max(sag_m, 0) / within_m)), 2), 24);
 }
 

@@ -1,4 +1,4 @@
-/** Railways: a bed over the ground, ramps to the bridges that carry it, and two rails a track. Values in, arrays out. */
+/** Railways: a bed over the ground, dams up to the bridges that carry it, and two rails a track. Values in, arrays out. */
 
 const STEP_M = 20;
 const GAUGE_M = 1.435;
@@ -6,33 +6,86 @@ const TRACK_M = 4.2; // from track to track
 const BED_M = 4.4; // across, of one track
 const BED_LIFT_M = 0.35;
 const RAIL_LIFT_M = 0.25; // above the bed
-const STEEPEST = 0.035; // of a ramp
+const STEEPEST = 0.03; // of a ramp
+const DAM_SLOPE = 1.5; // across, for each metre of height
+const LEAST_LIFT_M = 0.05;
+const MOST_ROUNDS = 12;
 
 /**
- * Gives { bed: { vertices, uv (0 to 1 across, metres along), index }, rails: Float32Array of segments (x, y, z, x, y, z) }.
+ * All railways of a scene, in their order: [{ bed: { vertices, uv (0 to 1 across, metres along), index }, rails: Float32Array of segments
+ * (x, y, z, x, y, z) }]. Where two share an end they are equally high there, so ramps go on from one to the next.
+ *
  * deckAt(x, z): y of a bridge for rails there, or null.
  */
-export function railwayTrack(railway, { frame, ground, deckAt = () => null }) {
-  const points = densified(railway.line.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]));
-  const heights = profile(points, ground, deckAt);
+export function railwayTracks(railways, { frame, ground, deckAt = () => null }) {
+  const ways = railways.map((railway) => {
+    const points = densified(railway.line.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]));
+    const onDeck = points.map(([x, z]) => deckAt(x, z));
+    return { railway, points, onDeck, heights: points.map(([x, z], place) => Math.max(ground.heightAt(x, z), onDeck[place] ?? -Infinity)) };
+  });
+  ramps(ways);
+  return ways.map((way) => track(way, ground));
+}
+
+/** Before and behind what is lifted, no steeper than a ramp; again until ends that lie together agree. */
+function ramps(ways) {
+  const ends = new Map();
+  const key = ([x, z]) => `${Math.round(x)} ${Math.round(z)}`;
+  let waiting = ways.filter(({ onDeck }) => onDeck.some((height) => height !== null));
+  for (let round = 0; round < MOST_ROUNDS && waiting.length; round += 1) {
+    const lifted = new Set();
+    for (const way of waiting) {
+      slope(way);
+      for (const place of [0, way.points.length - 1]) {
+        const at = key(way.points[place]);
+        if (way.heights[place] > (ends.get(at) ?? -Infinity) + LEAST_LIFT_M) lifted.add(at);
+        ends.set(at, Math.max(ends.get(at) ?? -Infinity, way.heights[place]));
+      }
+    }
+    waiting = ways.filter((way) =>
+      [0, way.points.length - 1].filter((place) => {
+        const height = ends.get(key(way.points[place]));
+        if (!lifted.has(key(way.points[place])) || height <= way.heights[place] + LEAST_LIFT_M) return false;
+        way.heights[place] = height;
+        return true;
+      }).length > 0,
+    );
+  }
+}
+
+function slope({ points, heights }) {
+  const ramp = (here, before) => {
+    const far_m = Math.hypot(points[here][0] - points[before][0], points[here][1] - points[before][1]);
+    heights[here] = Math.max(heights[here], heights[before] - STEEPEST * far_m);
+  };
+  for (let at = 1; at < points.length; at += 1) ramp(at, at - 1);
+  for (let at = points.length - 2; at >= 0; at -= 1) ramp(at, at + 1);
+}
+
+function track({ railway, points, onDeck, heights }, ground) {
   const width_m = BED_M + (railway.tracks - 1) * TRACK_M;
-  const bed = { vertices: new Float32Array(points.length * 6), uv: new Float32Array(points.length * 4), index: [] };
+  const bed = { vertices: [], uv: [], index: [] };
   const sides = sidesOf(points);
   let along_m = 0;
   points.forEach(([x, z], place) => {
     if (place) along_m += Math.hypot(x - points[place - 1][0], z - points[place - 1][1]);
     const [side_x, side_z] = sides[place];
-    for (const [corner, sign] of [[0, -1], [1, 1]]) {
-      const at = place * 2 + corner;
-      bed.vertices.set([x + (sign * side_x * width_m) / 2, heights[place] + BED_LIFT_M, z + (sign * side_z * width_m) / 2], at * 3);
-      bed.uv.set([corner, along_m], at * 2);
+    const y = heights[place] + BED_LIFT_M;
+    const dam_m = onDeck[place] === null ? Math.max(y - ground.heightAt(x, z), 0) : 0;
+    for (const [corner, sign] of [[-1, -1], [0, -1], [1, 1], [2, 1]]) {
+      const isFoot = corner === -1 || corner === 2;
+      const out_m = width_m / 2 + (isFoot ? dam_m * DAM_SLOPE : 0);
+      bed.vertices.push(x + sign * side_x * out_m, isFoot ? y - dam_m : y, z + sign * side_z * out_m);
+      bed.uv.push(corner, along_m);
     }
     if (place < points.length - 1) {
-      const low = place * 2;
-      bed.index.push(low, low + 1, low + 2, low + 1, low + 3, low + 2);
+      for (const low of [0, 1, 2].map((corner) => place * 4 + corner)) bed.index.push(low, low + 1, low + 4, low + 1, low + 5, low + 4);
     }
   });
-  return { bed: { ...bed, index: Uint32Array.from(bed.index) }, rails: railLines(points, heights, sides, railway.tracks) };
+  return {
+    bed: { vertices: Float32Array.from(bed.vertices), uv: Float32Array.from(bed.uv), index: Uint32Array.from(bed.index) },
+    rails: railLines(points, heights, sides, railway.tracks),
+  };
 }
 
 function railLines(points, heights, sides, tracks) {
@@ -58,18 +111,6 @@ function densified(line) {
     points.push([x, z]);
   });
   return points;
-}
-
-/** The ground, lifted to bridges, with ramps before and behind them. */
-function profile(points, ground, deckAt) {
-  const heights = points.map(([x, z]) => Math.max(ground.heightAt(x, z), deckAt(x, z) ?? -Infinity));
-  const ramp = (here, before) => {
-    const far_m = Math.hypot(points[here][0] - points[before][0], points[here][1] - points[before][1]);
-    heights[here] = Math.max(heights[here], heights[before] - STEEPEST * far_m);
-  };
-  for (let at = 1; at < points.length; at += 1) ramp(at, at - 1);
-  for (let at = points.length - 2; at >= 0; at -= 1) ramp(at, at + 1);
-  return heights;
 }
 
 /** At each point the direction to the right, of length 1. */

@@ -26,8 +26,7 @@ export function memberList() {
 export function memberMatrices({ ends, width_m }, into = new Float32Array(width_m.length * 16), from = 0) {
   for (let member = 0; member < width_m.length; member += 1) {
     const at = member * 6;
-    const [x0, y0, z0, x1, y1, z1] = ends.subarray(at, at + 6);
-    const [dx, dy, dz] = [x1 - x0, y1 - y0, z1 - z0];
+    const [dx, dy, dz] = [ends[at + 3] - ends[at], ends[at + 4] - ends[at + 1], ends[at + 5] - ends[at + 2]];
     const length = Math.hypot(dx, dy, dz) || 1e-6;
     const [ux, uy, uz] = [dx / length, dy / length, dz / length];
     // A side that is level where the member is not upright, so that prisms lie square.
@@ -35,15 +34,23 @@ export function memberMatrices({ ends, width_m }, into = new Float32Array(width_
     const [sx, sy, sz] = level > 1e-4 ? [-uz / level, 0, ux / level] : [1, 0, 0];
     const [tx, ty, tz] = [sy * uz - sz * uy, sz * ux - sx * uz, sx * uy - sy * ux];
     const width = width_m[member];
-    into.set(
-      [
-        sx * width, sy * width, sz * width, 0,
-        dx, dy, dz, 0,
-        tx * width, ty * width, tz * width, 0,
-        (x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2, 1,
-      ],
-      (from + member) * 16,
-    );
+    const to = (from + member) * 16;
+    into[to] = sx * width;
+    into[to + 1] = sy * width;
+    into[to + 2] = sz * width;
+    into[to + 3] = 0;
+    into[to + 4] = dx;
+    into[to + 5] = dy;
+    into[to + 6] = dz;
+    into[to + 7] = 0;
+    into[to + 8] = tx * width;
+    into[to + 9] = ty * width;
+    into[to + 10] = tz * width;
+    into[to + 11] = 0;
+    into[to + 12] = ends[at] + dx / 2;
+    into[to + 13] = ends[at + 1] + dy / 2;
+    into[to + 14] = ends[at + 2] + dz / 2;
+    into[to + 15] = 1;
   }
   return into;
 }

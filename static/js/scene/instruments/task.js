@@ -4,6 +4,14 @@ import { stepOf } from "../sources/pieces.js";
 
 const AT_M = 18; // so near a target it is at it
 const LANDING_MPS = -0.4;
+const CLIMBING_MPS = 0.4;
+
+/** Before its first waypoint and after its last one it goes up or down. */
+function untold({ planned }, { climb_mps }, isDescending) {
+  const first = planned.find(({ target }) => target !== null && target !== undefined)?.target ?? null;
+  if (typeof climb_mps === "number" && climb_mps > CLIMBING_MPS && first !== null) return { kind: "take-off", target: first };
+  return { kind: isDescending ? "landing" : "unknown", target: null };
+}
 
 /**
  * route: { planned: [{ sequence, position, target }] }; moment: of pieces.js or null. → { kind, target: place of the target or null }, kind one of
@@ -13,7 +21,7 @@ export function taskOf(route, moment) {
   if (!moment) return { kind: "unknown", target: null };
   if (moment.isInAir === false || moment.isOver) return { kind: "ground", target: null };
   const isDescending = typeof moment.climb_mps === "number" && moment.climb_mps < LANDING_MPS;
-  if (moment.waypoint === null || moment.waypoint === undefined) return { kind: isDescending ? "landing" : "unknown", target: null };
+  if (moment.waypoint === null || moment.waypoint === undefined) return untold(route, moment, isDescending);
   const ahead = route.planned.filter(({ sequence }) => sequence >= moment.waypoint);
   const here = ahead[0]?.target ?? null;
   if (here !== null && stepOf(moment.position, ahead[0].position).metres < AT_M) return { kind: "at", target: here };

@@ -10,10 +10,10 @@ export const NO_DATE_MS = 0;
 export const plannedOf = ({ waypoints, arrival_s }) =>
   waypoints.map(({ position, altitude_amsl_m, altitude_relative_m, target, kind }, index) => ({ sequence: index, position, altitude_amsl_m, altitude_relative_m, at_s: arrival_s[index] ?? null, target, kind }));
 
-/** Targets with the label they have on all stages: [{ place, label, name, position, route }]. routes: [{ place, planned }]; targets: [{ label }]. */
+/** Targets with the label they have on all stages: [{ place, label, name, asset, position, route }]. routes: [{ place, planned }]; targets: [{ label, asset }]. */
 export function targetsOf(routes, targets) {
   const labels = labelsOf(routes.map(({ place, planned }) => ({ place, waypoints: planned })));
-  return [...labels].map(([place, { label, place: route, position }]) => ({ place, label, name: targets[place]?.label ?? targets[place]?.name ?? "", position, route }));
+  return [...labels].map(([place, { label, place: route, position }]) => ({ place, label, name: targets[place]?.label ?? targets[place]?.name ?? "", asset: targets[place]?.asset ?? null, position, route }));
 }
 
 /** detail: GET /missions/{id}. → a source, see sources/read.js. */

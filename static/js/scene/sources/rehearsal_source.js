@@ -3,9 +3,10 @@
 import { completed, MEASURED } from "./pieces.js";
 import { NO_DATE_MS, targetsOf, windAtHeight } from "./plan_source.js";
 
+const ON_GROUND_M = 0.3; // above take-off: lower, it stands
+
 /** Samples of one simulated flight: columns → rows. Tracks of before have no attitude: it hangs level, its nose along its way. */
 export function samplesOf(flight, departs_ms) {
-  const last = flight.t_s.length - 1;
   const value = (name, row) => flight[name]?.[row] ?? null;
   return completed(
     flight.t_s.map((at_s, row) => ({
@@ -18,7 +19,7 @@ export function samplesOf(flight, departs_ms) {
       pitch_deg: value("pitch_deg", row),
       heading_deg: value("heading_deg", row),
       waypoint: flight.waypoint[row],
-      isInAir: !(row === last && flight.ending !== "hovering"),
+      isInAir: flight.altitude_relative_m[row] > ON_GROUND_M,
     })),
   );
 }

@@ -7,8 +7,8 @@ const SHADOW_PX = 2_048;
 const SIZES_M = [90, 160, 280, 500, 900]; // half the side of what has shadows
 const AWAY_M = 2_500;
 const NIGHT = { light: "#2b3a4a", dark: "#070b0f" };
-const DUSK = { light: "#f2cdaa", dark: "#3a2c25" };
-const SUN_SHARE = 0.42; // of the light on level ground in full day
+const DUSK = { light: "#f2cdaa", dark: "#2b2a32" };
+const SUN_SHARE = 0.52; // of the light on level ground in full day
 const MOON_DEG = 40;
 
 /** 0 below `low`, 1 above `high`, smooth between. */

@@ -41,7 +41,7 @@ const SLEEPERS = /* glsl */ `
     float way = vUv.y / 1.3;
     float wide = fwidth(way);
     float tie = smoothstep(0.5 - wide, 0.5 + wide, abs(fract(way) - 0.5) * 2.0) * (1.0 - smoothstep(0.25, 0.7, wide)) + 0.5 * smoothstep(0.25, 0.7, wide);
-    float inside = step(0.18, vUv.x) * step(vUv.x, 0.82);
+    float inside = step(0.18, vUv.x) * step(vUv.x, 0.82); // dams have -1 to 0 and 1 to 2
     diffuseColor.rgb = mix(diffuseColor.rgb, tieColour, tie * inside);
   }`;
 

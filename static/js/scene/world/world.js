@@ -4,7 +4,7 @@ import { isInForce } from "../../zones/in_force.js";
 import { bridgeSolid } from "../geometry/bridges.js";
 import { makeGround } from "../geometry/ground.js";
 import { labelsOf } from "../geometry/labels.js";
-import { railwayTrack } from "../geometry/railways.js";
+import { railwayTracks } from "../geometry/railways.js";
 import { sunAt } from "../geometry/sun.js";
 import { deckUnder } from "../geometry/under_decks.js";
 import { wiresOf } from "../geometry/wires.js";
@@ -20,7 +20,7 @@ import { makeTerrain } from "./terrain.js";
 import { makeZones } from "./zones.js";
 
 const NIGHT_STEP = 0.06; // things get other colours after so much of dusk
-const FOG_M = [2_500, 24_000];
+const FOG_M = [4_000, 30_000];
 const FLAT = { columns: 2, rows: 2, step_lon_deg: 0.1, step_lat_deg: 0.1 };
 const NO_WIRES = { points: new Float64Array(0), first: new Uint32Array(1), span: new Uint32Array(0), isEarth: new Uint8Array(0) };
 
@@ -48,7 +48,8 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     now = mood(palette, sun.altitude_deg);
     fog.color.copy(now.horizon);
     sky.apply(now);
-    terrain.apply({ ground: now.ground, graticule: new Color(palette.graticule).lerp(now.line, now.night) });
+    const graticule = new Color(palette.graticule).lerp(now.line, now.night);
+    terrain.apply({ ground: now.ground, graticule, contour: graticule.clone().lerp(new Color(palette.inkSecond), palette.isDark ? 0.08 : 0.24) });
     lights.apply(now, sun);
   }
 
@@ -137,7 +138,7 @@ function emptyShown(frame) {
 function shownOf(scene, frame) {
   const ground = makeGround(scene.ground, frame);
   const deckAt = deckUnder(scene.bridges, frame);
-  const tracks = scene.railways.map((railway) => railwayTrack(railway, { frame, ground, deckAt }));
+  const tracks = railwayTracks(scene.railways, { frame, ground, deckAt });
   return {
     ground,
     wires: wiresOf(scene, frame),

@@ -1,0 +1,47 @@
+"""What plans say of time and battery, against the same routes flown by JSBSim: within the bars of docs/performance.md."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from missions.mavlink.frozen import FrozenRoute
+from tests.simulation.planned_flights import CALM, ROUGH, WINDY, air_of, climbs, compared, holds, mission, square
+from tests.telemetry.estimation.routes import lines_of
+
+MOST_TIME, MOST_ENERGY = 0.15, 0.15  # of a flight, either way
+MOST_MEAN = 0.10
+SPEEDS_MPS = {"iris": 5.0, "inspector": 10.0}
+
+
+@pytest.mark.parametrize("code", ["iris", "inspector"])
+@pytest.mark.parametrize(
+    ("route", "air"),
+    [(lambda mps: square(250.0, mps), CALM), (lambda mps: square(250.0, mps), WINDY), (lambda mps: holds(6, mps), CALM)],
+    ids=["square", "square in wind", "holds"],
+)
+def test_a_flight_takes_what_was_planned(route: Callable[[float], FrozenRoute], air: str, code: str) -> None:
+    found = compared(route(SPEEDS_MPS[code]), code, air_of(1, code, air), 1, physics_hz=100)
+    assert abs(found.time_ratio - 1.0) <= MOST_TIME
+    assert abs(found.energy_ratio - 1.0) <= MOST_ENERGY
+
+
+def test_climbs_are_planned_by_the_rules_speed() -> None:
+    """Of which the Iris flies four fifths: 2.0 instead of 2.5 m/s."""
+    found = compared(climbs(3, 5.0), "iris", air_of(1, "iris", CALM), 1, physics_hz=100)
+    assert 0.80 <= found.time_ratio <= 1.0
+    assert abs(found.energy_ratio - 1.0) <= MOST_ENERGY
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("air", [CALM, WINDY, ROUGH])
+def test_20_missions_along_real_lines_take_what_was_planned(shared_data, air: str) -> None:
+    files = [f"osm/{name}" for name in ("columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf")]
+    lines = [line for path in files for line in lines_of(shared_data(path))]
+    found = []
+    for seed in range(20):
+        route, code = mission(seed, lines)
+        found.append(compared(route, code, air_of(seed, code, air), seed))
+    for ratios in ([one.time_ratio for one in found], [one.energy_ratio for one in found]):
+        assert abs(float(np.mean(ratios)) - 1.0) <= MOST_MEAN, ratios
+        assert float(np.quantile(ratios, 0.05)) >= 0.90, ratios  # too little is what a battery cannot do with
