@@ -8,6 +8,7 @@ from typing import Any
 
 import dj_database_url
 
+from config.log_settings import log_settings
 from config.mail import mail_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from config.secret_files import secret
@@ -439,15 +440,5 @@ SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 # Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
 OUTGOING_ALLOWED_HOSTS = _list("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
 
-LOG_FORMAT = os.environ.get("SPANWISE_LOG_FORMAT", "line")  # or json
 LOG_REQUESTS = _flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
-LOGGING = {
-    "version": 1,
-    "disable_existing_loggers": False,
-    "formatters": {
-        "line": {"()": "operation.log_lines.LineFormatter"},
-        "json": {"()": "operation.log_lines.JsonFormatter", "program": os.environ.get("SPANWISE_PROGRAM", "")},
-    },
-    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "json" if LOG_FORMAT == "json" else "line"}},
-    "root": {"handlers": ["console"], "level": os.environ.get("SPANWISE_LOG_LEVEL", "INFO")},
-}
+LOGGING = log_settings(os.environ)

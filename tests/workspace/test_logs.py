@@ -17,6 +17,7 @@ from django.test import Client, override_settings
 from django.urls import reverse
 from django.utils import timezone
 
+from config.log_settings import log_settings
 from operation.log_context import about
 from operation.log_lines import JsonFormatter, LineFormatter
 from operation.redaction import without_secrets
@@ -204,10 +205,8 @@ def test_an_id_that_is_not_fit_to_be_written_down_is_replaced(told: str) -> None
     assert re.fullmatch(r"[0-9a-f]{32}", given)
 
 
-def test_the_settings_choose_the_way_of_writing() -> None:
-    formatter = settings.LOGGING["handlers"]["console"]["formatter"]
-    assert formatter == "line"
-    made = [
-        logging.config.DictConfigurator(settings.LOGGING).configure_formatter(dict(one)) for one in settings.LOGGING["formatters"].values()
-    ]
-    assert [type(one) for one in made] == [LineFormatter, JsonFormatter]
+@pytest.mark.parametrize(("said", "made"), [("json", JsonFormatter), ("line", LineFormatter), ("", LineFormatter)])
+def test_the_environment_chooses_the_way_of_writing(said: str, made: type[logging.Formatter]) -> None:
+    chosen = log_settings({"SPANWISE_LOG_FORMAT": said, "SPANWISE_PROGRAM": "gateway"})
+    formatter = chosen["formatters"][chosen["handlers"]["console"]["formatter"]]
+    assert type(logging.config.DictConfigurator(chosen).configure_formatter(dict(formatter))) is made
