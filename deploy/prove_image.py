@@ -22,10 +22,11 @@ PROJECT_DIR = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(PROJECT_DIR))
 
 from deploy.proof.load import Counted, Proxy, plan_bodies, under_load  # noqa: E402
-from deploy.proof.pods import Pod, Podman, Site, answers, look_at_rights, shipped, stop_softly, wait_until_ready  # noqa: E402
+from deploy.proof.pods import Pod, Podman, Site, answers, look_at_rights, secret_folder, shipped, stop_softly, wait_until_ready  # noqa: E402
 from deploy.proof.servers import Servers, running_servers  # noqa: E402
 
 READY_S, END_S = 60.0, 10.0
+USER = 10001  # of the image
 PROGRAMS = ("live", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
 NETWORK = "podman-default-kube-network"  # what podman play kube puts pods into
 DEMO = [
@@ -61,15 +62,14 @@ class Proof:
             finally:
                 for pod in self.pods:
                     if self.options.keep_logs:
-                        text = self.podman("logs", pod.container, check=False)
-                        (self.options.keep_logs / f"{pod.name}.log").write_text(text)
+                        (self.options.keep_logs / f"{pod.name}.log").write_text(self.podman.logs(pod.container))
                     self.site.end(pod)
         return self._report()
 
     def _site(self, servers: Servers, gateway: str) -> Site:
         files = self.folder / "files"
         files.mkdir()
-        shutil.chown(files, 10001, 10001)
+        shutil.chown(files, USER, USER)
         trust = Path("/run/trust/ca.crt")
         secrets = {
             "database-url": servers.database_url.replace("/run/secrets/ca-certificate", str(trust)),
@@ -78,8 +78,11 @@ class Proof:
             "email-url": "console://",
         }
         own = {"SPANWISE_PROXY_RESOLVES": "0", "SPANWISE_PLAN_RATE": "1000/second", "SPANWISE_SIMULATOR_GATEWAY": f"{gateway}:14550"}
-        authority = (servers.secrets / "ca.crt").read_text()
-        return Site(self.podman, shipped(self.options.overlay), self.options.image, files, secrets, authority, gateway, own)
+        folders = {
+            "secrets": secret_folder(self.folder / "program-secrets", secrets, USER),
+            "trust": secret_folder(self.folder / "trust", {"ca.crt": (servers.secrets / "ca.crt").read_text()}, USER),
+        }
+        return Site(self.podman, shipped(self.options.overlay), self.options.image, files, folders, gateway, own)
 
     def _start(self, pod: Pod) -> Pod:
         self.pods.append(pod)
@@ -91,7 +94,7 @@ class Proof:
         pod = self._start(self.site.pod("migrate", 1))
         code = self.podman("wait", pod.container, timeout_s=600)
         if code != "0":
-            raise RuntimeError(f"the migration ended with {code}: {self.podman('logs', pod.container)[-2000:]}")
+            raise RuntimeError(f"the migration ended with {code}: {self.podman.logs(pod.container)[-2000:]}")
         self.figures["migration of an empty database"] = f"{time.monotonic() - began_s:.1f} s"
 
     def _start_all(self) -> None:
@@ -145,7 +148,7 @@ class Proof:
         """A proxy that speaks TLS itself, as compose has it. Its certificate is replaced twice under load."""
         certificates = servers.secrets / "web"
         for file in certificates.iterdir():
-            shutil.chown(file, 10001, 10001)
+            shutil.chown(file, USER, USER)
         pod = self.site.pod(
             "proxy", 2, **self.addresses, SPANWISE_TLS_CERTIFICATE="/run/certificate/tls.crt", SPANWISE_TLS_KEY="/run/certificate/tls.key"
         )
@@ -167,7 +170,7 @@ class Proof:
                     [PROJECT_DIR / "deploy" / "make-secrets", "spanwise.example.org", servers.secrets], check=True, capture_output=True
                 )
                 for file in certificates.iterdir():
-                    shutil.chown(file, 10001, 10001)
+                    shutil.chown(file, USER, USER)
                 end_s = time.monotonic() + 30
                 while _serial(pod.address) in seen and time.monotonic() < end_s:
                     time.sleep(0.2)
