@@ -65,7 +65,9 @@ class Pod:
     manifest: Manifest
     probes: dict[str, Any]
     ports: dict[str, int]
+    settings: dict[str, str]
     address: str = ""
+    began_s: float = 0.0
     ready_s: float = -1.0
     exit_s: float = -1.0
     faults: list[str] = field(default_factory=list)
@@ -91,7 +93,7 @@ class Site:
     gateway: str
     settings: dict[str, str]
 
-    def pod(self, program: str, number: int, **more: str) -> Pod:
+    def pod(self, program: str, number: int, **own: str) -> Pod:
         """The Deployment or Job as it is shipped, with these changes: the image of this machine; folders for the claim and for secrets
         (older podmans do not decode these); addresses in place of names that a cluster resolves; the kubelet's probes are asked by this
         program, since podman asks with a curl that the image does not have.
@@ -104,7 +106,6 @@ class Site:
         container.pop("lifecycle", None)
         ports = {entry["name"]: entry["containerPort"] for entry in container.pop("ports", [])}  # podman would take them on this machine
         container["image"] = self.image
-        container.setdefault("env", []).extend({"name": name, "value": value} for name, value in more.items())
         template["spec"]["hostAliases"] = [{"ip": self.gateway, "hostnames": ["postgresql", "redis"]}]
         for volume in template["spec"].get("volumes", []):
             if "persistentVolumeClaim" in volume:
@@ -116,17 +117,18 @@ class Site:
         whole = {"apiVersion": "apps/v1", "kind": "Deployment", "metadata": {"name": name}, "spec": {"replicas": 1, "template": template}}
         template["spec"]["restartPolicy"] = "Never" if program == "migrate" else "Always"
         whole["spec"]["selector"] = {"matchLabels": template["metadata"]["labels"]}
-        return Pod(program, number, whole, probes, ports)
+        return Pod(program, number, whole, probes, ports, own)
 
-    def own_settings(self) -> Manifest:
-        """The settings as they are shipped, with this site's own."""
+    def settings_of(self, pod: Pod) -> Manifest:
+        """The settings as they are shipped, with this site's own and the pod's."""
         settings = copy.deepcopy(_found(self.manifests, "ConfigMap", "settings"))
-        settings["data"] |= self.settings
+        settings["data"] |= self.settings | pod.settings
         return settings
 
     def start(self, pod: Pod, folder: Path) -> None:
         path = folder / f"{pod.name}.yaml"
-        path.write_text(yaml.safe_dump_all([self.own_settings(), pod.manifest]))
+        path.write_text(yaml.safe_dump_all([self.settings_of(pod), pod.manifest]))
+        pod.began_s = time.monotonic()
         self.podman("play", "kube", str(path))
         networks = json.loads(self.podman("inspect", pod.container, "--format", "{{json .NetworkSettings.Networks}}"))
         pod.address = next(iter(networks.values()))["IPAddress"]
@@ -161,17 +163,17 @@ def answers(pod: Pod, probe: str, timeout_s: float = 5.0) -> bool:
         connection.close()
 
 
-def wait_until_ready(pods: list[Pod], began_s: float, patience_s: float) -> None:
-    """Notes for each how long it took from `began_s` (monotonic)."""
-    waiting = list(pods)
-    while waiting and time.monotonic() - began_s < patience_s:
+def wait_until_ready(pods: list[Pod], patience_s: float) -> None:
+    """Notes for each how long it took from its own start."""
+    waiting, end_s = list(pods), time.monotonic() + patience_s
+    while waiting and time.monotonic() < end_s:
         for pod in list(waiting):
-            if answers(pod, "readinessProbe"):
-                pod.ready_s = time.monotonic() - began_s
+            if answers(pod, "startupProbe") and answers(pod, "readinessProbe"):
+                pod.ready_s = time.monotonic() - pod.began_s if pod.ready_s < 0 else pod.ready_s  # the first time counts
                 waiting.remove(pod)
         time.sleep(0.2)
-    for pod in waiting:
-        pod.faults.append(f"not ready after {patience_s:.0f} s")
+    if waiting:
+        raise TimeoutError(f"not ready after {patience_s:.0f} s: {', '.join(pod.name for pod in waiting)}")
 
 
 def look_at_rights(podman: Podman, pod: Pod) -> None:
