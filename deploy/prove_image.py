@@ -120,6 +120,8 @@ class Proof:
             look_at_rights(self.podman, pod)
             if not answers(pod, "livenessProbe"):
                 pod.faults.append("is not alive by its liveness probe")
+            if self.podman("exec", pod.container, "sh", "-c", "spanwise healthy >/dev/null 2>&1 && echo yes", check=False) != "yes":
+                pod.faults.append("is not healthy by the image's own health check")
 
     def _manage(self, *arguments: str) -> str:
         return self.podman("exec", self.web[0].container, "spanwise", "manage", *arguments, timeout_s=600)
