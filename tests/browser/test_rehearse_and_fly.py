@@ -162,7 +162,7 @@ def is_told(page: Page, act: str) -> None:
 def comes_home_at_10x(page: Page, picture: Picture) -> None:
     page.evaluate(WATCHES_THE_UAV)
     panel_of(page).get_by_role("combobox", name="Pace").select_option(label="10× real time")
-    page.wait_for_function("window.placesOfTheUav.size > 2", timeout=FLIGHT_MS)  # it moves
+    page.wait_for_function("() => window.placesOfTheUav.size > 2", timeout=FLIGHT_MS)  # it moves
     picture(page, "flow-6-flying")
     expect(page.locator("#mission-state")).to_have_text("Completed", timeout=FLIGHT_MS)
     expect(page.locator("#board .complete")).to_have_count(2)
