@@ -1,7 +1,8 @@
 """A task knows the request that it was asked for in, and is counted with its outcome."""
 
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from uuid import uuid4
 
 import pytest
@@ -43,6 +44,13 @@ def queue() -> Iterator[str]:
         yield name
 
 
+def wait_for(is_so: Callable[[], bool]) -> None:
+    deadline_s = time.monotonic() + PATIENCE_S
+    while not is_so():
+        assert time.monotonic() < deadline_s, "it never came"
+        time.sleep(0.02)
+
+
 def counted(task: str, outcome: str) -> float:
     return REGISTRY.get_sample_value("spanwise_tasks_total", {"task": task, "outcome": outcome}) or 0.0
 
@@ -53,8 +61,7 @@ def test_what_the_work_is_about_goes_with_a_task(queue: str) -> None:
         note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
     assert _is_done.wait(PATIENCE_S)
     assert _heard == [{"request": "request-of-today", "mission": "m-7", "uav": "3", "job": "job-9"}]
-    while counted(note_what_it_is_about.name, "done") == before:
-        threading.Event().wait(0.02)
+    wait_for(lambda: counted(note_what_it_is_about.name, "done") == before + 1)
 
 
 def test_a_task_of_nobodys_request_is_about_its_job_alone_and_a_failed_one_is_counted_so(queue: str) -> None:
@@ -65,6 +72,5 @@ def test_a_task_of_nobodys_request_is_about_its_job_alone_and_a_failed_one_is_co
     _is_done.clear()
     fall.apply_async(queue=queue)
     assert _is_done.wait(PATIENCE_S)
-    while counted(fall.name, "failed") == before:
-        threading.Event().wait(0.02)
+    wait_for(lambda: counted(fall.name, "failed") == before + 1)
     assert facts() == {}
