@@ -52,11 +52,7 @@ def test_a_gateway_tells_of_its_links_and_losses() -> None:
     gateway: Any = SimpleNamespace(
         store=SimpleNamespace(stored=7, duplicates=2, lost=1, records=[1, 2, 3], is_away=True),
         lost_here=Counter({"unsigned": 4}),
-        sessions={
-            1: a_session(is_held=True, heard_ago_s=0),
-            2: a_session(is_held=True, heard_ago_s=600),
-            3: a_session(is_held=False, heard_ago_s=0),
-        },
+        sessions=dict(enumerate(sessions)),
         dropped=lambda: {"unknown-system": 5},
     )
     with gateway_figures.figures_of(gateway) as told:
