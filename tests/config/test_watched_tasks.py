@@ -7,9 +7,10 @@ from uuid import uuid4
 
 import pytest
 from celery.contrib.testing.worker import start_worker
+from celery.signals import worker_process_init
 from prometheus_client import REGISTRY
 
-from config.celery import app
+from config.celery import app, warm_up_process
 from operation.log_context import about, facts
 
 PATIENCE_S = 120
@@ -40,8 +41,10 @@ def _nothing_heard() -> None:
 def queue() -> Iterator[str]:
     """A real worker of Spanwise's own application, in a thread, at a queue of its own."""
     name = f"watched-{uuid4().hex[:8]}"
+    worker_process_init.disconnect(warm_up_process)  # nothing is planned here
     with start_worker(app, pool="solo", perform_ping_check=False, queues=[name], shutdown_timeout=PATIENCE_S):
         yield name
+    worker_process_init.connect(warm_up_process)
 
 
 def wait_for(is_so: Callable[[], bool]) -> None:
