@@ -147,10 +147,14 @@ class Proof:
         victim = self.web[0]
         kill = lambda: self.podman("kill", "--signal", "KILL", victim.container)  # noqa: E731
         self._note("one of two web replicas killed under load", self._load(kill))
-        wait_until_ready([victim], PATIENCE_S)  # podman starts it again, as a kubelet does
+        self._again(victim)
         stop = lambda: self.podman("kill", "--signal", "TERM", victim.container)  # noqa: E731
         self._note("one of two web replicas stopped under load", self._load(stop))
-        wait_until_ready([victim], PATIENCE_S)
+        self._again(victim)
+
+    def _again(self, pod: Pod) -> None:
+        self.site.start_again(pod, self.folder)
+        wait_until_ready([pod], PATIENCE_S)
 
     def _load(self, meanwhile: object) -> Counted:
         return under_load(self.proxy, self.bodies, self.options.people, self.options.lasts_s, lambda: (meanwhile(), None)[1])  # type: ignore[operator]
