@@ -28,14 +28,17 @@ class Loaded:
 
 
 def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
+    """A clock that runs at another rate is believed of a simulated UAV alone: a real one's only seems to, while its link lags."""
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
-        "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "clock_rate",
+        "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot",
     )  # fmt: skip
-    return {
-        row[0]: (LinkFacts(None if row[1] is None else row[1].timestamp(), *row[2:5], believed_rate(row[5])), Loaded(*row[6:]))
-        for row in rows
-    }  # fmt: skip
+    found = {}
+    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, *loaded in rows:
+        rate = believed_rate(clock_rate if is_simulated else None)
+        heard_s = None if heard_at is None else heard_at.timestamp()
+        found[uav_id] = (LinkFacts(heard_s, mode, is_armed, is_in_air, rate), Loaded(*loaded))
+    return found
 
 
 _ORDERS = """
@@ -81,7 +84,7 @@ def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mappin
 
 
 _OTHERS = """
-SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated, link.clock_rate
+SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated, CASE WHEN uav.is_simulated THEN link.clock_rate END
 FROM telemetry_uavwatch watch JOIN missions_uav uav ON uav.id = watch.uav_id LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id
 WHERE watch.organisation_id = ANY(%s) AND NOT watch.uav_id = ANY(%s) AND watch.estimated IS NOT NULL AND watch.lease_expires_at > now()
 """

@@ -25,7 +25,7 @@ class WatchedFlight:
     """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
 
     From `home` on, what UavLink has of it; `heard_at` only by a gateway, which tells with it how the UAV does. `clock_rate` is how fast its
-    clock runs.
+    clock runs; None of a real UAV, whose link may be learnt as another pace while it lags or catches up.
     """
 
     uav_id: int
@@ -48,7 +48,7 @@ SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.organisation_id, uav.nam
     CASE WHEN link.loaded_approval = approval.id AND link.loaded_flight IS NOT NULL THEN link.loaded_flight
         ELSE route.flights_flown + 1 END,
     ST_X(link.home), ST_Y(link.home), CASE WHEN link.autopilot <> '' THEN link.heard_at END,
-    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence, link.clock_rate
+    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence, CASE WHEN uav.is_simulated THEN link.clock_rate END
 FROM missions_mission mission
 JOIN missions_missionuav place ON place.mission_id = mission.id AND place.uav_id IS NOT NULL
 JOIN missions_uav uav ON uav.id = place.uav_id
