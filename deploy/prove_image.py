@@ -191,7 +191,7 @@ class Proof:
                 )
                 for file in certificates.iterdir():
                     shutil.chown(file, USER, USER)
-                end_s = time.monotonic() + 30
+                end_s = time.monotonic() + PATIENCE_S
                 while _serial(pod.address) in seen and time.monotonic() < end_s:
                     time.sleep(0.2)
                 seen.add(_serial(pod.address))
