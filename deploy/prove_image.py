@@ -69,6 +69,11 @@ class Proof:
                     self.site.end(pod)
         return self._report()
 
+    def _tell(self, what: str, figure: str) -> None:
+        """At once: a run that ends early has not been for nothing."""
+        self.figures[what] = figure
+        print(f"{what}: {figure}", flush=True)
+
     def _site(self, servers: Servers, gateway: str) -> Site:
         files = self.folder / "files"
         files.mkdir()
@@ -98,7 +103,7 @@ class Proof:
         code = self.podman("wait", pod.container, timeout_s=600)
         if code != "0":
             raise RuntimeError(f"the migration ended with {code}: {self.podman.logs(pod.container)[-2000:]}")
-        self.figures["migration of an empty database"] = f"{time.monotonic() - began_s:.1f} s"
+        self._tell("migration of an empty database", f"{time.monotonic() - began_s:.1f} s")
 
     def _start_all(self) -> None:
         """All at once, as a cluster does; the two web replicas first in line, for the proxy needs their addresses here."""
@@ -113,7 +118,7 @@ class Proof:
         self.running = [*started, self.proxy_pod]
         wait_until_ready(self.running, PATIENCE_S)
         whole_s = time.monotonic() - began_s
-        self.figures["every program ready"] = f"{whole_s:.1f} s after the first was started"
+        self._tell("every program ready", f"{whole_s:.1f} s after the first was started")
         if whole_s > READY_S:
             self.missed.append(f"all programs were ready after {whole_s:.0f} s, not {READY_S:.0f} s")
         for pod in self.running:
@@ -131,7 +136,7 @@ class Proof:
         self.podman("exec", self.web[0].container, "sh", "-c", "head -c 18 /dev/urandom | base64 >/var/lib/spanwise/password")
         for command in DEMO:
             self._manage(*command)
-        self.figures["demo region, imported and its graph built"] = f"{time.monotonic() - began_s:.1f} s"
+        self._tell("demo region, imported and its graph built", f"{time.monotonic() - began_s:.1f} s")
         token = self._manage("api_token", "proof", "--days", "1").splitlines()[-1]
         self.proxy = Proxy(self.proxy_pod.address, 8080, token)
         self.bodies = plan_bodies(self.proxy)
@@ -139,7 +144,7 @@ class Proof:
             under_load(self.proxy, self.bodies, 8, 2.0, lambda: None)
 
     def _note(self, what: str, counted: Counted) -> None:
-        self.figures[what] = str(counted)
+        self._tell(what, str(counted))
         if counted.failed:
             self.missed.append(f"{what}: {counted.failed} failed, first: {counted.faults[:3]}")
 
@@ -147,10 +152,14 @@ class Proof:
         victim = self.web[0]
         kill = lambda: self.podman("kill", "--signal", "KILL", victim.container)  # noqa: E731
         self._note("one of two web replicas killed under load", self._load(kill))
-        wait_until_ready([victim], PATIENCE_S)  # podman starts it again, as a kubelet does
+        self._again(victim)
         stop = lambda: self.podman("kill", "--signal", "TERM", victim.container)  # noqa: E731
         self._note("one of two web replicas stopped under load", self._load(stop))
-        wait_until_ready([victim], PATIENCE_S)
+        self._again(victim)
+
+    def _again(self, pod: Pod) -> None:
+        self.site.start_again(pod, self.folder)
+        wait_until_ready([pod], PATIENCE_S)
 
     def _load(self, meanwhile: object) -> Counted:
         return under_load(self.proxy, self.bodies, self.options.people, self.options.lasts_s, lambda: (meanwhile(), None)[1])  # type: ignore[operator]
@@ -182,7 +191,7 @@ class Proof:
                 )
                 for file in certificates.iterdir():
                     shutil.chown(file, USER, USER)
-                end_s = time.monotonic() + 30
+                end_s = time.monotonic() + PATIENCE_S
                 while _serial(pod.address) in seen and time.monotonic() < end_s:
                     time.sleep(0.2)
                 seen.add(_serial(pod.address))
@@ -190,13 +199,13 @@ class Proof:
         self._note("certificate swapped twice under load", under_load(proxy, self.bodies, self.options.people, self.options.lasts_s, swap))
         if len(seen) != 3:
             self.missed.append(f"{len(seen)} certificates were seen, not 3")
-        self.figures["TLS below 1.2"] = "refused" if _refuses_old_tls(pod.address) else "accepted"
+        self._tell("TLS below 1.2", "refused" if _refuses_old_tls(pod.address) else "accepted")
         if self.figures["TLS below 1.2"] != "refused":
             self.missed.append("TLS 1.1 is accepted")
         connection = Proxy(pod.address, 8080, self.proxy.token).connect()
         connection.request("GET", "/sign-in", headers={"Host": "spanwise.example.org"})
         answer = connection.getresponse()
-        self.figures["http"] = f"{answer.status} {answer.headers.get('Location', '')}"
+        self._tell("http", f"{answer.status} {answer.headers.get('Location', '')}")
         if (answer.status, answer.headers.get("Location")) != (308, "https://spanwise.example.org/sign-in"):
             self.missed.append("http does not lead to https")
 
@@ -209,9 +218,7 @@ class Proof:
         for pod in self.running:
             print(f"{pod.name.removeprefix('proof-'):<20} {pod.ready_s:8.1f} {pod.exit_s:8.2f}  {'; '.join(pod.faults)}")
             self.missed += [f"{pod.name}: {fault}" for fault in pod.faults]
-        self.figures["load of the machine at the end"] = f"{os.getloadavg()[1]:.1f} on {os.cpu_count()} cores"
-        for what, figure in self.figures.items():
-            print(f"{what}: {figure}")
+        self._tell("load of the machine at the end", f"{os.getloadavg()[1]:.1f} on {os.cpu_count()} cores")
         for missed in self.missed:
             print(f"MISSED {missed}")
         if self.options.json:

@@ -10,7 +10,7 @@ from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, ups
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
-CONNECT_S = 2  # to a program in the same house; its backlog is long
+CONNECT_S = 1  # to a program in the same house; its backlog is long
 LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
 
 # A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
@@ -173,7 +173,7 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         too_large="This is more than Spanwise takes in one request.",
     )
     # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
-    again = "error timeout" if site.resolver else "error"  # a name may lead to a machine that has gone, which refuses nothing
+    again = "error" if site.web[0].startswith("unix:") else "error timeout"  # a machine that has gone refuses nothing
     places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off", again=again)
     # A plan that was asked for changes nothing: when its program dies over it, another one is asked.
     plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again=f"{again} non_idempotent")

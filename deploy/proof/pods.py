@@ -129,9 +129,15 @@ class Site:
         path = folder / f"{pod.name}.yaml"
         path.write_text(yaml.safe_dump_all([self.settings_of(pod), pod.manifest]))
         pod.began_s = time.monotonic()
-        self.podman("play", "kube", str(path))
+        # A pod that is started again has the address that it had: here no name leads to it.
+        self.podman("play", "kube", *(["--ip", pod.address] if pod.address else []), str(path))
         networks = json.loads(self.podman("inspect", pod.container, "--format", "{{json .NetworkSettings.Networks}}"))
         pod.address = next(iter(networks.values()))["IPAddress"]
+
+    def start_again(self, pod: Pod, folder: Path) -> None:
+        """What a Deployment does when a pod has ended."""
+        self.end(pod)
+        self.start(pod, folder)
 
     def end(self, pod: Pod) -> None:
         with contextlib.suppress(RuntimeError):

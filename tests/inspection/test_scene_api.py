@@ -182,7 +182,7 @@ def test_a_zone_with_very_many_corners_comes_with_bounded_ones_and_hardly_anothe
     reach = 0.01 * (1 + 0.001 * np.sin(4_000 * angle))
     ring = np.column_stack([10.005 + reach * np.cos(angle), 56.005 + 0.6 * reach * np.sin(angle)])
     area = shapely.Polygon(ring)
-    NoFlyZone.objects.create(identifier="jagged", name="Jagged", geometry=GEOSGeometry(shapely.MultiPolygon([area]).wkb, srid=4326))
+    NoFlyZone.objects.create(identifier="jagged", name="Jagged", geometry=GEOSGeometry(shapely.MultiPolygon([area]).wkt, srid=4326))
     (zone,) = scene(client)["zones"]
     corners = sum(len(one) for polygon in zone["polygons"] for one in polygon)
     drawn = shapely.MultiPolygon([(polygon[0], polygon[1:]) for polygon in zone["polygons"]])
