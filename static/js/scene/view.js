@@ -103,7 +103,7 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
       camera.lookAt(...look);
       camera.fov = size.width < size.height ? Math.min(75, field_deg * 1.25) : field_deg;
       camera.near = Math.min(8, Math.max(0.15, distance_m * 0.02));
-      camera.far = 60_000;
+      camera.far = 120_000;
       camera.updateProjectionMatrix();
       camera.updateMatrixWorld();
     },

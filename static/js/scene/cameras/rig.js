@@ -13,7 +13,7 @@ const BEGINNINGS = {
 };
 const FIELDS_DEG = { chase: 50, orbit: 45, top: 40, free: 55, onboard: 65 };
 const NEAREST_M = { chase: 3, orbit: 5, top: 25 };
-const FARTHEST_M = 12_000;
+const FARTHEST_M = 60_000;
 const ABOVE_GROUND_M = 1.6; // a camera is never lower
 const FOLLOWS_S = 0.35; // time constant of a heading that is followed
 const GLIDES_S = 0.22; // of a camera that is sent elsewhere
