@@ -38,6 +38,7 @@ DATA = PROJECT_DIR.parent / "shared" / "data" / "osm"
 REGIONS = {"columbus": "columbus-ohio.osm.pbf", "nepal": "nepal-power-2025.osm.pbf"}
 BAR_CALLS, BAR_SCRIPT_MS = 60, 8.0
 BAR_TOWERS = 1_000
+NEARLY_ALL = 0.85  # of a region that has fewer
 BAR_GROWTH = 1.05  # of the heap from the first third of the time to the last
 HALF_BOX_DEG = 0.13  # of the latitude, round the middle of the densest part
 TARGETS = 8
@@ -45,12 +46,13 @@ SAMPLE_S = 30.0
 WARM_UP_S = 20.0
 PATIENCE_MS = 180_000
 VIEWPORT: Any = {"width": 960, "height": 600}  # what a frame costs the script does not go with its pixels
-VIEWS = {"all of it": ("f",), "from behind": ("c",), "round a target": ("o",)}
+VIEWS = {"all of it": ("f",), "from above": ("t", "f"), "from behind": ("c",), "round a target": ("o",)}
 
 
 @dataclass
 class Measured:
     region: str
+    of_region: int = 0  # its towers, all of them
     towers: int = 0
     calls: int = 0
     triangles: int = 0
@@ -67,7 +69,8 @@ class Measured:
     def is_passed(self) -> bool:
         is_flat = self.growth <= BAR_GROWTH and len(set(self.held)) <= 1
         is_quick = max(self.script_ms.values()) <= BAR_SCRIPT_MS
-        return self.towers >= BAR_TOWERS and self.calls <= BAR_CALLS and is_quick and is_flat
+        is_full = self.towers >= min(BAR_TOWERS, NEARLY_ALL * self.of_region)
+        return is_full and self.calls <= BAR_CALLS and is_quick and is_flat
 
 
 @contextmanager
@@ -148,7 +151,8 @@ def spread_targets(places: np.ndarray) -> list[int]:
     return chosen
 
 
-def planned_mission(page: Page) -> str:
+def planned_mission(page: Page) -> tuple[str, int]:
+    """Its key, and how many towers the region has."""
     ids, places = towers_of(page)
     targets = spread_targets(places)
     starts = [places[targets[0]] + (0.002, 0.002), places[targets[1]] + (0.002, 0.002)]
@@ -159,7 +163,7 @@ def planned_mission(page: Page) -> str:
     until = time.monotonic() + PATIENCE_MS / 1_000
     while asks(page, f"/missions/{mission['id']}")["plan"] is None and time.monotonic() < until:
         time.sleep(1)
-    return str(mission["id"])
+    return str(mission["id"]), len(ids)
 
 
 def figures(page: Page) -> dict[str, float]:
@@ -183,7 +187,7 @@ def heap_mb(wire: CDPSession) -> float:
 
 def measure(page: Page, region: str, minutes: float) -> Measured:
     found = Measured(region)
-    mission = planned_mission(page)
+    mission, found.of_region = planned_mission(page)
     page.goto(f"/missions/{mission}/3d?source=plan")
     page.locator("html[data-loaded]").wait_for(state="attached")
     page.wait_for_function("() => spanwiseScene.figures()?.frames >= 0")
@@ -223,16 +227,21 @@ def report(rows: Sequence[Measured], minutes: float) -> str:
     head = ["region", "towers in the picture", "draw calls", "triangles", *of_views, "heap after a collection", "geometries, textures"]
     lines = [
         [
-            row.region, f"{row.towers:,}", str(row.calls), f"{row.triangles:,}", *(f"{row.script_ms[view]:.1f}" for view in VIEWS),
+            row.region,
+            f"{row.towers:,} of {row.of_region:,}",
+            str(row.calls),
+            f"{row.triangles:,}",
+            *(f"{row.script_ms[view]:.1f}" for view in VIEWS),
             f"{row.heap_mb[0]:.1f} to {row.heap_mb[-1]:.1f} MB" if row.heap_mb else "–",
             ", then ".join(f"{geometries}, {textures}" for geometries, textures in dict.fromkeys(row.held)) or "–",
         ]
         for row in rows
-    ]  # fmt: skip
+    ]
     words = (
-        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, the "
-        f"view playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, {BAR_CALLS} draw calls, {BAR_SCRIPT_MS:g} ms of "
-        "script a frame (our code and three.js, without the graphics), flat memory. Drawn by the processor: no frame rate is told."
+        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, the view "
+        f"playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, or nearly all of a region that has fewer; "
+        f"{BAR_CALLS} draw calls; {BAR_SCRIPT_MS:g} ms of script a frame (our code and three.js, without the graphics), "
+        "of the processor's time; flat memory. Drawn by the processor: no frame rate is told."
     )
     return f"{words}\n\n{table(head, lines)}\n\n{machine('playwright')}"
 

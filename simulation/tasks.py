@@ -7,7 +7,7 @@ from inspection.selectors import NoGraph
 from missions.models import Mission
 from missions.services.refused import Refused
 from simulation.models import Rehearsal
-from simulation.services.rehearsals import PlanChanged, rehearse_for_job
+from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job
 from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
@@ -15,6 +15,7 @@ from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_
 SOFT_LIMIT_S = 840
 HARD_LIMIT_S = 900
 CHANGED = "The mission was changed while it was being rehearsed. Rehearse it again."
+ON_OTHER_GROUND = "Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -30,6 +31,8 @@ def rehearse_mission(job_id: str) -> None:
         confirm_cancelled(job=job)
     except (PlanChanged, Mission.DoesNotExist, Rehearsal.DoesNotExist):
         fail_job(job=job, code="mission_changed", message=CHANGED)
+    except GroundChanged:
+        fail_job(job=job, code="ground_changed", message=ON_OTHER_GROUND)
     except Refused as refused:
         fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
     except NoGraph:

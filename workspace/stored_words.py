@@ -64,6 +64,7 @@ TEMPLATES = (
     gettext_noop("Flying %(number)s of %(all)s"),
     gettext_noop("Rehearsed"),
     gettext_noop("The mission was changed while it was being rehearsed. Rehearse it again."),
+    gettext_noop("Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."),
     gettext_noop("Not flown within %(minutes)s min. Rehearse fewer conditions at once, or split the mission."),
     gettext_noop("The rehearsal failed inside Spanwise; the error is in the log."),
     # what simulated UAVs say of trouble; those that begin alike stand in front of the shorter ones

@@ -33,7 +33,8 @@ MOST_POSTS = 225  # of the ground, along each side
 AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
 REACH_DEG = 0.15  # a span is not longer than that in degrees
 MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
-SIMPLER_DEG = 5e-6  # half a metre: of the outlines of zones
+SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred: of the outlines of zones
+MOST_CORNERS = 4_000  # of a zone
 
 Row = TypeVar("Row", Asset, NoFlyZone)
 
@@ -229,9 +230,18 @@ def _shape(row: Asset | NoFlyZone, clip: Box) -> shapely.geometry.base.BaseGeome
     if isinstance(row, Asset) and row.kind == AssetKind.BRIDGE:
         return shape
     if isinstance(row, NoFlyZone):
-        simpler = shapely.simplify(shape, SIMPLER_DEG)
-        shape = simpler if shapely.is_valid(simpler) and not simpler.is_empty else shape
+        return _with_fewer_corners(shapely.intersection(shape, shapely.box(*clip)))
     return shapely.intersection(shape, shapely.box(*clip))
+
+
+def _with_fewer_corners(shape: shapely.geometry.base.BaseGeometry) -> shapely.geometry.base.BaseGeometry:
+    """Half a metre off at most, or as much as it takes to have no more than MOST_CORNERS."""
+    tolerance_deg = SIMPLER_DEG
+    while True:
+        simpler = shapely.simplify(shape, tolerance_deg)
+        if shapely.get_num_coordinates(simpler) <= MOST_CORNERS or tolerance_deg > COARSEST_DEG:
+            return shape if simpler.is_empty or not shapely.is_valid(simpler) else simpler
+        tolerance_deg *= 2
 
 
 def _nearest(

@@ -21,6 +21,7 @@ def content_of(
             "items": [load_to_json(FlightLoad(items))["mission"] for items in route.items],
             **({"rally": [load_to_json(FlightLoad((), rally=rally))["rally"] for rally in route.rally]} if any(route.rally) else {}),
             "reserve_percent": route.reserve_percent,
+            "limit_mps": route.limit_mps,
             "airframe": airframe,
             "battery_wh": battery_wh,
         }

@@ -55,7 +55,10 @@ OnProgress = Callable[[float], None]
 
 @dataclass(frozen=True, eq=False)
 class RouteToFly:
-    """A route with the items of each of its flights, and the rally points of each. planned_s is how long each is reckoned to take."""
+    """A route with the items of each of its flights, and the rally points of each. planned_s is how long each is reckoned to take.
+
+    limit_mps: what the UAV flies through the air, as plans have it.
+    """
 
     uav: int
     name: str
@@ -65,6 +68,7 @@ class RouteToFly:
     planned_wh: float | None = None
     planned_s: float | None = None
     rally: tuple[tuple[MissionItem, ...], ...] = ()
+    limit_mps: float = math.inf
 
 
 def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float, seed: int, on_progress: OnProgress) -> list[FlownRoute]:

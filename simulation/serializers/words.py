@@ -16,7 +16,7 @@ SENTENCES = {
     "refused": gettext_noop("%(name)s did not take off%(flight)s. %(said)s"),
     "not-begun": gettext_noop("%(name)s did not begin flight %(number)s: the one before it did not end well."),
     "begun-in-air": gettext_noop("begins in the air; here it took off by itself first, with a battery as full as the conditions say"),
-    "wind": gettext_noop("wind of %(wind)s m/s at %(agl)s m, the simulated airframe flies %(limit)s m/s"),
+    "wind": gettext_noop("wind of %(wind)s m/s at %(agl)s m, it flies %(limit)s m/s through the air at most"),
     "reserve": gettext_noop("%(percent)s %% battery at return%(flight)s, limit %(limit)s %%"),
     "reserve-near": gettext_noop("%(percent)s %% battery at return%(flight)s, little above the limit of %(limit)s %%"),
     "across": gettext_noop("%(metres)s m off its line on the way to waypoint %(waypoint)s, limit %(limit)s m"),

@@ -10,23 +10,24 @@ from simulation.models import RehearsalRun, RehearsalTrack
 REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
 
 
-def take_flown_before(run: RehearsalRun, edition: int) -> bool:
+def take_flown_before(run: RehearsalRun) -> bool:
     """Give the run the verdict and the lines of its like, if there is one; `finished_at` stays when that was flown.
 
-    edition: of the ground that it would be flown over.
+    Its rehearsal names the ground that it would be flown over.
     """
     rehearsal = run.rehearsal
     alike = RehearsalRun.objects.filter(
         rehearsal__mission=rehearsal.mission_id,
         rehearsal__content_sha256=rehearsal.content_sha256,
-        rehearsal__ground_revision=edition,
+        rehearsal__ground_revision=rehearsal.ground_revision,
+        rehearsal__ground_sha256=rehearsal.ground_sha256,
         rehearsal__seed=rehearsal.seed,
         rehearsal__limits=rehearsal.limits,
         rehearsal__uavs=rehearsal.uavs,
         conditions=run.conditions,
         finished_at__gte=timezone.now() - REUSED_FOR,
     )
-    before = None if rehearsal.ground_revision != edition else alike.exclude(pk=run.pk).order_by("-finished_at").first()
+    before = alike.exclude(pk=run.pk).order_by("-finished_at").first()
     if before is None:
         return False
     with transaction.atomic():

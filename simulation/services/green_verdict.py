@@ -7,7 +7,7 @@ from inspection.selectors.planning import planning_read
 from missions.models import Mission
 from missions.services.refused import Reason, Refused
 from simulation.models import Rehearsal, RehearsalRule, VerdictLevel
-from simulation.rehearsing.sky import Named
+from simulation.rehearsing.sky import Named, named_sky, sky_to_json
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan
@@ -35,6 +35,9 @@ def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
     if not newest.runs.filter(conditions__code=str(Named.AS_PLANNED)).exists():
         words = _("The rehearsal left out the conditions that the mission is planned for. Rehearse it again with them.")
         return [Reason("rehearsal_without_planned_conditions", words)]
+    if not newest.runs.filter(conditions=sky_to_json(named_sky(Named.AS_PLANNED, plan.conditions))).exists():
+        words = _("The mission is planned for other wind or temperature than it was rehearsed in. Rehearse it again.")
+        return [Reason("rehearsal_in_other_air", words)]
     if not _is_on_this_ground(newest, plan):
         words = _("Zones, terrain, towers or wires about the routes have changed since the mission was rehearsed. Rehearse it again.")
         return [Reason("rehearsal_on_other_ground", words)]
@@ -42,9 +45,8 @@ def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
 
 
 def _is_on_this_ground(rehearsal: Rehearsal, plan: PlanToFly) -> bool:
-    """Whatever has changed elsewhere since."""
-    ground = planning_read().ground()
-    return rehearsal.ground_revision == ground.edition[0] or rehearsal.ground_sha256 == ground_of_plan(plan, ground)
+    """Whatever has changed elsewhere since. The revision does not tell: a newer network of the same ground has other towers and wires."""
+    return rehearsal.ground_sha256 == ground_of_plan(plan, planning_read().ground())
 
 
 def set_rule(*, organisation: Organisation, actor: User, requires: bool) -> RehearsalRule:

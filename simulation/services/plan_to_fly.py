@@ -90,13 +90,15 @@ def _approved_routes(mission: Mission) -> dict[int, tuple[FrozenRoute, tuple[Fli
 
 
 def _to_fly(uav: MissionUav, route: FrozenRoute, loads: tuple[FlightLoad, ...], planned_wh: float | None, planned_s: float) -> RouteToFly:
+    performance = performance_from_json(uav.performance or None)
     return RouteToFly(
         uav=uav.sequence,
         name=uav.name,
         route=route,
         items=tuple(load.mission for load in loads),
-        reserve_percent=performance_from_json(uav.performance or None).reserve_percent,
+        reserve_percent=performance.reserve_percent,
         planned_wh=planned_wh,
         planned_s=planned_s,
         rally=tuple(load.rally for load in loads),
+        limit_mps=performance.max_airspeed_mps or route.cruise_speed_mps,
     )

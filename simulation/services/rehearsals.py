@@ -41,6 +41,10 @@ class PlanChanged(Exception):
     """The mission is no longer as it was asked for."""
 
 
+class GroundChanged(Exception):
+    """Some of it was flown over other ground than there is now."""
+
+
 def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7, afresh: bool = False) -> Rehearsal:
     """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs.
 
@@ -86,19 +90,34 @@ def cancel_rehearsal(*, rehearsal: Rehearsal, actor: User) -> Job:
 
 
 def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
-    """Fly what is not flown yet, and end the job. Raises PlanChanged, Refused, or whatever `progress` does."""
+    """Fly what is not flown yet, all over one ground, and end the job. Raises PlanChanged, GroundChanged, Refused; or as `progress`."""
     rehearsal = Rehearsal.objects.select_related("mission__organisation").get(job=job)
     mission = mission_of_organisation(rehearsal.organisation, rehearsal.mission_id)
     plan = plan_to_fly(mission)
     if plan.content_sha256 != rehearsal.content_sha256:
         raise PlanChanged
+    ground = planning_read().ground()
+    _stand_on(rehearsal, plan, ground)
     runs = list(rehearsal.runs.select_related("rehearsal"))
     is_afresh = bool(job.parameters.get("afresh"))
     for number, run in enumerate(runs):
-        if run.finished_at is not None or (not is_afresh and take_flown_before(run, planning_read().edition[0])):
+        if run.finished_at is not None or (not is_afresh and take_flown_before(run)):
             continue
-        _fly_run(run, plan, planning_read().ground(), rehearsal.seed, _shares(progress, number, len(runs)))
+        _fly_run(run, plan, ground, rehearsal.seed, _shares(progress, number, len(runs)))
     _finish(rehearsal.pk, job)
+
+
+def _stand_on(rehearsal: Rehearsal, plan: PlanToFly, ground: PlanningGround) -> None:
+    """Have it speak of the ground that it is flown over, which may have changed since it was asked for."""
+    known, now = rehearsal.ground_sha256, ground_of_plan(plan, ground)
+    with transaction.atomic():
+        held = Rehearsal.objects.select_for_update(of=("self",)).get(pk=rehearsal.pk)
+        if held.runs.exclude(finished_at=None).exists():
+            if known != now:
+                raise GroundChanged
+            return
+        held.ground_revision, held.ground_sha256 = ground.edition[0], now
+        held.save(update_fields=["ground_revision", "ground_sha256"])
 
 
 def limits_of_settings() -> Limits:
@@ -124,8 +143,9 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
 
 
 def _too_windy(plan: PlanToFly, sky: Sky) -> list[Finding]:
+    """For the UAV, or for the airframe that flies for it: the one that flies slower."""
     found = (
-        wind_finding(route.uav, route.route, sky.conditions, AIRFRAMES[stand_in.airframe].max_airspeed_mps)
+        wind_finding(route.uav, route.route, sky.conditions, min(route.limit_mps, AIRFRAMES[stand_in.airframe].max_airspeed_mps))
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
     )
     return [finding for finding in found if finding is not None]
@@ -139,8 +159,8 @@ def _begun_in_air(plan: PlanToFly) -> list[Finding]:
 def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, took_s: float) -> None:
     """Once, whole or not at all: another worker that has taken over finds either all of it or nothing."""
     with transaction.atomic():
-        held = RehearsalRun.objects.select_for_update().get(pk=run.pk)
-        if held.finished_at is not None:
+        held = RehearsalRun.objects.select_for_update(of=("self",)).select_related("rehearsal").get(pk=run.pk)
+        if held.finished_at is not None or held.rehearsal.ground_sha256 != run.rehearsal.ground_sha256:
             return
         held.verdict, held.level, held.took_s = verdict_to_json(verdict), str(verdict.level), took_s
         held.finished_at = timezone.now()

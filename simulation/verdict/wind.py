@@ -8,7 +8,7 @@ from simulation.verdict.finding import Finding, Level
 
 
 def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airspeed_mps: float) -> Finding | None:
-    """The strongest mean wind at the heights of a route, where it is more than the airframe flies: it is said before all that follows."""
+    """The strongest mean wind at the heights of a route, where it is more than can be flown: it is said before all that follows."""
     heights_m = {waypoint.altitude_agl_m for waypoint in route.waypoints}
     speed_mps, agl_m = max(((math.hypot(*conditions.wind_at(agl_m)), agl_m) for agl_m in heights_m), default=(0.0, 0.0))
     if speed_mps <= max_airspeed_mps:

@@ -40,7 +40,7 @@ def rehearsed(visitor: Visitor, site: Site) -> tuple[str, str]:
     """Keys of a mission with one short flight to a tower, and of its rehearsal in calm air; flown once for all tests."""
     if site.address not in _rehearsed:
         page = visitor.signs_in("ada")
-        uav = posts(page, "/uavs", {"name": "Dunlin", "position": START, "is_simulated": True})["id"]
+        uav = posts(page, "/uavs", {"name": "Eider", "position": START, "is_simulated": True})["id"]
         towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.90,-82.95,39.925&limit=100")["features"]
         nearest = min(towers, key=lambda tower: sum((a - b) ** 2 for a, b in zip(tower["geometry"]["coordinates"], START, strict=True)))
         body: dict[str, Any] = {
@@ -72,7 +72,7 @@ def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visi
     page = seen(visitor.signs_in("vera"), f"/missions/{mission}/3d")  # without a flight on record: the newest rehearsal
     canvas = page.get_by_role("img", name=re.compile("^3D view: 1 UAV"))
     instruments = page.get_by_role("region", name="Instruments")
-    expect(instruments).to_contain_text("Dunlin", timeout=PATIENCE_MS)
+    expect(instruments).to_contain_text("Eider", timeout=PATIENCE_MS)
     expect(page.get_by_text("Simulated", exact=True)).to_be_visible()
     page.keyboard.press(".")  # from the take-off on: its target is reached
     expect(instruments.locator("[data-reading=task]")).to_contain_text("A1", timeout=PATIENCE_MS)

@@ -8,6 +8,8 @@ from unittest import mock
 import pytest
 from django.utils import timezone
 
+from inspection.selectors.planning import planning_read
+from inspection.services import build_graph
 from inspection.services.ground import mark_ground_changed
 from missions.models import Mission, MissionState, UavType
 from missions.selectors import mission_of_organisation
@@ -20,6 +22,7 @@ from simulation.services.green_verdict import reasons_without_rehearsal, set_rul
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal
 from simulation.tasks import rehearse_mission
+from tests.inspection.ground import tower
 from tests.missions import worlds
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import World, world, zone_around
@@ -73,12 +76,22 @@ def test_the_same_seed_gives_the_same_track(mission: Mission, person: User) -> N
 
 
 def test_wind_that_the_uav_cannot_fly_in_fails_with_its_reason(mission: Mission, person: User) -> None:
+    mission.mission_uavs.update(performance={"battery_wh": 56.6, "max_airspeed_mps": 11.0})  # an Iris
     Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
     rehearsal = rehearsed(mission, person, "as-planned")
     findings = rehearsal.runs.get().verdict["findings"]
     assert rehearsal.level == "fail"
     assert findings[0]["code"] == "wind" and findings[0]["facts"]["wind_mps"] == pytest.approx(14.0)
     assert any(finding["level"] == "fail" for finding in findings[1:])  # and it is seen in what was flown
+
+
+def test_wind_that_its_airframe_flies_in_and_the_uav_does_not_fails(mission: Mission, person: User) -> None:
+    """What flies for it is stronger than the UAV, which is planned at 12 m/s and of which nothing more is known."""
+    Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
+    rehearsal = rehearsed(mission, person, "as-planned")
+    finding = rehearsal.runs.get().verdict["findings"][0]
+    assert (rehearsal.uavs[0]["airframe"], rehearsal.level) == ("inspector", "fail")
+    assert (finding["code"], finding["facts"]["limit_mps"]) == ("wind", 12.0)
 
 
 def test_a_battery_that_is_too_small_fails_with_its_reason(here: World, person: User) -> None:
@@ -138,7 +151,7 @@ def test_another_airframe_makes_a_rehearsal_out_of_date(here: World, person: Use
     uav_type = UavType.objects.create(organisation=person.organisation, name="Heavy", mass_kg=3.8, battery_wh=260.0)
     mission = planned(person, fleet(uav_type=uav_type), [here.towers[0]])
     known = content(mission)
-    SimulatedAirframe.objects.create(uav_type=uav_type, airframe="inspector")
+    SimulatedAirframe.objects.create(uav_type=uav_type, airframe="iris")
     assert content(mission) != known
 
 
@@ -228,6 +241,49 @@ def test_approval_asks_for_a_rehearsal_of_this_very_plan_that_passed(mission: Mi
     rehearsed(mission, person, "calm", "as-planned")
     assert reasons(mission, person) == []
     assert mission_of_organisation(person.organisation, mission.pk).state == MissionState.APPROVED
+
+
+def test_what_was_rehearsed_in_other_wind_than_is_planned_by_now_is_not_approved(mission: Mission, person: User) -> None:
+    """A UAV with airspeed to spare flies the same route, to the last item."""
+    set_rule(organisation=person.organisation, actor=person, requires=True)
+    mission.mission_uavs.update(performance={"max_airspeed_mps": 22.0})
+    plan_mission(mission=loaded(mission), actor=person)
+    rehearsed(mission, person, "as-planned")
+    known = content(mission)
+    Mission.objects.update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 6.0, "from_deg": 90.0}]})
+    plan_mission(mission=loaded(mission), actor=person)
+    assert content(mission) == known
+    assert [reason.code for reason in reasons_without_rehearsal(loaded(mission))] == ["rehearsal_in_other_air"]
+    rehearsed(mission, person, "as-planned")
+    assert reasons_without_rehearsal(loaded(mission)) == []
+
+
+def test_what_was_rehearsed_without_a_mast_that_the_network_has_by_now_is_not_approved(mission: Mission, person: User, here: World) -> None:
+    """The network follows the ground some minutes later, under the same revision."""
+    set_rule(organisation=person.organisation, actor=person, requires=True)
+    lon, lat = here.towers[0].centre.coords[:2]
+    worlds.power_line([tower((lon + 0.002, lat + 0.003 * place)) for place in (1, 2)])
+    mark_ground_changed()
+    rehearsed(mission, person, "as-planned")
+    revision = planning_read().edition
+    build_graph()
+    assert planning_read().edition == revision
+    assert [reason.code for reason in reasons_without_rehearsal(loaded(mission))] == ["rehearsal_on_other_ground"]
+    with mock.patch("simulation.services.rehearsals.fly", side_effect=Flown), pytest.raises(Flown):
+        rehearsed(mission, person, "as-planned")
+
+
+def test_a_rehearsal_speaks_of_the_ground_that_it_was_flown_over(mission: Mission, person: User, here: World) -> None:
+    """A zone that was away while it was flown, and is back, was not looked at."""
+    set_rule(organisation=person.organisation, actor=person, requires=True)
+    lon, lat = here.towers[0].centre.coords[:2]
+    beside = zone_around((lon, lat + 0.01), with_graph=False, name="Beside")
+    rehearsal = asked(mission, person, "as-planned")
+    beside.delete()
+    mark_ground_changed()
+    rehearse_mission(str(rehearsal.job_id))
+    zone_around((lon, lat + 0.01), with_graph=False, name="Beside")
+    assert [reason.code for reason in reasons_without_rehearsal(loaded(mission))] == ["rehearsal_on_other_ground"]
 
 
 def test_what_was_rehearsed_on_other_ground_is_not_approved(mission: Mission, person: User, here: World) -> None:
