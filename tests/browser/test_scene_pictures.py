@@ -103,7 +103,7 @@ def test_flights_among_towers(visitor: Visitor, towers: Towers, picture: Picture
     landing = ends_s(page, key) - 12
     base = f"/missions/{key}/3d?source=rehearsal&t="
     views = {
-        "approach": (first - 7, "uav=0&camera=chase&view=-28,18,9"),
+        "approach": (first - 16, "uav=0&camera=chase&view=-28,18,9"),
         "line": ((first + last) / 2, "uav=0&camera=chase&view=35,24,22"),
         "two": ((first + last) / 2, "uav=1&camera=orbit&view=150,22,520"),
         "target": (first + 4, "uav=0&camera=orbit&view=200,12,120"),
@@ -118,7 +118,7 @@ def test_flights_among_towers(visitor: Visitor, towers: Towers, picture: Picture
                 looks(page, picture, f"{base}{at(DAYTIME, moment_s)}&{rest}", f"scene-{name}-{theme}")
     for view, camera in (("phone-light", "chase&view=-28,20,13"), ("phone-dark", "orbit&view=200,12,150")):
         page = visitor.signs_in("vera", **VIEWS[view])
-        looks(page, picture, f"{base}{at(DAYTIME, first - 6)}&uav=0&camera={camera}", f"scene-{view}")
+        looks(page, picture, f"{base}{at(DAYTIME, first - 15)}&uav=0&camera={camera}", f"scene-{view}")
 
 
 def test_round_a_zone_and_at_night(visitor: Visitor, towers: Towers, zone: str, picture: Picture) -> None:
